@@ -1,0 +1,374 @@
+"""An activity as TOML describes it: stages, user states, behaviours, phrasebook, deck.
+
+Section III-A-3 of the paper models an activity as discrete stages and a robot as behaviours, each
+with actions ac = f(theta, sp, im, l, ps). Every word of one activity lives in its TOML file;
+nothing here or above names one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.resources import files
+from pathlib import Path
+from string import Formatter
+from types import MappingProxyType
+
+from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.state import Situation
+
+EFFECTS = (
+    "none",  # something is said or shown
+    "draw",  # the next number is called
+    "clear wrong marks",  # the attended person is asked to take markers off
+    "set missing marks",  # the attended person is asked to mark called numbers
+    "bring card closer",  # the attended person is asked to move the card into view
+    "go to user",
+    "go to front",
+    "finish",  # the activity is over
+)
+"""What a behaviour does to the world. A world implements these; an activity chooses among them."""
+
+CONDITIONS = ("before", "after", "beside requester", "requested or away", "count", "otherwise")
+CLOSINGS = ("never", "always", "when correct")
+PLACES = ("front", "attended", "here")
+SLOTS = ("name", "call", "numbers")
+"""What a speech or a screen may have filled in: {name}, {call}, {numbers}."""
+
+MOST_ACTIVITY_WORDS = 40
+
+
+@dataclass(frozen=True)
+class StageRule:
+    """One line of the stage table; the first whose condition holds names the stage.
+
+    Conditions: `before`/`after` a behaviour has succeeded once; `beside requester`: the robot is
+    with a person who asks for help; `requested or away`: somebody asks, or the robot is not at
+    the front; `count`: `behaviour` was executed `at_least` times since `since`; `otherwise`.
+    """
+
+    stage: str
+    condition: str
+    behaviour: str = ""
+    since: str = ""
+    at_least: int = 0
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """A primitive behaviour b that the robot has from the start (Section III-A-3-i).
+
+    `posture` is theta by name (the robot's profile has the joint angles), `speech` holds sp for
+    each persuasive strategy, `image` is what the chest screen shows (im), and `place` is l.
+    `persuades` marks behaviours that need a person to comply; `closes` says when the attended
+    person's request is over; `needs` lists the user states in which it can succeed (all if empty).
+    """
+
+    name: str
+    question: str
+    effect: str
+    place: str
+    posture: str
+    image: str
+    speech: Mapping[str, str]
+    persuades: bool
+    closes: str
+    needs: tuple[str, ...]
+    phrases: tuple[str, ...]
+    keywords: tuple[tuple[str, ...], ...]
+
+    @property
+    def attends(self) -> bool:
+        """Whether it is directed at the attended person rather than at the group."""
+        return self.place == "attended"
+
+
+@dataclass(frozen=True)
+class Action:
+    """One way to execute a behaviour: ac = f(theta, sp, im, l, ps), and for whom.
+
+    `speech` and `image` still hold their slots: only the world that executes the action knows
+    which number it calls. `Activity.fill` puts the words in.
+    """
+
+    behaviour: Behaviour
+    target: str | None
+    strategy: str
+    posture: str
+    speech: str
+    image: str
+    place: str
+
+
+@dataclass(frozen=True)
+class Activity:
+    """Everything that Tangy knows of one activity before anybody has demonstrated it."""
+
+    name: str
+    title: str
+    patience: float
+    strategies: Mapping[str, str]
+    plain_strategy: str
+    deck: Deck
+    user_states: tuple[CardState, ...]
+    stage_rules: tuple[StageRule, ...]
+    behaviours: Mapping[str, Behaviour]
+    expected: Mapping[Situation, str]
+    source: str
+
+    @cached_property
+    def unread(self) -> str:
+        """The user activity state of a person whose card has not been read."""
+        return next(s.name for s in self.user_states if s.checker == "unread")
+
+    @cached_property
+    def card_states(self) -> tuple[CardState, ...]:
+        """The user activity states that a read card can have, in order of precedence."""
+        return tuple(s for s in self.user_states if s.checker != "unread")
+
+    @cached_property
+    def stages(self) -> tuple[str, ...]:
+        """The stages in the order of their rules."""
+        return tuple(dict.fromkeys(rule.stage for rule in self.stage_rules))
+
+    @cached_property
+    def situations(self) -> tuple[Situation, ...]:
+        """All triples the stage rules can bring about, in the order of the rules.
+
+        Before the first `before` rule is passed nobody can have asked; beside a requester every
+        user state can be seen; a `requested or away` stage comes with and without a request;
+        `after` rules (a win) find the winner's request still open.
+        """
+        found: list[Situation] = []
+        for rule in self.stage_rules:
+            match rule.condition:
+                case "beside requester":
+                    found += [Situation(rule.stage, "AR", s.name) for s in self.user_states]
+                case "requested or away":
+                    found.append(Situation(rule.stage, "AR", self.unread))
+                    found.append(Situation(rule.stage, "ANR", self.unread))
+                case "after":
+                    found.append(Situation(rule.stage, "AR", self.unread))
+                case _:
+                    found.append(Situation(rule.stage, "ANR", self.unread))
+        return tuple(dict.fromkeys(found))
+
+    def behaviour(self, name: str) -> Behaviour:
+        """Return a behaviour by its name.
+
+        Raises:
+            ProfileError: there is none of that name; says which is nearest.
+        """
+        try:
+            return self.behaviours[name]
+        except KeyError:
+            raise ProfileError(
+                f"{self.title} has no behaviour {name!r}: {nearest(name, self.behaviours)}"
+            ) from None
+
+    def action(self, behaviour: Behaviour, target: str | None, strategy: str | None) -> Action:
+        """Choose the action of a behaviour for a persuasive strategy (none: the plain one)."""
+        chosen = strategy or self.plain_strategy
+        return Action(
+            behaviour,
+            target,
+            chosen,
+            behaviour.posture,
+            behaviour.speech[chosen],
+            behaviour.image,
+            behaviour.place,
+        )
+
+    def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
+        """Put name and numbers into a speech or a screen text."""
+        labels = [self.deck.label(number) for number in numbers]
+        return template.format(
+            name=name, call=labels[0] if labels else "", numbers=", ".join(labels)
+        )
+
+
+def shipped_activities() -> dict[str, Path]:
+    """The activities that come with Tangy, by name."""
+    folder = Path(str(files("tangy_profiles"))) / "activities"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def load_activity(name: str) -> Activity:
+    """Load an activity by name, or by the path of its TOML file.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    shipped = shipped_activities()
+    if name in shipped:
+        return read_activity(shipped[name])
+    if name.endswith(".toml"):
+        return read_activity(Path(name))
+    raise ProfileError(f"There is no activity {name!r}: {nearest(name, shipped)}")
+
+
+def read_activity(path: Path) -> Activity:
+    """Read and check one activity file.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    top = read_toml(path)
+    strategies = _strategies(top.table("strategies"))
+    plain = top.choice("plain_strategy", strategies)
+    states = _user_states(top)
+    state_names = [s.name for s in states]
+    behaviours = _behaviours(top, strategies, state_names)
+    rules = _stage_rules(top, behaviours)
+    activity = Activity(
+        name=top.text("name"),
+        title=top.text("title"),
+        patience=top.number("patience", 0.1, 600),
+        strategies=MappingProxyType(strategies),
+        plain_strategy=plain,
+        deck=read_deck(top.table("deck")),
+        user_states=states,
+        stage_rules=rules,
+        behaviours=MappingProxyType(behaviours),
+        expected=MappingProxyType(_expected(top, rules, state_names, behaviours)),
+        source=path.name,
+    )
+    top.close()
+    for situation in activity.expected:
+        if situation not in activity.situations:
+            raise top.wrong("expected", f"{' / '.join(situation)} can never come about.")
+    return activity
+
+
+def _strategies(table: Table) -> dict[str, str]:
+    strategies = {key: table.text(key) for key in table.keys()}
+    if not strategies:
+        raise table.wrong("", "must name at least one persuasive strategy.")
+    return strategies
+
+
+def _user_states(top: Table) -> tuple[CardState, ...]:
+    states: list[CardState] = []
+    for entry in top.tables("user_states"):
+        name = entry.text("name")
+        states.append(
+            CardState(
+                name,
+                entry.text("label", name),
+                entry.choice("checker", CHECKERS),
+                entry.text("hint", ""),
+            )
+        )
+        entry.close()
+    checkers = [s.checker for s in states]
+    if len({s.name for s in states}) < len(states):
+        raise top.wrong("user_states", "two of them have the same name.")
+    for needed in ("unread", "otherwise"):
+        if checkers.count(needed) != 1:
+            raise top.wrong("user_states", f"exactly one must have the checker {needed!r}.")
+    return tuple(sorted(states, key=lambda s: s.checker == "otherwise"))
+
+
+def _behaviours(top: Table, strategies: dict[str, str], states: list[str]) -> dict[str, Behaviour]:
+    behaviours: dict[str, Behaviour] = {}
+    said: dict[str, str] = {}
+    for entry in top.tables("behaviours"):
+        behaviour = _behaviour(entry, strategies, states)
+        if behaviour.name in behaviours:
+            raise entry.wrong("name", "stands here twice.")
+        for phrase in behaviour.phrases:
+            if phrase in said:
+                raise entry.wrong("phrases", f"{phrase!r} belongs to {said[phrase]!r} already.")
+            said[phrase] = behaviour.name
+        behaviours[behaviour.name] = behaviour
+        entry.close()
+    if not behaviours:
+        raise top.wrong("behaviours", "must hold at least one behaviour.")
+    if not any(b.effect == "finish" for b in behaviours.values()):
+        raise top.wrong("behaviours", "one must have the effect 'finish', or no game would end.")
+    return behaviours
+
+
+def _behaviour(entry: Table, strategies: dict[str, str], states: list[str]) -> Behaviour:
+    name = entry.text("name")
+    spoken = entry.table("speech")
+    speech = {s: _template(spoken, s) for s in strategies if s in spoken or len(strategies) == 1}
+    spoken.close()
+    persuades = entry.flag("persuades", False)
+    if persuades and len(speech) < len(strategies):
+        missing = next(s for s in strategies if s not in speech)
+        raise entry.wrong("speech", f"has no words for the strategy {missing!r}.")
+    if not speech:
+        raise entry.wrong("speech", "must say something in at least one strategy.")
+    first = next(iter(speech.values()))
+    return Behaviour(
+        name=name,
+        question=entry.text("question", name),
+        effect=entry.choice("effect", EFFECTS),
+        place=entry.choice("place", PLACES),
+        posture=entry.text("posture"),
+        image=_template(entry, "image"),
+        speech=MappingProxyType({s: speech.get(s, first) for s in strategies}),
+        persuades=persuades,
+        closes=entry.choice("closes", CLOSINGS, "never"),
+        needs=entry.words("needs", states, ()),
+        phrases=tuple(_spoken(entry, "phrases", p) for p in entry.words("phrases")),
+        keywords=tuple(tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")),
+    )
+
+
+def _template(table: Table, key: str) -> str:
+    text = table.text(key)
+    try:
+        slots = [slot for _, slot, spec, _ in Formatter().parse(text) if slot is not None]
+    except ValueError:
+        raise table.wrong(key, "has an unpaired brace.") from None
+    for slot in slots:
+        if slot not in SLOTS:
+            raise table.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot, SLOTS)}")
+    return text
+
+
+def _spoken(table: Table, key: str, phrase: str) -> str:
+    if not re.fullmatch(r"[a-z']+( [a-z']+)*", phrase):
+        raise table.wrong(key, f"{phrase!r} must be lower-case words, as they are spoken.")
+    return phrase
+
+
+def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRule, ...]:
+    rules: list[StageRule] = []
+    for entry in top.tables("stages"):
+        stage = entry.text("name")
+        condition = entry.choice("when", CONDITIONS)
+        if condition in ("before", "after"):
+            rules.append(StageRule(stage, condition, entry.choice("behaviour", behaviours)))
+        elif condition == "count":
+            counted = entry.choice("behaviour", behaviours)
+            since = entry.choice("since", behaviours)
+            rules.append(StageRule(stage, condition, counted, since, entry.whole("every", 1, 999)))
+        else:
+            rules.append(StageRule(stage, condition))
+        entry.close()
+    if not rules or rules[-1].condition != "otherwise":
+        raise top.wrong("stages", "the last one must be when = 'otherwise'.")
+    return tuple(rules)
+
+
+def _expected(
+    top: Table, rules: tuple[StageRule, ...], states: list[str], behaviours: dict[str, Behaviour]
+) -> dict[Situation, str]:
+    stages = {rule.stage for rule in rules}
+    expected: dict[Situation, str] = {}
+    for entry in top.tables("expected", optional=True):
+        situation = Situation(
+            entry.choice("stage", stages),
+            "AR" if entry.choice("request", ("AR", "ANR")) == "AR" else "ANR",
+            entry.choice("user_state", states),
+        )
+        expected[situation] = entry.choice("behaviour", behaviours)
+        entry.close()
+    return expected

@@ -1,0 +1,84 @@
+"""What is believed of a person's compliance: one Beta posterior per persuasive strategy (Eq. 1, 2)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from random import Random
+
+GRID = 400
+"""Points of the midpoint rule on [0, 1]; against 20,000 points P(best) differs by less than .002."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beta:
+    """A Beta(alpha, beta) belief about the probability that a person complies with a strategy."""
+
+    alpha: float = 1.0
+    beta: float = 1.0
+
+    @property
+    def mean(self) -> float:
+        """The expected probability of compliance."""
+        return self.alpha / (self.alpha + self.beta)
+
+    @property
+    def trials(self) -> int:
+        """How many responses it rests on, the uniform start not counted."""
+        return round(self.alpha + self.beta - 2)
+
+    def updated(self, complied: bool) -> Beta:
+        """Return the belief after one more response (Eq. 2)."""
+        return Beta(self.alpha + 1, self.beta) if complied else Beta(self.alpha, self.beta + 1)
+
+    def sample(self, rng: Random) -> float:
+        """Draw one probability from the belief."""
+        return rng.betavariate(self.alpha, self.beta)
+
+    def density(self, points: int) -> list[float]:
+        """Return the density of Eq. 1 at the midpoints of `points` equal parts of [0, 1]."""
+        a, b = self.alpha, self.beta
+        scale = math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b)
+        mids = ((i + 0.5) / points for i in range(points))
+        return [
+            math.exp(scale + (a - 1) * math.log(x) + (b - 1) * math.log(1 - x)) for x in mids
+        ]
+
+
+UNIFORM = Beta()
+
+Beliefs = dict[str, Beta]
+"""One person's persuasive strategy profile M: strategy -> belief."""
+
+
+def uniform_beliefs(strategies: Iterable[str]) -> Beliefs:
+    """Return the profile M of a person nobody has met: Beta(1, 1) for every strategy."""
+    return dict.fromkeys(strategies, UNIFORM)
+
+
+def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
+    """Return, for each strategy, the probability that it is the one the person complies with most.
+
+    P(best = i) is the integral of f_i(x) times the product of the other strategies' F_j(x).
+    """
+    mass: dict[str, list[float]] = {}
+    cumulative: dict[str, list[float]] = {}
+    for strategy, belief in beliefs.items():
+        density = belief.density(GRID)
+        total = sum(density)
+        mass[strategy] = [value / total for value in density]
+        running = 0.0
+        cumulative[strategy] = []
+        for share in mass[strategy]:
+            cumulative[strategy].append(running + share / 2)
+            running += share
+    raw = {
+        one: sum(
+            mass[one][i] * math.prod(cumulative[other][i] for other in beliefs if other != one)
+            for i in range(GRID)
+        )
+        for one in beliefs
+    }
+    whole = sum(raw.values())
+    return {strategy: value / whole for strategy, value in raw.items()}

@@ -1,0 +1,168 @@
+"""Cards and the deck they are called from: geometry, labels, and how a card is judged.
+
+Cells are bits of an integer, row by row (bit = row x columns + column), so that a line is tested
+with one `and`. Both worlds judge with `Deck.judge`: the simulated one from what people did, the
+real one from what the camera saw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from tangy_profiles.reading import Table
+
+PATTERNS = ("row", "column", "diagonal", "four corners")
+CHECKERS = ("unread", "complete line", "wrong marks", "missing marks", "otherwise")
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its letter and the numbers that may stand in it, both ends included."""
+
+    letter: str
+    low: int
+    high: int
+
+
+@dataclass(frozen=True)
+class Deck:
+    """The numbers of a game and the shape of its cards."""
+
+    columns: tuple[Column, ...]
+    rows: int
+    free_centre: bool
+    patterns: tuple[str, ...]
+
+    @cached_property
+    def numbers(self) -> tuple[int, ...]:
+        """Every number that can be called, in order."""
+        return tuple(n for c in self.columns for n in range(c.low, c.high + 1))
+
+    @cached_property
+    def free(self) -> int:
+        """The bit of the free centre cell, or 0."""
+        if not self.free_centre:
+            return 0
+        return 1 << (self.rows // 2 * len(self.columns) + len(self.columns) // 2)
+
+    @cached_property
+    def lines(self) -> tuple[int, ...]:
+        """The winning lines as bit masks."""
+        rows, width = self.rows, len(self.columns)
+        cell = [[1 << (row * width + column) for column in range(width)] for row in range(rows)]
+        lines: list[int] = []
+        if "row" in self.patterns:
+            lines += [sum(cell[row]) for row in range(rows)]
+        if "column" in self.patterns:
+            lines += [sum(cell[row][column] for row in range(rows)) for column in range(width)]
+        if "diagonal" in self.patterns and rows == width:
+            lines.append(sum(cell[i][i] for i in range(rows)))
+            lines.append(sum(cell[i][width - 1 - i] for i in range(rows)))
+        if "four corners" in self.patterns:
+            lines.append(cell[0][0] | cell[0][-1] | cell[-1][0] | cell[-1][-1])
+        return tuple(lines)
+
+    @cached_property
+    def lines_through(self) -> tuple[tuple[int, ...], ...]:
+        """For each cell, the winning lines that run through it."""
+        cells = range(self.rows * len(self.columns))
+        return tuple(tuple(line for line in self.lines if line >> c & 1) for c in cells)
+
+    @cached_property
+    def _letters(self) -> dict[int, str]:
+        return {n: c.letter for c in self.columns for n in range(c.low, c.high + 1)}
+
+    def label(self, number: int) -> str:
+        """Write a number as a caller writes it: letter and number, "B-5"."""
+        return f"{self._letters[number]}-{number}"
+
+    def deal(self, uniform: Callable[[], float]) -> tuple[int, ...]:
+        """Deal one card: distinct numbers for each column, listed row by row.
+
+        Only `uniform` (a generator's `random`) is drawn from, because that is the one draw that
+        Python promises to be the same in every version.
+        """
+        width = len(self.columns)
+        card = [0] * (self.rows * width)
+        for place, column in enumerate(self.columns):
+            left = list(range(column.low, column.high + 1))
+            for row in range(self.rows):
+                pick = int(uniform() * len(left))
+                card[row * width + place] = left[pick]
+                left[pick] = left[-1]
+                left.pop()
+        return tuple(card)
+
+    def shuffled(self, uniform: Callable[[], float]) -> list[int]:
+        """Shuffle all numbers into a calling order (Fisher and Yates)."""
+        order = list(self.numbers)
+        for end in range(len(order) - 1, 0, -1):
+            pick = int(uniform() * (end + 1))
+            order[end], order[pick] = order[pick], order[end]
+        return order
+
+    def wins(self, cells: int) -> bool:
+        """Say whether these cells hold a winning line."""
+        return any(cells & line == line for line in self.lines)
+
+
+@dataclass(frozen=True)
+class CardState:
+    """A user activity state and the checker that recognises it on a card."""
+
+    name: str
+    label: str
+    checker: str
+    hint: str
+
+
+def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> str:
+    """Name the user activity state of a card that was read: the first state whose checker agrees.
+
+    Args:
+        states: the activity's user states in order of precedence.
+        deck: the deck that the card belongs to.
+        marked: the marked cells, as a mask.
+        called: the cells whose number has been called (the free centre among them), as a mask.
+    """
+    for state in states:
+        match state.checker:
+            case "complete line" if deck.wins(marked & called):
+                return state.name
+            case "wrong marks" if marked & ~called:
+                return state.name
+            case "missing marks" if called & ~marked:
+                return state.name
+            case "otherwise":
+                return state.name
+    raise ValueError("no state without a condition")  # refused when the activity is read
+
+
+def read_deck(table: Table) -> Deck:
+    """Read a deck and check that its cards can be filled."""
+    rows = table.whole("rows", 1, 9)
+    columns: list[Column] = []
+    for entry in table.tables("columns"):
+        letter = entry.text("letter")
+        low = entry.whole("from", 1, 999)
+        high = entry.whole("to", low, 999)
+        if high - low + 1 < rows:
+            raise entry.wrong("to", f"leaves fewer numbers than the {rows} rows of a card.")
+        if columns and low <= columns[-1].high:
+            raise entry.wrong("from", f"overlaps the column before it (to {columns[-1].high}).")
+        columns.append(Column(letter, low, high))
+        entry.close()
+    if not columns:
+        raise table.wrong("columns", "must hold at least one column.")
+    free = table.flag("free_centre", False)
+    if free and (rows % 2 == 0 or len(columns) % 2 == 0):
+        raise table.wrong("free_centre", "needs a card with a middle: odd rows and columns.")
+    patterns = table.words("patterns", PATTERNS)
+    if not patterns:
+        raise table.wrong("patterns", f"must hold one or more of: {', '.join(PATTERNS)}.")
+    if patterns == ("diagonal",) and rows != len(columns):
+        raise table.wrong("patterns", "a diagonal needs a square card.")
+    table.close()
+    return Deck(tuple(columns), rows, free, patterns)

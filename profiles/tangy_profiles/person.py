@@ -1,0 +1,42 @@
+"""The people who take part: an id that never changes, a name that may, and what is believed of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import read_toml
+
+MOST_PEOPLE = 8
+
+
+@dataclass(frozen=True)
+class Person:
+    """One participant. The log knows only the id; the name is kept apart and can be forgotten."""
+
+    id: str
+    name: str
+
+
+def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:
+    """Load the first `count` sample people; beyond the listed ones they are numbered on.
+
+    Raises:
+        ProfileError: the count is not from 1 to 8, or the file has a mistake.
+    """
+    if not 1 <= count <= MOST_PEOPLE:
+        raise ProfileError(f"{count} people cannot play: choose from 1 to {MOST_PEOPLE}.")
+    top = read_toml(path or Path(str(files("tangy_profiles"))) / "people" / "sample.toml")
+    more_id, more_name = top.text("more_id"), top.text("more_name")
+    people: list[Person] = []
+    for entry in top.tables("people"):
+        people.append(Person(entry.text("id"), entry.text("name")))
+        entry.close()
+    top.close()
+    for number in range(len(people) + 1, count + 1):
+        people.append(Person(more_id.format(n=number), more_name.format(n=number)))
+    if len({person.id for person in people}) < len(people):
+        raise top.wrong("people", "two of them have the same id.")
+    return tuple(people[:count])

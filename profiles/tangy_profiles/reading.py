@@ -1,0 +1,188 @@
+"""TOML read key by key, so that every mistake is one line: file, key, value, nearest valid word."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tangy_profiles.errors import ProfileError
+
+LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
+
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]")
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """Say which of `words` was probably meant, or list them: the tail of an error sentence."""
+    known = sorted(words)
+    close = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    if not known:
+        return "there is none to choose from."
+    return "choose one of: " + ", ".join(known) + "."
+
+
+def plain(text: str) -> str:
+    """Replace what would act on a terminal instead of being read on it (controls, bidi marks)."""
+    return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+class Table:
+    """One TOML table. Taking a key checks it; `close` refuses the keys that nobody took."""
+
+    def __init__(self, values: Mapping[str, Any], file: str, path: str = "") -> None:
+        self._values = values
+        self._file = file
+        self._path = path
+        self._taken: set[str] = set()
+
+    def where(self, key: str) -> str:
+        """Name a key as a person finds it: file and dotted path."""
+        return f"{self._file}: {self._path}{key}"
+
+    def wrong(self, key: str, problem: str) -> ProfileError:
+        """Make the error for a key, with the value that stands there."""
+        shown = f" = {self._values[key]!r}" if key in self._values else ""
+        return ProfileError(plain(f"{self.where(key)}{shown}: {problem}"))
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._values
+
+    def _take(self, key: str, kind: type | tuple[type, ...], noun: str, default: Any) -> Any:
+        self._taken.add(key)
+        if key not in self._values:
+            if default is None:
+                raise self.wrong(key, f"is missing; it must be {noun}.")
+            return default
+        value = self._values[key]
+        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+            raise self.wrong(key, f"must be {noun}.")
+        return value
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """Take a line of text (not empty unless that is the default)."""
+        value: str = self._take(key, str, "text in quotes", default)
+        if not value.strip() and value != default:
+            raise self.wrong(key, "must not be empty.")
+        if _UNPRINTABLE.search(value):
+            raise self.wrong(key, "holds a character that cannot be shown.")
+        return value
+
+    def flag(self, key: str, default: bool | None = None) -> bool:
+        """Take true or false."""
+        value: bool = self._take(key, bool, "true or false", default)
+        return value
+
+    def number(
+        self,
+        key: str,
+        low: float = -math.inf,
+        high: float = math.inf,
+        default: float | None = None,
+    ) -> float:
+        """Take a finite number within [low, high]."""
+        value = self._take(key, (int, float), "a number", default)
+        if not math.isfinite(value) or not low <= value <= high:
+            raise self.wrong(key, f"must be a number from {low:g} to {high:g}.")
+        return float(value)
+
+    def whole(self, key: str, low: int, high: int, default: int | None = None) -> int:
+        """Take a whole number within [low, high]."""
+        value: int = self._take(key, int, "a whole number", default)
+        if not low <= value <= high:
+            raise self.wrong(key, f"must be a whole number from {low} to {high}.")
+        return value
+
+    def numbers(self, key: str, count: int, low: float, high: float) -> tuple[float, ...]:
+        """Take exactly `count` finite numbers within [low, high]."""
+        values = self._take(key, list, f"a list of {count} numbers", None)
+        right = len(values) == count and all(
+            isinstance(v, int | float) and not isinstance(v, bool) and low <= v <= high
+            for v in values
+        )
+        if not right:
+            raise self.wrong(key, f"must be a list of {count} numbers from {low:g} to {high:g}.")
+        return tuple(float(v) for v in values)
+
+    def words(
+        self, key: str, known: Iterable[str] | None = None, default: tuple[str, ...] | None = None
+    ) -> tuple[str, ...]:
+        """Take a list of texts, each one of `known` where that is given."""
+        values = self._take(key, list, "a list of texts", default)
+        allowed = None if known is None else set(known)
+        for value in values:
+            if not isinstance(value, str) or not value.strip() or _UNPRINTABLE.search(value):
+                raise self.wrong(key, "must be a list of texts, none of them empty.")
+            if allowed is not None and value not in allowed:
+                raise self.wrong(key, f"{value!r} is not known; {nearest(value, allowed)}")
+        return tuple(values)
+
+    def choice(self, key: str, known: Iterable[str], default: str | None = None) -> str:
+        """Take one word out of `known`."""
+        value = self.text(key, default)
+        allowed = set(known)
+        if value not in allowed and value != default:
+            raise self.wrong(key, f"is not known; {nearest(value, allowed)}")
+        return value
+
+    def table(self, key: str, *, optional: bool = False) -> Table:
+        """Take a table; an absent optional one reads as empty."""
+        value = self._take(key, dict, "a table", {} if optional else None)
+        return Table(value, self._file, f"{self._path}{key}.")
+
+    def tables(self, key: str, *, optional: bool = False) -> Iterator[Table]:
+        """Take an array of tables, in order."""
+        values = self._take(key, list, "a list of tables ([[...]])", [] if optional else None)
+        for place, value in enumerate(values, 1):
+            if not isinstance(value, dict):
+                raise self.wrong(key, "must be a list of tables ([[...]]).")
+            label = value.get("name", place)
+            yield Table(value, self._file, f"{self._path}{key}[{label}].")
+
+    def items(self) -> Iterator[tuple[str, Table]]:
+        """Take every key as a table of its own, in order."""
+        for key in self._values:
+            yield key, self.table(key)
+
+    def keys(self) -> tuple[str, ...]:
+        """The keys that stand here, taken or not."""
+        return tuple(self._values)
+
+    def close(self) -> None:
+        """Refuse keys that nobody asked for: mostly spelling mistakes.
+
+        Raises:
+            ProfileError: naming the key and the nearest one that would be read.
+        """
+        for key in self._values:
+            if key not in self._taken:
+                raise self.wrong(key, f"is not a key here; {nearest(key, self._taken)}")
+
+
+def read_toml(path: Path) -> Table:
+    """Read a TOML file.
+
+    Raises:
+        ProfileError: the file is missing, unreadable, too large or not TOML.
+    """
+    name = path.name
+    try:
+        if path.stat().st_size > LARGEST_PROFILE:
+            raise ProfileError(f"{name}: is larger than {LARGEST_PROFILE:,} bytes.")
+        return Table(tomllib.loads(path.read_text(encoding="utf-8")), name)
+    except FileNotFoundError:
+        raise ProfileError(plain(f"{path}: there is no such file.")) from None
+    except OSError as error:
+        raise ProfileError(plain(f"{path}: cannot be read ({error.strerror}).")) from None
+    except UnicodeDecodeError:
+        raise ProfileError(f"{name}: is not UTF-8 text.") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ProfileError(plain(f"{name}: is not TOML: {error}.")) from None
+    except RecursionError:
+        raise ProfileError(f"{name}: is nested too deeply.") from None

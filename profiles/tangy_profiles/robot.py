@@ -1,0 +1,94 @@
+"""A robot as TOML describes it: its joints with their limits, its postures theta, its speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import nearest, read_toml
+
+
+@dataclass(frozen=True)
+class Limb:
+    """A chain of joints that is posed together: joint names and limits in degrees."""
+
+    name: str
+    joints: tuple[str, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot's body: limbs, named postures (joint angles in degrees by limb), speed in m/s."""
+
+    name: str
+    title: str
+    speed: float
+    limbs: Mapping[str, Limb]
+    postures: Mapping[str, Mapping[str, tuple[float, ...]]]
+
+    def check(self, activity: Activity) -> None:
+        """Check that the body knows every posture of an activity.
+
+        Raises:
+            ProfileError: naming the behaviour and the nearest posture.
+        """
+        for behaviour in activity.behaviours.values():
+            if behaviour.posture not in self.postures:
+                raise ProfileError(
+                    f"{activity.source}: behaviours[{behaviour.name}].posture = "
+                    f"{behaviour.posture!r}: {self.title} has no such posture; "
+                    f"{nearest(behaviour.posture, self.postures)}"
+                )
+
+
+def load_robot(name: str = "tangy") -> Robot:
+    """Load a robot by name, or by the path of its TOML file.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    folder = Path(str(files("tangy_profiles"))) / "robots"
+    shipped = {path.stem: path for path in folder.glob("*.toml")}
+    if name not in shipped and not name.endswith(".toml"):
+        raise ProfileError(f"There is no robot {name!r}: {nearest(name, shipped)}")
+    top = read_toml(shipped.get(name) or Path(name))
+    limbs: dict[str, Limb] = {}
+    for entry in top.tables("limbs"):
+        limb = entry.text("name")
+        joints = entry.words("joints")
+        low = entry.numbers("low", len(joints), -360, 360)
+        high = entry.numbers("high", len(joints), -360, 360)
+        if any(a > b for a, b in zip(low, high, strict=True)):
+            raise entry.wrong("low", "must not be above `high`.")
+        limbs[limb] = Limb(limb, joints, low, high)
+        entry.close()
+    postures: dict[str, Mapping[str, tuple[float, ...]]] = {}
+    for posture, entry in top.table("postures").items():
+        angles: dict[str, tuple[float, ...]] = {}
+        for limb in limbs.values():
+            angles[limb.name] = entry.numbers(limb.name, len(limb.joints), -360, 360)
+            for joint, angle, low_end, high_end in zip(
+                limb.joints, angles[limb.name], limb.low, limb.high, strict=True
+            ):
+                if not low_end <= angle <= high_end:
+                    raise entry.wrong(
+                        limb.name, f"{joint} must be from {low_end:g} to {high_end:g} degrees."
+                    )
+        entry.close()
+        postures[posture] = MappingProxyType(angles)
+    robot = Robot(
+        top.text("name"),
+        top.text("title"),
+        top.number("speed", 0.05, 3),
+        MappingProxyType(limbs),
+        MappingProxyType(postures),
+    )
+    top.close()
+    return robot

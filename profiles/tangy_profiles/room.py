@@ -1,0 +1,101 @@
+"""The activity room in metres: its size, the front, the table, the seats.
+
+x runs along the front wall from the left, y from the front wall towards the seats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from math import hypot
+from pathlib import Path
+
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import nearest, read_toml
+from tangy_profiles.state import FRONT
+
+
+@dataclass(frozen=True)
+class Point:
+    """A place on the floor, in metres."""
+
+    x: float
+    y: float
+
+    def distance(self, other: Point) -> float:
+        """Return the straight distance in metres."""
+        return hypot(self.x - other.x, self.y - other.y)
+
+    def towards(self, other: Point, share: float) -> Point:
+        """Return the point at this share (0 to 1) of the way to another."""
+        return Point(self.x + (other.x - self.x) * share, self.y + (other.y - self.y) * share)
+
+
+@dataclass(frozen=True)
+class Room:
+    """A room; `table` is (left, near, right, far), `reach` the distance from which cards are read."""
+
+    name: str
+    title: str
+    width: float
+    depth: float
+    front: Point
+    table: tuple[float, float, float, float]
+    reach: float
+    seats: tuple[Point, ...]
+
+    def seated(self, count: int) -> tuple[Point, ...]:
+        """Return a seat for each of `count` people: the room's own, or spread evenly if they differ."""
+        if count == len(self.seats):
+            return self.seats
+        left, _, right, _ = self.table
+        y = self.seats[0].y
+        return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
+
+    def stand(self, place: str, people: Sequence[str]) -> Point:
+        """Return where the robot stands at a place: the front, or across the table from a person."""
+        if place == FRONT:
+            return self.front
+        seat = self.seated(len(people))[list(people).index(place)]
+        return Point(seat.x, self.table[1] - self.reach)
+
+
+def load_room(name: str = "common-room") -> Room:
+    """Load a room by name, or by the path of its TOML file.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    folder = Path(str(files("tangy_profiles"))) / "rooms"
+    shipped = {path.stem: path for path in folder.glob("*.toml")}
+    if name not in shipped and not name.endswith(".toml"):
+        raise ProfileError(f"There is no room {name!r}: {nearest(name, shipped)}")
+    top = read_toml(shipped.get(name) or Path(name))
+    width = top.number("width", 2, 100)
+    depth = top.number("depth", 2, 100)
+    front_x, front_y = top.numbers("front", 2, 0, max(width, depth))
+    left, near, right, far = top.numbers("table", 4, 0, max(width, depth))
+    reach = top.number("reach", 0.2, 3)
+    seats = []
+    for entry in top.tables("seats"):
+        seats.append(Point(entry.number("x", 0, width), entry.number("y", 0, depth)))
+        entry.close()
+    if not seats:
+        raise top.wrong("seats", "must hold at least one seat.")
+    if not (left < right <= width and near < far <= depth):
+        raise top.wrong("table", "must be [left, near, right, far] within the room.")
+    if front_x > width or front_y + reach > near or near - reach < 0:
+        raise top.wrong("front", "must lie in the room, between the front wall and the table.")
+    room = Room(
+        top.text("name"),
+        top.text("title"),
+        width,
+        depth,
+        Point(front_x, front_y),
+        (left, near, right, far),
+        reach,
+        tuple(seats),
+    )
+    top.close()
+    return room

@@ -1,0 +1,134 @@
+"""Which stage the activity is in, whose turn it is, and whose request is open.
+
+Facts go in (a button was pressed, the robot arrived, a card was read, a behaviour succeeded) and
+the activity state comes out. The stage rules are the activity's own data. Both worlds use this
+room, and nobody learns it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tangy_profiles.activity import Activity, Behaviour, StageRule
+from tangy_profiles.state import FRONT, ActivityState, Request, Situation, UserState
+
+READS = ("beside requester",)
+"""The conditions of stages in which the card beside the robot is looked at."""
+
+ATTENDS = ("beside requester", "requested or away", "after")
+"""The conditions of stages in which open requests matter."""
+
+
+class Tracker:
+    """The rule-kept part of the activity state of one game."""
+
+    def __init__(self, activity: Activity, people: Sequence[str]) -> None:
+        self._activity = activity
+        self._unread = activity.unread
+        self.people = tuple(people)
+        self.place = FRONT
+        self.queue: list[str] = []
+        """The ids of those who ask for help, first come first served."""
+        self.seen: str | None = None
+        """The user activity state read from the card beside the robot, or None."""
+        self.step = 0
+        self._counts = dict.fromkeys(activity.behaviours, 0)
+        self._since = {r.since: 0 for r in activity.stage_rules if r.condition == "count"}
+        self._counted = {
+            r.since: r.behaviour for r in activity.stage_rules if r.condition == "count"
+        }
+        self._rules = [(self._test(rule), rule.stage) for rule in activity.stage_rules]
+        self._reading = {r.stage for r in activity.stage_rules if r.condition in READS}
+        self._attending = {r.stage for r in activity.stage_rules if r.condition in ATTENDS}
+        self._settled = activity.card_states[-1].name
+        self._situations = {s: s for s in activity.situations}
+        self._idle = tuple(UserState(id, self._unread, "ANR") for id in self.people)
+        self._users = self._idle
+        self._users_key: tuple[str, ...] = ()
+
+    def _test(self, rule: StageRule) -> Callable[[], bool]:
+        counts, since, name = self._counts, self._since, rule.behaviour
+        match rule.condition:
+            case "before":
+                return lambda: not counts[name]
+            case "after":
+                return lambda: counts[name] > 0
+            case "beside requester":
+                return lambda: self.place in self.queue
+            case "requested or away":
+                return lambda: bool(self.queue) or self.place != FRONT
+            case "count":
+                return lambda: since[rule.since] >= rule.at_least
+            case _:
+                return lambda: True
+
+    def count(self, behaviour: str) -> int:
+        """How often a behaviour has succeeded in this game."""
+        return self._counts[behaviour]
+
+    def ask(self, person: str) -> bool:
+        """A person asks for help. Returns False if that request was open already."""
+        if person in self.queue:
+            return False
+        self.queue.append(person)
+        return True
+
+    def arrive(self, place: str) -> None:
+        """The robot has arrived at a place; whatever card it saw before is out of sight."""
+        self.place = place
+        self.seen = None
+
+    def allows(self, behaviour: Behaviour) -> bool:
+        """Say whether a behaviour can succeed here: a win is celebrated only beside a winner."""
+        return not behaviour.needs or (self.place in self.queue and self.seen in behaviour.needs)
+
+    def executed(self, behaviour: Behaviour, *, succeeded: bool = True) -> None:
+        """Count a behaviour that was carried out, and close the request that it settled.
+
+        Tell the place and the card's new state first: a request that closes "when correct" looks
+        at the card as the behaviour left it. What did not succeed counts as a step only.
+        """
+        self.step += 1
+        if not succeeded:
+            return
+        name = behaviour.name
+        self._counts[name] += 1
+        for since, counted in self._counted.items():
+            if name == counted:
+                self._since[since] += 1
+            elif name == since:
+                self._since[since] = 0
+        if behaviour.closes != "never" and self.place in self.queue:
+            if behaviour.closes == "always" or self.seen == self._settled:
+                self.queue.remove(self.place)
+                self.seen = None
+
+    def state(self) -> ActivityState:
+        """Return the joint state as the rules have it now."""
+        stage = next(stage for holds, stage in self._rules if holds())
+        queue, place = self.queue, self.place
+        if not queue or stage not in self._attending:
+            return ActivityState(
+                self.step, self._situation(stage, "ANR", self._unread), place, None, self._idle
+            )
+        beside = place in queue
+        attended = place if beside else queue[0]
+        shown = (self.seen if beside and stage in self._reading else None) or self._unread
+        key = (attended, shown, *queue)
+        if key != self._users_key:
+            self._users_key = key
+            self._users = tuple(
+                UserState(
+                    id,
+                    shown if id == attended else self._unread,
+                    "AR" if id in queue else "ANR",
+                )
+                for id in self.people
+            )
+        return ActivityState(
+            self.step, self._situation(stage, "AR", shown), place, attended, self._users
+        )
+
+    def _situation(self, stage: str, request: Request, user_state: str) -> Situation:
+        situation = Situation(stage, request, user_state)
+        return self._situations.get(situation, situation)
