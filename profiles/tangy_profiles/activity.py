@@ -39,8 +39,6 @@ PLACES = ("front", "attended", "here")
 SLOTS = ("name", "call", "numbers")
 """What a speech or a screen may have filled in: {name}, {call}, {numbers}."""
 
-MOST_ACTIVITY_WORDS = 40
-
 
 @dataclass(frozen=True)
 class StageRule:
@@ -245,7 +243,7 @@ def read_activity(path: Path) -> Activity:
 
 
 def _strategies(table: Table) -> dict[str, str]:
-    strategies = {key: table.text(key) for key in table.keys()}
+    strategies = {key: table.text(key) for key in table}
     if not strategies:
         raise table.wrong("", "must name at least one persuasive strategy.")
     return strategies
@@ -317,7 +315,9 @@ def _behaviour(entry: Table, strategies: dict[str, str], states: list[str]) -> B
         closes=entry.choice("closes", CLOSINGS, "never"),
         needs=entry.words("needs", states, ()),
         phrases=tuple(_spoken(entry, "phrases", p) for p in entry.words("phrases")),
-        keywords=tuple(tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")),
+        keywords=tuple(
+            tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")
+        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""What is believed of a person's compliance: one Beta posterior per persuasive strategy (Eq. 1, 2)."""
+"""What is believed of a person's compliance: a Beta posterior per persuasive strategy (Eq. 1, 2)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from random import Random
 
 GRID = 400
-"""Points of the midpoint rule on [0, 1]; against 20,000 points P(best) differs by less than .002."""
+"""Points of the midpoint rule on [0, 1] that P(best) is integrated with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +41,7 @@ class Beta:
         a, b = self.alpha, self.beta
         scale = math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b)
         mids = ((i + 0.5) / points for i in range(points))
-        return [
-            math.exp(scale + (a - 1) * math.log(x) + (b - 1) * math.log(1 - x)) for x in mids
-        ]
+        return [math.exp(scale + (a - 1) * math.log(x) + (b - 1) * math.log(1 - x)) for x in mids]
 
 
 UNIFORM = Beta()

@@ -1,4 +1,4 @@
-"""A demonstration: the trajectory T = {b1, s1} -> {b2, s2} ... that one teacher gave (III-A-3-iv)."""
+"""A demonstration: the trajectory T = {b1, s1} -> {b2, s2} ... of one teacher (III-A-3-iv)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The people who take part: an id that never changes, a name that may, and what is believed of them."""
+"""The people who take part: an id that never changes, and a name that may."""
 
 from __future__ import annotations
 

@@ -150,9 +150,8 @@ class Table:
         for key in self._values:
             yield key, self.table(key)
 
-    def keys(self) -> tuple[str, ...]:
-        """The keys that stand here, taken or not."""
-        return tuple(self._values)
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
 
     def close(self) -> None:
         """Refuse keys that nobody asked for: mostly spelling mistakes.

@@ -61,13 +61,13 @@ def load_robot(name: str = "tangy") -> Robot:
     top = read_toml(shipped.get(name) or Path(name))
     limbs: dict[str, Limb] = {}
     for entry in top.tables("limbs"):
-        limb = entry.text("name")
+        name_of_limb = entry.text("name")
         joints = entry.words("joints")
         low = entry.numbers("low", len(joints), -360, 360)
         high = entry.numbers("high", len(joints), -360, 360)
         if any(a > b for a, b in zip(low, high, strict=True)):
             raise entry.wrong("low", "must not be above `high`.")
-        limbs[limb] = Limb(limb, joints, low, high)
+        limbs[name_of_limb] = Limb(name_of_limb, joints, low, high)
         entry.close()
     postures: dict[str, Mapping[str, tuple[float, ...]]] = {}
     for posture, entry in top.table("postures").items():

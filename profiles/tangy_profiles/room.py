@@ -34,7 +34,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Room:
-    """A room; `table` is (left, near, right, far), `reach` the distance from which cards are read."""
+    """A room; `table` is left, near, right, far; `reach` is how far off it cards are read."""
 
     name: str
     title: str
@@ -46,7 +46,7 @@ class Room:
     seats: tuple[Point, ...]
 
     def seated(self, count: int) -> tuple[Point, ...]:
-        """Return a seat for each of `count` people: the room's own, or spread evenly if they differ."""
+        """Return a seat for each of `count` people: the room's own, or as many spread evenly."""
         if count == len(self.seats):
             return self.seats
         left, _, right, _ = self.table
@@ -54,7 +54,7 @@ class Room:
         return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
 
     def stand(self, place: str, people: Sequence[str]) -> Point:
-        """Return where the robot stands at a place: the front, or across the table from a person."""
+        """Return where the robot stands: at the front, or across the table from a person."""
         if place == FRONT:
             return self.front
         seat = self.seated(len(people))[list(people).index(place)]

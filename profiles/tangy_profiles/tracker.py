@@ -98,10 +98,12 @@ class Tracker:
                 self._since[since] += 1
             elif name == since:
                 self._since[since] = 0
-        if behaviour.closes != "never" and self.place in self.queue:
-            if behaviour.closes == "always" or self.seen == self._settled:
-                self.queue.remove(self.place)
-                self.seen = None
+        if self.place in self.queue and (
+            behaviour.closes == "always"
+            or (behaviour.closes == "when correct" and self.seen == self._settled)
+        ):
+            self.queue.remove(self.place)
+            self.seen = None
 
     def state(self) -> ActivityState:
         """Return the joint state as the rules have it now."""

@@ -1,0 +1,32 @@
+"""What there is to see in the room at one moment: what a world shows, and a screen draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class CardView:
+    """The card beside the robot as it was read: its numbers row by row, and two cell masks."""
+
+    person: str
+    numbers: tuple[int, ...]
+    marked: int
+    called: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Robot, people and game at one moment.
+
+    `place` is where the robot is (or is driving to), `requests` who asks for help, first come
+    first, `doing` what each person is seen to do in a word or two, `called` the numbers so far
+    in order, `card` the card that the robot can read, if any.
+    """
+
+    place: str
+    requests: tuple[str, ...]
+    doing: Mapping[str, str]
+    called: tuple[int, ...]
+    card: CardView | None

@@ -1,0 +1,1 @@
+"""A simulated world: people with cards, their requests and responses, and a robot among them."""
