@@ -37,6 +37,8 @@ class ActivityState(NamedTuple):
 
     `attended` is the person at the head of the first-come queue of requests (or none); the queue
     is kept by rule and never learnt. `situation` is the part of the state that the policy sees.
+    `closed` is the person whose request the last behaviour closed: without it, a request that
+    stayed open and one that was closed and made anew at once would look alike.
     """
 
     step: int
@@ -44,6 +46,7 @@ class ActivityState(NamedTuple):
     place: str
     attended: str | None
     users: tuple[UserState, ...]
+    closed: str | None = None
 
     @property
     def stage(self) -> str:
@@ -69,6 +72,7 @@ class ActivityState(NamedTuple):
             "place": self.place,
             "attended": self.attended,
             "users": [list(user) for user in self.users],
+            "closed": self.closed,
         }
 
     @classmethod
@@ -80,6 +84,7 @@ class ActivityState(NamedTuple):
             str(body["place"]),
             body["attended"],
             tuple(UserState(*user) for user in body["users"]),
+            body["closed"],
         )
 
 

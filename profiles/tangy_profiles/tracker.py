@@ -31,6 +31,8 @@ class Tracker:
         """The ids of those who ask for help, first come first served."""
         self.seen: str | None = None
         """The user activity state read from the card beside the robot, or None."""
+        self.closed: str | None = None
+        """Whose request the last behaviour closed."""
         self.step = 0
         self._counts = dict.fromkeys(activity.behaviours, 0)
         self._since = {r.since: 0 for r in activity.stage_rules if r.condition == "count"}
@@ -38,6 +40,7 @@ class Tracker:
             r.since: r.behaviour for r in activity.stage_rules if r.condition == "count"
         }
         self._rules = [(self._test(rule), rule.stage) for rule in activity.stage_rules]
+        self._openers = [r.behaviour for r in activity.stage_rules if r.condition == "before"]
         self._reading = {r.stage for r in activity.stage_rules if r.condition in READS}
         self._attending = {r.stage for r in activity.stage_rules if r.condition in ATTENDS}
         self._settled = activity.card_states[-1].name
@@ -61,6 +64,10 @@ class Tracker:
                 return lambda: since[rule.since] >= rule.at_least
             case _:
                 return lambda: True
+
+    def begun(self) -> bool:
+        """Whether all that must come `before` the activity (a greeting) has been done."""
+        return all(self._counts[name] for name in self._openers)
 
     def count(self, behaviour: str) -> int:
         """How often a behaviour has succeeded in this game."""
@@ -89,6 +96,7 @@ class Tracker:
         at the card as the behaviour left it. What did not succeed counts as a step only.
         """
         self.step += 1
+        self.closed = None
         if not succeeded:
             return
         name = behaviour.name
@@ -103,6 +111,7 @@ class Tracker:
             or (behaviour.closes == "when correct" and self.seen == self._settled)
         ):
             self.queue.remove(self.place)
+            self.closed = self.place
             self.seen = None
 
     def state(self) -> ActivityState:
@@ -110,9 +119,8 @@ class Tracker:
         stage = next(stage for holds, stage in self._rules if holds())
         queue, place = self.queue, self.place
         if not queue or stage not in self._attending:
-            return ActivityState(
-                self.step, self._situation(stage, "ANR", self._unread), place, None, self._idle
-            )
+            situation = self._situation(stage, "ANR", self._unread)
+            return ActivityState(self.step, situation, place, None, self._idle, self.closed)
         beside = place in queue
         attended = place if beside else queue[0]
         shown = (self.seen if beside and stage in self._reading else None) or self._unread
@@ -127,9 +135,8 @@ class Tracker:
                 )
                 for id in self.people
             )
-        return ActivityState(
-            self.step, self._situation(stage, "AR", shown), place, attended, self._users
-        )
+        situation = self._situation(stage, "AR", shown)
+        return ActivityState(self.step, situation, place, attended, self._users, self.closed)
 
     def _situation(self, stage: str, request: Request, user_state: str) -> Situation:
         situation = Situation(stage, request, user_state)

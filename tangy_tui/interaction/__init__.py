@@ -1,0 +1,1 @@
+"""The interaction sub-system (III-B): behaviour selection, persuasion, facilitation."""

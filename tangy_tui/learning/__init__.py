@@ -1,0 +1,1 @@
+"""The demonstration learning sub-system (III-A): commands, demonstrations, policy, effects."""

@@ -1,0 +1,222 @@
+"""The activity simulator (III-A-3, IV-C): a robot, people with cards, one game after another.
+
+It is a discrete-event simulation: time goes from behaviour to behaviour, counted in calls (about
+half a minute each), and people's mistakes and requests wait for their own moments. Three random
+streams (cards, users, compliance) are seeded apart, so that a change in how one is used does not
+shift the others; only `Random.random` is drawn from, which Python keeps the same in all versions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from random import Random
+
+from tangy_profiles.activity import Action, Activity
+from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
+from tangy_profiles.tracker import Tracker
+from tangy_sim.compliance import Preferences, preferences_in_turn, respond
+from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
+
+
+class SimulatedWorld:
+    """One room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
+
+    The same seed gives the same games on every machine.
+    """
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        users: UserModel | None = None,
+        preferences: Preferences | None = None,
+    ) -> None:
+        self.activity = activity
+        self.people = tuple(people)
+        self.users = users or load_users()
+        self.preferences = preferences or preferences_in_turn(
+            self.people, tuple(activity.strategies), self.users
+        )
+        self._cards = Random(f"{seed}/cards")
+        self._uniform = Random(f"{seed}/users").random
+        self._compliance = Random(f"{seed}/compliance")
+        self._effects = {
+            "draw": self._draw,
+            "clear wrong marks": self._clear_wrong_marks,
+            "set missing marks": self._set_missing_marks,
+            "bring card closer": self._bring_card_closer,
+            "go to user": self._go_to_user,
+            "go to front": self._go_to_front,
+            "finish": self._finish,
+        }
+        self.begin()
+
+    def begin(self) -> ActivityState:
+        """Deal new cards and begin a game; return its first state."""
+        activity, deck, cards = self.activity, self.activity.deck, self._cards.random
+        self.over = False
+        self.tracker = Tracker(activity, self.people)
+        self._order = deck.shuffled(cards)
+        self._calls = 0
+        self._now = 0.0
+        self._players = {p: Player(p, deck, deck.deal(cards)) for p in self.people}
+        self._holders: dict[int, list[tuple[Player, int]]] = {n: [] for n in deck.numbers}
+        for player in self._players.values():
+            for number, cell in player.cell.items():
+                if not deck.free >> cell & 1:
+                    self._holders[number].append((player, cell))
+            player.slips_at = waiting_calls(self._uniform, self.users.slip)
+        self._next_slip = min(p.slips_at for p in self._players.values())
+        self._next_ask = 1e18
+        self._opened = False
+        return self.tracker.state()
+
+    def observe(self) -> ActivityState:
+        """Return the joint state as the robot's sensors have it now."""
+        return self.tracker.state()
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot carry out an action, and time pass with it."""
+        tracker, behaviour = self.tracker, action.behaviour
+        if self.over:
+            return Outcome(False, 0.0, (), None)
+        succeeded = tracker.allows(behaviour)
+        beside = tracker.place
+        effect = self._effects.get(behaviour.effect)
+        numbers = effect(action) if effect is not None else ()
+        response: Response | None = None
+        if behaviour.persuades and beside != FRONT:
+            response = respond(
+                self.preferences,
+                beside,
+                action.strategy,
+                self.activity.patience,
+                self._compliance,
+            )
+        tracker.executed(behaviour, succeeded=succeeded)
+        calls = 1.0 if beside == FRONT and tracker.place == FRONT else self.users.away_calls
+        self._now += calls
+        if self._now >= self._next_ask:
+            self._let_people_ask()
+        elif not self._opened and tracker.begun():
+            self._open()
+        return Outcome(succeeded, calls * self.users.call_seconds, numbers, response)
+
+    def scene(self) -> Scene:
+        """Return what a teacher or a member of staff sees in the room."""
+        tracker = self.tracker
+        asking = set(tracker.queue)
+        doing: dict[str, str] = {}
+        for player in self._players.values():
+            step, verb, number = player.did
+            if step >= tracker.step - 1:
+                doing[player.id] = f"{verb} {self.activity.deck.label(number)}" if number else verb
+            else:
+                doing[player.id] = "asks for help" if player.id in asking else "watches"
+        card: CardView | None = None
+        if tracker.seen is not None:
+            beside = self._players[tracker.place]
+            card = CardView(beside.id, beside.numbers, beside.marked, beside.called)
+        called = tuple(self._order[: self._calls])
+        return Scene(tracker.place, tuple(tracker.queue), doing, called, card)
+
+    def _draw(self, _: Action) -> tuple[int, ...]:
+        if self._calls >= len(self._order):
+            return ()
+        number = self._order[self._calls]
+        self._calls += 1
+        step, uniform, miss = self.tracker.step, self._uniform, self.users.miss
+        for player, cell in self._holders[number]:
+            bit = 1 << cell
+            player.called |= bit
+            if player.marked & bit:
+                continue  # marked too early by mistake, and right from now on
+            if uniform() >= miss:
+                player.did = (step, "marks", number)
+                if player.mark(cell):
+                    self.tracker.ask(player.id)
+        if self._calls >= self._next_slip:
+            self._let_people_slip()
+        return (number,)
+
+    def _let_people_slip(self) -> None:
+        for player in self._players.values():
+            if self._calls >= player.slips_at:
+                player.slips_at = self._calls + waiting_calls(self._uniform, self.users.slip)
+                slip = player.slip(self._uniform)
+                if slip is not None:
+                    number, filled = slip
+                    player.did = (self.tracker.step, "marks", number)
+                    if filled:
+                        self.tracker.ask(player.id)
+        self._next_slip = min(p.slips_at for p in self._players.values())
+
+    def _open(self) -> None:
+        """Nobody asks before the game is opened; from then on everybody may."""
+        self._opened = True
+        rate = self.users.ask * self.users.ask_with_error
+        for player in self._players.values():
+            player.asks_at = self._now + waiting_time(self._uniform, rate)
+        self._next_ask = min(p.asks_at for p in self._players.values())
+
+    def _let_people_ask(self) -> None:
+        """Requests come at the higher rate of a card with an error, and are thinned without one."""
+        users, uniform = self.users, self._uniform
+        rate = users.ask * users.ask_with_error
+        for player in self._players.values():
+            while self._now >= player.asks_at:
+                player.asks_at += waiting_time(uniform, rate)
+                asks = uniform() * users.ask_with_error < 1.0 or player.has_error
+                if asks and self.tracker.ask(player.id):
+                    player.did = (self.tracker.step, "asks for help", 0)
+        self._next_ask = min(p.asks_at for p in self._players.values())
+
+    def _go_to_user(self, action: Action) -> tuple[int, ...]:
+        tracker = self.tracker
+        target = action.target or (tracker.queue[0] if tracker.queue else None)
+        if target in self._players:
+            tracker.arrive(target)
+            if self._uniform() >= self.users.occluded and target in tracker.queue:
+                self._read_card()
+        return ()
+
+    def _go_to_front(self, _: Action) -> tuple[int, ...]:
+        self.tracker.arrive(FRONT)
+        return ()
+
+    def _bring_card_closer(self, _: Action) -> tuple[int, ...]:
+        if self.tracker.place in self.tracker.queue:
+            self._did("moves the card")
+            self._read_card()
+        return ()
+
+    def _clear_wrong_marks(self, _: Action) -> tuple[int, ...]:
+        return self._correct(lambda player: player.marked & ~player.called, "clears marks")
+
+    def _set_missing_marks(self, _: Action) -> tuple[int, ...]:
+        return self._correct(lambda player: player.called & ~player.marked, "marks")
+
+    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...]:
+        """Let the person beside the robot mend what it can see on the card."""
+        if self.tracker.seen is None:
+            return ()
+        player = self._players[self.tracker.place]
+        mask = errors(player)
+        player.marked ^= mask
+        self._did(verb)
+        self._read_card()
+        return player.cells(mask)
+
+    def _finish(self, _: Action) -> tuple[int, ...]:
+        self.over = True
+        return ()
+
+    def _did(self, verb: str) -> None:
+        self._players[self.tracker.place].did = (self.tracker.step, verb, 0)
+
+    def _read_card(self) -> None:
+        card = self._players[self.tracker.place]
+        self.tracker.seen = card.judged(self.activity.card_states)

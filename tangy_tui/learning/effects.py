@@ -1,0 +1,114 @@
+"""Behaviour effects (III-A-4): what was seen to follow each behaviour in the demonstrations.
+
+The paper keeps the next state itself. Compared literally that raises several false alarms a game,
+because the next state also holds what others happened to do. So each transition is read as a few
+variables that a behaviour can change, and for each behaviour and variable the values that were
+demonstrated are kept: an unseen value is unexpected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import FRONT, ActivityState
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """A variable that took a value which no demonstration showed after this behaviour."""
+
+    behaviour: str
+    variable: str
+    expected: tuple[str, ...]
+    seen: str
+
+    def __str__(self) -> str:
+        wanted = " or ".join(self.expected) if self.expected else "nothing known"
+        return f"{self.behaviour}: {self.variable} should be {wanted}, is {self.seen}"
+
+
+@dataclass(frozen=True)
+class Effects:
+    """The learnt effects: behaviour -> variable -> the values that may follow."""
+
+    values: Mapping[str, Mapping[str, frozenset[str]]]
+
+    def mismatches(
+        self, behaviour: str, before: ActivityState, after: ActivityState, activity: Activity
+    ) -> list[Mismatch]:
+        """Compare an observed transition with what was learnt (the fault detection module's test).
+
+        A behaviour or variable that was never demonstrated is reported with nothing expected.
+        """
+        known = self.values.get(behaviour, {})
+        return [
+            Mismatch(behaviour, variable, tuple(sorted(known.get(variable, ()))), value)
+            for variable, value in transition(before, after, activity).items()
+            if value not in known.get(variable, ())
+        ]
+
+
+def learn_effects(activity: Activity, demonstrations: Iterable[Demonstration]) -> Effects:
+    """Collect, for each behaviour, the values that each variable took after it."""
+    values: dict[str, dict[str, set[str]]] = {}
+    for demonstration in demonstrations:
+        for step in demonstration.steps:
+            of_behaviour = values.setdefault(step.behaviour, {})
+            for variable, value in transition(step.state, step.after, activity).items():
+                of_behaviour.setdefault(variable, set()).add(value)
+    return Effects(
+        MappingProxyType(
+            {
+                behaviour: MappingProxyType({v: frozenset(seen) for v, seen in variables.items()})
+                for behaviour, variables in values.items()
+            }
+        )
+    )
+
+
+def transition(before: ActivityState, after: ActivityState, activity: Activity) -> dict[str, str]:
+    """Describe a transition by the variables that a behaviour can change, in words.
+
+    Variables about the person who was attended to are left out when there was none.
+    """
+    opening = {r.stage for r in activity.stage_rules if r.condition == "before"}
+    closing = {r.stage for r in activity.stage_rules if r.condition == "after"}
+    person = before.attended
+    if after.place == FRONT:
+        place = "front"
+    elif after.place == person:
+        place = "with the person who asked"
+    else:
+        place = "with somebody else"
+    changes = {"robot's place": place}
+    if before.stage in opening:
+        changes["activity"] = "not begun" if after.stage in opening else "begun"
+    changes["win"] = "celebrated" if after.stage in closing else "not celebrated"
+    if _counted(before.stage, activity):
+        changes["stage"] = "not left" if after.stage == before.stage else "left"
+    if person is not None:
+        closed = after.closed == person
+        if before.place != after.place:
+            changes["request"] = "closed" if closed else "open"
+        shown, now = before.situation.user_state, after.user(person).activity
+        if before.place == person:
+            settled = closed or now != shown or after.stage in closing
+            changes["what was asked about"] = "settled" if settled else "unchanged"
+        if shown != activity.unread:
+            lost = now == activity.unread and not closed and after.stage not in closing
+            changes["card"] = "lost from view" if lost else "kept in view"
+    fewer = any(
+        user.request == "AR" and after.user(user.id).request == "ANR"
+        for user in before.users
+        if user.id != person
+    )
+    changes["others' requests"] = "fewer" if fewer else "kept"
+    return changes
+
+
+def _counted(stage: str, activity: Activity) -> bool:
+    return any(r.condition == "count" and r.stage == stage for r in activity.stage_rules)

@@ -1,0 +1,224 @@
+"""Activity learning (III-A-4): a random forest maps the attended-user triple to a behaviour.
+
+The state space is finite, so the forest is asked once about every triple and decisions are looked
+up. The settings are those that are exact after one covering demonstration; `PAPER` is the paper's
+bagging, which decides alike but with lower votes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import product
+from types import MappingProxyType
+from typing import Any
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
+from tangy_profiles.state import Situation
+
+SURE = 0.7
+"""The vote share below which a decision is called unsure."""
+
+
+class NothingToLearnFrom(TangyError):
+    """There is no demonstration with a step in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ForestSettings:
+    """How the forest is grown: see scikit-learn's RandomForestClassifier."""
+
+    trees: int = 100
+    bootstrap: bool = False
+    min_samples_leaf: int = 1
+    seed: int = 0
+
+
+EXACT = ForestSettings()
+PAPER = ForestSettings(bootstrap=True)
+FORESTS: Mapping[str, ForestSettings] = MappingProxyType({"exact": EXACT, "paper": PAPER})
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What the policy does in a situation: pi(s) = b with the share of the trees that voted for it.
+
+    `votes` lists every behaviour that got votes, most first; `seen` counts the demonstrated steps
+    in exactly this situation.
+    """
+
+    behaviour: str
+    share: float
+    votes: tuple[tuple[str, float], ...]
+    seen: int
+
+    @property
+    def sure(self) -> bool:
+        """Whether it may be acted on: it was demonstrated, and most trees agree."""
+        return self.seen > 0 and self.share >= SURE
+
+
+@dataclass(frozen=True)
+class Policy:
+    """A learnt policy: one decision for every triple of the activity, and what it rests on."""
+
+    name: str
+    activity: str
+    demonstrations: tuple[str, ...]
+    settings: ForestSettings
+    table: Mapping[Situation, Decision]
+    digest: str
+    versions: Mapping[str, str]
+
+    def decide(self, situation: Situation) -> Decision:
+        """Look up the decision for a situation.
+
+        Raises:
+            KeyError: no stage, request or user state of the activity makes this situation.
+        """
+        return self.table[situation]
+
+    def exact(self, activity: Activity) -> bool:
+        """Say whether it agrees with all that is expected of a facilitator of the activity."""
+        return not self.errors(activity)
+
+    def errors(self, activity: Activity) -> dict[Situation, str]:
+        """Return the expected situations that are answered otherwise, and with what."""
+        return {
+            situation: self.table[situation].behaviour
+            for situation, behaviour in activity.expected.items()
+            if self.table[situation].behaviour != behaviour
+        }
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what the log keeps: how to learn it again, and what that must give."""
+        return {
+            "name": self.name,
+            "activity": self.activity,
+            "demonstrations": list(self.demonstrations),
+            "forest": asdict(self.settings),
+            "versions": dict(self.versions),
+            "digest": self.digest,
+            "rows": [
+                [*situation, decision.behaviour, decision.share]
+                for situation, decision in self.table.items()
+                if decision.seen
+            ],
+        }
+
+
+def all_situations(activity: Activity) -> Iterator[Situation]:
+    """Yield every combination of stage, request and user state, reachable or not."""
+    for stage, request, state in product(
+        activity.stages, ("ANR", "AR"), (s.name for s in activity.user_states)
+    ):
+        yield Situation(stage, "AR" if request == "AR" else "ANR", state)
+
+
+def training_rows(demonstrations: Iterable[Demonstration]) -> list[tuple[Situation, str]]:
+    """Return the training set: the situation and behaviour of every step, in order."""
+    return [
+        (step.state.situation, step.behaviour)
+        for demonstration in demonstrations
+        for step in demonstration.steps
+    ]
+
+
+def learn_policy(
+    activity: Activity,
+    demonstrations: Sequence[Demonstration],
+    *,
+    settings: ForestSettings = EXACT,
+    name: str = "",
+) -> Policy:
+    """Fit the forest to demonstrations and ask it about every situation.
+
+    The same demonstrations in the same order give the same policy, bit for bit, on the same
+    version of scikit-learn.
+
+    Raises:
+        NothingToLearnFrom: the demonstrations hold no step.
+    """
+    rows = training_rows(demonstrations)
+    if not rows:
+        raise NothingToLearnFrom(
+            "There is nothing to learn from yet: demonstrate a game first, with tangy teach."
+        )
+    import numpy as np
+    import sklearn
+    from sklearn.ensemble import RandomForestClassifier
+
+    encode = _encoder(activity)
+    forest = RandomForestClassifier(
+        n_estimators=settings.trees,
+        bootstrap=settings.bootstrap,
+        min_samples_leaf=settings.min_samples_leaf,
+        random_state=settings.seed,
+    )
+    forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
+    situations = list(all_situations(activity))
+    shares = forest.predict_proba(np.array([encode(s) for s in situations]))
+    behaviours = [str(name) for name in forest.classes_]
+    seen = Counter(situation for situation, _ in rows)
+    table: dict[Situation, Decision] = {}
+    for situation, row in zip(situations, shares.tolist(), strict=True):
+        votes = sorted(
+            ((b, round(share, 9)) for b, share in zip(behaviours, row, strict=True) if share > 0),
+            key=lambda vote: (-vote[1], vote[0]),
+        )
+        table[situation] = Decision(votes[0][0], votes[0][1], tuple(votes), seen[situation])
+    ids = tuple(d.id for d in demonstrations)
+    return Policy(
+        name=name or f"{activity.name}-{len(ids)}",
+        activity=activity.name,
+        demonstrations=ids,
+        settings=settings,
+        table=MappingProxyType(table),
+        digest=_digest(settings, rows, table),
+        versions=MappingProxyType(
+            {
+                "python": platform.python_version(),
+                "numpy": str(np.__version__),
+                "scikit-learn": str(sklearn.__version__),
+            }
+        ),
+    )
+
+
+def _encoder(activity: Activity) -> Any:
+    """Return the one-hot encoding of a situation (stage, request, user state)."""
+    words = [
+        *((0, stage) for stage in activity.stages),
+        *((1, request) for request in ("ANR", "AR")),
+        *((2, state.name) for state in activity.user_states),
+    ]
+    place = {word: index for index, word in enumerate(words)}
+
+    def encode(situation: Situation) -> list[float]:
+        row = [0.0] * len(words)
+        for part in enumerate(situation):
+            row[place[part]] = 1.0
+        return row
+
+    return encode
+
+
+def _digest(
+    settings: ForestSettings,
+    rows: list[tuple[Situation, str]],
+    table: Mapping[Situation, Decision],
+) -> str:
+    """Return a SHA-256 over what was learnt from and what came of it."""
+    body = [
+        asdict(settings),
+        [[*situation, behaviour] for situation, behaviour in rows],
+        [[*situation, [list(vote) for vote in d.votes]] for situation, d in table.items()],
+    ]
+    canonical = json.dumps(body, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()

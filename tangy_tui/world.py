@@ -1,0 +1,34 @@
+"""The door between the program and a world: a simulated and a real one both fit it, unasked."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from tangy_profiles.activity import Action, Activity
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import ActivityState, Outcome
+
+
+class World(Protocol):
+    """A room with people and a robot in it, in which one game after another is played."""
+
+    activity: Activity
+    people: tuple[str, ...]
+    over: bool
+    """Whether the game that was begun last has ended."""
+
+    def begin(self) -> ActivityState:
+        """Begin a new game and return its first state."""
+        ...
+
+    def observe(self) -> ActivityState:
+        """Return the joint state as it is observed now (III-B-1)."""
+        ...
+
+    def execute(self, action: Action) -> Outcome:
+        """Carry out an action and return what became of it."""
+        ...
+
+    def scene(self) -> Scene:
+        """Return what there is to see, for a screen to draw."""
+        ...
