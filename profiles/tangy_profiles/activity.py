@@ -128,6 +128,10 @@ class Activity:
         """The user activity states that a read card can have, in order of precedence."""
         return tuple(s for s in self.user_states if s.checker != "unread")
 
+    def state_label(self, user_state: str) -> str:
+        """Return what a user activity state is called in front of people."""
+        return next((s.label for s in self.user_states if s.name == user_state), user_state)
+
     @cached_property
     def stages(self) -> tuple[str, ...]:
         """The stages in the order of their rules."""
@@ -135,14 +139,14 @@ class Activity:
 
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
-        """All triples the stage rules can bring about, in the order of the rules.
+        """All triples the stage rules can bring about, from the opening to the end.
 
         Before the first `before` rule is passed nobody can have asked; beside a requester every
         user state can be seen; a `requested or away` stage comes with and without a request;
         `after` rules (a win) find the winner's request still open.
         """
         found: list[Situation] = []
-        for rule in self.stage_rules:
+        for rule in sorted(self.stage_rules, key=lambda rule: rule.condition == "after"):
             match rule.condition:
                 case "beside requester":
                     found += [Situation(rule.stage, "AR", s.name) for s in self.user_states]

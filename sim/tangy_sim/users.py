@@ -81,7 +81,7 @@ class Player:
         return self.marked != self.called
 
     def mark(self, cell: int) -> bool:
-        """Put a marker on a cell; say whether that fills a line (which may not be a winning one)."""
+        """Put a marker on a cell; say whether that fills a line (not always a winning one)."""
         self.marked |= 1 << cell
         marked = self.marked
         return any(marked & line == line for line in self.deck.lines_through[cell])

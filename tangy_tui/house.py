@@ -1,0 +1,128 @@
+"""The house put together: profiles, the store and a simulated world, for screens and lines alike."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from random import Random
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.robot import Robot, load_robot
+from tangy_profiles.room import Room, load_room
+from tangy_profiles.store import Store
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.interaction import facilitation
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.learning import library
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.policy import Policy
+from tangy_tui.world import World
+
+
+def data_folder(chosen: Path | None) -> Path:
+    """Return the data folder: the chosen one, or the platform's folder for a person's data."""
+    if chosen is not None:
+        return chosen
+    from platformdirs import user_data_path
+
+    return user_data_path("tangy", appauthor=False)
+
+
+def teacher_name() -> str:
+    """Return the login name, which is who teaches unless said otherwise."""
+    return os.environ.get("USER") or os.environ.get("USERNAME") or "teacher"
+
+
+class House:
+    """One activity with its robot, room and people, and the data folder they are kept in."""
+
+    def __init__(
+        self, folder: Path, *, activity: str = "bingo", users: int = 4, write: bool = True
+    ) -> None:
+        """Read the profiles and open the store.
+
+        Raises:
+            ProfileError: a profile has a mistake, or there is no such activity.
+            StoreError: the data folder cannot be used, or another Tangy writes to it.
+        """
+        self.activity: Activity = load_activity(activity)
+        self.robot: Robot = load_robot()
+        self.robot.check(self.activity)
+        self.room: Room = load_room()
+        people = load_people(users)
+        self.store = Store.open(folder, write=write)
+        names = self.store.names()
+        self.people = tuple(Person(p.id, names.get(p.id, p.name)) for p in people)
+
+    def close(self) -> None:
+        """Close the store."""
+        self.store.close()
+
+    def name(self, person: str) -> str:
+        """Return a person's name."""
+        return next((p.name for p in self.people if p.id == person), person)
+
+    def find_person(self, wanted: str) -> Person:
+        """Return the person of an id or a name.
+
+        Raises:
+            TangyError: nobody, or more than one, is called that.
+        """
+        by_id = [p for p in self.people if p.id == wanted]
+        found = by_id or [p for p in self.people if p.name.casefold() == wanted.casefold()]
+        if len(found) == 1:
+            return found[0]
+        known = [word for p in self.people for word in {p.id, p.name}]
+        if found:
+            raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
+        raise TangyError(plain(f"There is nobody called {wanted!r}: {nearest(wanted, known)}"))
+
+    @property
+    def names(self) -> dict[str, str]:
+        """The names of those who take part, by id."""
+        return {person.id: person.name for person in self.people}
+
+    def teaching(self, teacher: str, seed: int | None) -> Teaching:
+        """Make a teaching session; `begin` it to take up what was unfinished.
+
+        Without a seed the games count on from the demonstrations there are, so that no two are
+        alike and each can be had again.
+        """
+        if seed is None:
+            seed = 1 + len(library.read_demonstrations(self.store, self.activity.name))
+        return Teaching(
+            self.activity, self.people, self.store, self.teaching_world, teacher=teacher, seed=seed
+        )
+
+    def teaching_world(self, seed: int, people: Sequence[str]) -> World:
+        """Make the simulated world of a demonstration, in which people ask more often."""
+        return SimulatedWorld(self.activity, people, seed=seed, users=load_users().teaching())
+
+    def facilitation(self, policy: Policy, seed: int | None) -> Facilitation:
+        """Make a run of simulated games with a policy and with what is believed of the people."""
+        if seed is None:
+            seed = 1 + sum(1 for _ in self.store.events(facilitation.BEGUN))
+        ids = [person.id for person in self.people]
+        return Facilitation(
+            SimulatedWorld(self.activity, ids, seed=seed),
+            policy,
+            self.persuasion(Random(f"{seed}/persuasion")),
+            self.store,
+            names=self.names,
+            seed=seed,
+        )
+
+    def persuasion(self, rng: Random) -> Persuasion:
+        """Make the persuasion of everybody present from the responses in the log."""
+        return Persuasion(
+            [person.id for person in self.people],
+            tuple(self.activity.strategies),
+            rng,
+            counts=self.store.responses(),
+        )

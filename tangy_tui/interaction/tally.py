@@ -1,0 +1,89 @@
+"""What games added up to: behaviours, the rows of Table II, interactions, beliefs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tangy_profiles.beliefs import Beliefs
+from tangy_profiles.state import Situation
+from tangy_tui.interaction.facilitation import Acted, GameEnded, GameEvent, Learnt
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of Table II: a situation, the behaviour executed there, how often, how successfully."""
+
+    situation: Situation
+    behaviour: str
+    instances: int
+    success: float
+
+
+@dataclass
+class Tally:
+    """A running count over the events of games."""
+
+    games: int = 0
+    steps: int = 0
+    interactions: int = 0
+    stopped: list[str] = field(default_factory=list)
+    _done: Counter[tuple[Situation, str]] = field(default_factory=Counter)
+    _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
+
+    def add(self, events: Iterable[GameEvent]) -> None:
+        """Count what happened."""
+        for event in events:
+            match event:
+                case Acted():
+                    row = (event.state.situation, event.action.behaviour.name)
+                    self.steps += 1
+                    self._done[row] += 1
+                    self._right[row] += event.right
+                case Learnt():
+                    self.interactions += 1
+                case GameEnded():
+                    self.games += 1
+                    if event.stopped is not None:
+                        self.stopped.append(event.stopped)
+
+    def rows(self, order: Iterable[Situation]) -> list[Row]:
+        """Return the rows that came about, in the given order of situations, others last."""
+        rank = {situation: place for place, situation in enumerate(order)}
+        return [
+            Row(situation, behaviour, count, self._right[situation, behaviour] / count)
+            for (situation, behaviour), count in sorted(
+                self._done.items(), key=lambda item: (rank.get(item[0][0], len(rank)), item[0])
+            )
+        ]
+
+    def to_json(self, order: Iterable[Situation], beliefs: Mapping[str, Beliefs]) -> dict[str, Any]:
+        """Return the document that `tangy play --json` prints."""
+        behaviours: Counter[str] = Counter()
+        for (_, behaviour), count in self._done.items():
+            behaviours[behaviour] += count
+        visits = self.games * len(beliefs)
+        return {
+            "games": self.games,
+            "steps": self.steps,
+            "behaviours": dict(behaviours.most_common()),
+            "rows": [
+                {
+                    "stage": row.situation.stage,
+                    "request": row.situation.request,
+                    "user_state": row.situation.user_state,
+                    "behaviour": row.behaviour,
+                    "instances": row.instances,
+                    "success": row.success,
+                }
+                for row in self.rows(order)
+            ],
+            "interactions_per_user_game": self.interactions / visits if visits else 0.0,
+            "beliefs": {
+                person: {strategy: [b.alpha, b.beta] for strategy, b in profile.items()}
+                for person, profile in beliefs.items()
+            },
+            "faults": [{"reason": reason} for reason in self.stopped],
+        }

@@ -1,0 +1,45 @@
+"""A scripted teacher: demonstrates what the activity expects, through the same door as a person."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.learning.demonstrating import Next, Reply, Say, Teaching, TeachingEvent
+
+MOST_STEPS = 2_000
+"""A demonstration longer than this is not going to end (real ones have about 62 steps)."""
+
+
+class ScriptedTeacher:
+    """Speaks the phrase of the expected behaviour, and answers the question with yes."""
+
+    def __init__(self, teaching: Teaching) -> None:
+        self._teaching = teaching
+        if not teaching.activity.expected:
+            raise TangyError(
+                f"{teaching.activity.title} does not say what is expected ([[expected]]), "
+                "so nobody can demonstrate it by script."
+            )
+        self._phrases = {b.name: b.phrases[0] for b in teaching.activity.behaviours.values()}
+
+    def command(self) -> Say | Reply | Next:
+        """Return what the teacher does next."""
+        teaching = self._teaching
+        if teaching.demonstration.finished:
+            return Next()
+        if teaching.question is not None:
+            return Reply(yes=True)
+        situation = teaching.world.observe().situation
+        expected = teaching.activity.expected.get(situation)
+        if expected is None:
+            raise TangyError(f"Nothing is expected for {' / '.join(situation)}.")
+        return Say(self._phrases[expected])
+
+    def demonstrate(self) -> Iterator[TeachingEvent]:
+        """Demonstrate to the end of the game, event by event."""
+        for _ in range(2 * MOST_STEPS):
+            if self._teaching.demonstration.finished:
+                return
+            yield from self._teaching.apply(self.command())
+        raise TangyError(f"The game does not end: {MOST_STEPS} steps were demonstrated.")

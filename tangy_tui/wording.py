@@ -1,0 +1,64 @@
+"""How situations and steps are put in words: the same on screens, in lines and in reports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Step
+from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.state import FRONT, ActivityState, Situation
+
+Name = Callable[[str], str]
+"""Gives a person's name for an id."""
+
+
+def situation_words(activity: Activity, situation: Situation) -> str:
+    """Write a triple in a few words: the stage, and what matters about the attended person.
+
+    Within the stage of helping that is how the person is doing, elsewhere whether somebody asks.
+    """
+    stage, request, user_state = situation
+    helping = any(
+        r.stage == stage and r.condition == "beside requester" for r in activity.stage_rules
+    )
+    if helping or user_state != activity.unread:
+        return f"{stage} · {activity.state_label(user_state)}"
+    return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
+
+
+def step_words(activity: Activity, step: Step, name: Name) -> str:
+    """Write one step of a trajectory: the situation, the behaviour, and for whom."""
+    target = f" ({name(step.target)})" if step.target else ""
+    return f"{situation_words(activity, step.state.situation)} -> {step.behaviour}{target}"
+
+
+def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
+    """Say what the robot knows now, in a sentence or two that a newcomer can act on."""
+    if state.place == FRONT:
+        sentences = ["Tangy is at the front."]
+    else:
+        sentences = [f"Tangy is with {name(state.place)}."]
+    if scene.requests:
+        asking = ", then ".join(name(person) for person in scene.requests)
+        sentences.append(f"Asking for help: {asking}.")
+    else:
+        sentences.append("Nobody asks for help.")
+    shown = next((s for s in activity.user_states if s.name == state.situation.user_state), None)
+    if shown is not None and state.attended == state.place and state.attended is not None:
+        sentences.append(shown.hint)
+        if scene.card is not None:
+            sentences.append(card_words(activity, scene.card))
+    return " ".join(part for part in sentences if part)
+
+
+def card_words(activity: Activity, card: CardView) -> str:
+    """Name the numbers of a card that are marked wrongly or not marked."""
+
+    def labels(mask: int) -> str:
+        numbers = (n for place, n in enumerate(card.numbers) if mask >> place & 1)
+        return ", ".join(activity.deck.label(number) for number in numbers)
+
+    wrong, missing = labels(card.marked & ~card.called), labels(card.called & ~card.marked)
+    parts = [f"Wrong: {wrong}." if wrong else "", f"Missed: {missing}." if missing else ""]
+    return " ".join(part for part in parts if part)
