@@ -176,8 +176,8 @@ def policy(
     as_json: Json = False,
 ) -> None:
     """Show what was learnt: every situation, what Tangy does there, and what follows."""
-    from tangy_tui.ui import reports
     from tangy_tui.learning.library import load_policy
+    from tangy_tui.ui import reports
 
     with _house(data, activity, 4, write=False) as house:
         learnt, notices = load_policy(house.store, house.activity)
@@ -416,8 +416,8 @@ def _reader(script: Path | None, mic: str | None) -> Callable[[], str | None]:
 
 
 def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:
-    from tangy_tui.ui import reports
     from tangy_tui.interaction.tally import Tally
+    from tangy_tui.ui import reports
 
     tally = Tally()
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):

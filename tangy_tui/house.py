@@ -1,4 +1,4 @@
-"""The house put together: profiles, the store and a simulated world, for screens and lines alike."""
+"""The house put together: profiles, the store and a simulated world, for screens and lines."""
 
 from __future__ import annotations
 

@@ -44,7 +44,9 @@ class Tracker:
         self._reading = {r.stage for r in activity.stage_rules if r.condition in READS}
         self._attending = {r.stage for r in activity.stage_rules if r.condition in ATTENDS}
         self._settled = activity.card_states[-1].name
-        self._situations = {s: s for s in activity.situations}
+        self._situations: dict[tuple[str, str, str], Situation] = {
+            s: s for s in activity.situations
+        }
         self._idle = tuple(UserState(id, self._unread, "ANR") for id in self.people)
         self._users = self._idle
         self._users_key: tuple[str, ...] = ()
@@ -116,7 +118,9 @@ class Tracker:
 
     def state(self) -> ActivityState:
         """Return the joint state as the rules have it now."""
-        stage = next(stage for holds, stage in self._rules if holds())
+        for holds, stage in self._rules:  # noqa: B007 - the last rule always holds
+            if holds():
+                break
         queue, place = self.queue, self.place
         if not queue or stage not in self._attending:
             situation = self._situation(stage, "ANR", self._unread)
@@ -139,5 +143,5 @@ class Tracker:
         return ActivityState(self.step, situation, place, attended, self._users, self.closed)
 
     def _situation(self, stage: str, request: Request, user_state: str) -> Situation:
-        situation = Situation(stage, request, user_state)
-        return self._situations.get(situation, situation)
+        known = self._situations.get((stage, request, user_state))  # hashes as the triple does
+        return known or Situation(stage, request, user_state)

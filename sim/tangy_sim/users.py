@@ -84,7 +84,10 @@ class Player:
         """Put a marker on a cell; say whether that fills a line (not always a winning one)."""
         self.marked |= 1 << cell
         marked = self.marked
-        return any(marked & line == line for line in self.deck.lines_through[cell])
+        for line in self.deck.lines_through[cell]:  # noqa: SIM110 - twice as fast as any()
+            if marked & line == line:
+                return True
+        return False
 
     def cells(self, mask: int) -> tuple[int, ...]:
         """Return the numbers on the cells of a mask."""

@@ -154,7 +154,7 @@ def learn_policy(
     import sklearn
     from sklearn.ensemble import RandomForestClassifier
 
-    encode = _encoder(activity)
+    encode = encoder(activity)
     forest = RandomForestClassifier(
         n_estimators=settings.trees,
         bootstrap=settings.bootstrap,
@@ -191,7 +191,7 @@ def learn_policy(
     )
 
 
-def _encoder(activity: Activity) -> Any:
+def encoder(activity: Activity) -> Any:
     """Return the one-hot encoding of a situation (stage, request, user state)."""
     words = [
         *((0, stage) for stage in activity.stages),
