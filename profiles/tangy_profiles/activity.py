@@ -142,8 +142,8 @@ class Activity:
         """All triples the stage rules can bring about, from the opening to the end.
 
         Before the first `before` rule is passed nobody can have asked; beside a requester every
-        user state can be seen; a `requested or away` stage comes with and without a request;
-        `after` rules (a win) find the winner's request still open.
+        user state can be seen; a `requested or away` stage comes with and without a request; so
+        does an `after` stage, except after a win, whose winner's request is still open.
         """
         found: list[Situation] = []
         for rule in sorted(self.stage_rules, key=lambda rule: rule.condition == "after"):
@@ -155,9 +155,16 @@ class Activity:
                     found.append(Situation(rule.stage, "ANR", self.unread))
                 case "after":
                     found.append(Situation(rule.stage, "AR", self.unread))
+                    if not self.leaves_request(rule):
+                        found.append(Situation(rule.stage, "ANR", self.unread))
                 case _:
                     found.append(Situation(rule.stage, "ANR", self.unread))
         return tuple(dict.fromkeys(found))
+
+    def leaves_request(self, rule: StageRule) -> bool:
+        """Whether an `after` stage begins beside somebody whose request stays open (a winner)."""
+        behaviour = self.behaviours[rule.behaviour]
+        return bool(behaviour.needs) and behaviour.closes == "never"
 
     def behaviour(self, name: str) -> Behaviour:
         """Return a behaviour by its name.
@@ -328,12 +335,14 @@ def _behaviour(entry: Table, strategies: dict[str, str], states: list[str]) -> B
 def _template(table: Table, key: str) -> str:
     text = table.text(key)
     try:
-        slots = [slot for _, slot, spec, _ in Formatter().parse(text) if slot is not None]
+        slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
     except ValueError:
         raise table.wrong(key, "has an unpaired brace.") from None
-    for slot in slots:
+    for slot, form, conversion in slots:
         if slot not in SLOTS:
-            raise table.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot, SLOTS)}")
+            raise table.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
+        if form or conversion:
+            raise table.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
     return text
 
 
@@ -353,6 +362,8 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
         elif condition == "count":
             counted = entry.choice("behaviour", behaviours)
             since = entry.choice("since", behaviours)
+            if since == counted:
+                raise entry.wrong("since", "must be another behaviour than the counted one.")
             rules.append(StageRule(stage, condition, counted, since, entry.whole("every", 1, 999)))
         else:
             rules.append(StageRule(stage, condition))

@@ -162,7 +162,7 @@ def read_deck(table: Table) -> Deck:
     patterns = table.words("patterns", PATTERNS)
     if not patterns:
         raise table.wrong("patterns", f"must hold one or more of: {', '.join(PATTERNS)}.")
-    if patterns == ("diagonal",) and rows != len(columns):
+    if "diagonal" in patterns and rows != len(columns):
         raise table.wrong("patterns", "a diagonal needs a square card.")
     table.close()
     return Deck(tuple(columns), rows, free, patterns)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import read_toml
+from tangy_profiles.state import FRONT
 
 MOST_PEOPLE = 8
 
@@ -36,7 +37,10 @@ def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:
         entry.close()
     top.close()
     for number in range(len(people) + 1, count + 1):
-        people.append(Person(more_id.format(n=number), more_name.format(n=number)))
+        n = str(number)
+        people.append(Person(more_id.replace("{n}", n), more_name.replace("{n}", n)))
     if len({person.id for person in people}) < len(people):
         raise top.wrong("people", "two of them have the same id.")
+    if any(person.id == FRONT for person in people):
+        raise top.wrong("people", f"nobody's id can be {FRONT!r}: that is a place.")
     return tuple(people[:count])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import reprlib
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -13,6 +14,9 @@ from typing import Any
 from tangy_profiles.errors import ProfileError
 
 LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
+
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
 _UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]")
 
@@ -33,6 +37,11 @@ def plain(text: str) -> str:
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
+def _short(text: str, most: int = 60) -> str:
+    """Cut what somebody made too long for one line."""
+    return text if len(text) <= most else text[: most - 1] + "\N{HORIZONTAL ELLIPSIS}"
+
+
 class Table:
     """One TOML table. Taking a key checks it; `close` refuses the keys that nobody took."""
 
@@ -44,12 +53,12 @@ class Table:
 
     def where(self, key: str) -> str:
         """Name a key as a person finds it: file and dotted path."""
-        return f"{self._file}: {self._path}{key}"
+        return f"{self._file}: {self._path}{_short(key)}"
 
     def wrong(self, key: str, problem: str) -> ProfileError:
         """Make the error for a key, with the value that stands there."""
-        shown = f" = {self._values[key]!r}" if key in self._values else ""
-        return ProfileError(plain(f"{self.where(key)}{shown}: {problem}"))
+        shown = f" = {_SHORT.repr(self._values[key])}" if key in self._values else ""
+        return ProfileError(plain(f"{self.where(key)}{shown}: {_short(problem, 400)}"))
 
     def __contains__(self, key: str) -> bool:
         return key in self._values
@@ -88,7 +97,7 @@ class Table:
     ) -> float:
         """Take a finite number within [low, high]."""
         value = self._take(key, (int, float), "a number", default)
-        if not math.isfinite(value) or not low <= value <= high:
+        if not low <= value <= high or value in (math.inf, -math.inf):  # NaN is in no range
             raise self.wrong(key, f"must be a number from {low:g} to {high:g}.")
         return float(value)
 
@@ -134,7 +143,7 @@ class Table:
     def table(self, key: str, *, optional: bool = False) -> Table:
         """Take a table; an absent optional one reads as empty."""
         value = self._take(key, dict, "a table", {} if optional else None)
-        return Table(value, self._file, f"{self._path}{key}.")
+        return Table(value, self._file, f"{self._path}{_short(key)}.")
 
     def tables(self, key: str, *, optional: bool = False) -> Iterator[Table]:
         """Take an array of tables, in order."""
@@ -142,7 +151,8 @@ class Table:
         for place, value in enumerate(values, 1):
             if not isinstance(value, dict):
                 raise self.wrong(key, "must be a list of tables ([[...]]).")
-            label = value.get("name", place)
+            name = value.get("name")
+            label = _short(name) if isinstance(name, str) else place
             yield Table(value, self._file, f"{self._path}{key}[{label}].")
 
     def items(self) -> Iterator[tuple[str, Table]]:
@@ -170,7 +180,7 @@ def read_toml(path: Path) -> Table:
     Raises:
         ProfileError: the file is missing, unreadable, too large or not TOML.
     """
-    name = path.name
+    name = plain(path.name)
     try:
         if path.stat().st_size > LARGEST_PROFILE:
             raise ProfileError(f"{name}: is larger than {LARGEST_PROFILE:,} bytes.")
@@ -183,5 +193,7 @@ def read_toml(path: Path) -> Table:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(plain(f"{name}: is not TOML: {error}.")) from None
+    except ValueError:  # what Python itself refuses to read as a whole number
+        raise ProfileError(f"{name}: holds a number of thousands of digits.") from None
     except RecursionError:
         raise ProfileError(f"{name}: is nested too deeply.") from None

@@ -35,9 +35,8 @@ class Tracker:
         """Whose request the last behaviour closed."""
         self.step = 0
         self._counts = dict.fromkeys(activity.behaviours, 0)
-        self._since = {r.since: 0 for r in activity.stage_rules if r.condition == "count"}
-        self._counted = {
-            r.since: r.behaviour for r in activity.stage_rules if r.condition == "count"
+        self._since = {
+            (r.behaviour, r.since): 0 for r in activity.stage_rules if r.condition == "count"
         }
         self._rules = [(self._test(rule), rule.stage) for rule in activity.stage_rules]
         self._openers = [r.behaviour for r in activity.stage_rules if r.condition == "before"]
@@ -63,7 +62,8 @@ class Tracker:
             case "requested or away":
                 return lambda: bool(self.queue) or self.place != FRONT
             case "count":
-                return lambda: since[rule.since] >= rule.at_least
+                pair = (name, rule.since)
+                return lambda: since[pair] >= rule.at_least
             case _:
                 return lambda: True
 
@@ -103,11 +103,11 @@ class Tracker:
             return
         name = behaviour.name
         self._counts[name] += 1
-        for since, counted in self._counted.items():
-            if name == counted:
-                self._since[since] += 1
-            elif name == since:
-                self._since[since] = 0
+        for pair in self._since:
+            if name == pair[0]:
+                self._since[pair] += 1
+            elif name == pair[1]:
+                self._since[pair] = 0
         if self.place in self.queue and (
             behaviour.closes == "always"
             or (behaviour.closes == "when correct" and self.seen == self._settled)

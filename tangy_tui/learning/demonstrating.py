@@ -177,7 +177,9 @@ class Teaching:
         if resume:
             for kept in reversed(read_demonstrations(self._store, self.activity.name)):
                 if kept.teacher == self.teacher and not kept.finished:
-                    if self._replay(kept):
+                    world = self._replay(kept)
+                    if world is not None:
+                        self._enter(kept, world)
                         self._logged = True
                         self._seed = max(self._seed, kept.seed + 1)
                         return [Begun(kept, resumed=True)]
@@ -206,14 +208,19 @@ class Teaching:
 
     def _begin_new(self) -> list[TeachingEvent]:
         people = tuple(self._names)
-        self.demonstration = Demonstration(
-            uuid4().hex[:12], self.activity.name, self.teacher, self._seed, people
-        )
+        new = Demonstration(uuid4().hex[:12], self.activity.name, self.teacher, self._seed, people)
         self._seed += 1
-        self.world = self._make_world(self.demonstration.seed, people)
-        self.question = None
+        self._enter(new, self._make_world(new.seed, people))
         self._logged = False
-        return [Begun(self.demonstration, resumed=False)]
+        return [Begun(new, resumed=False)]
+
+    def _enter(self, demonstration: Demonstration, world: World) -> None:
+        """Go on with a demonstration, among those who take part, in a world that it led to."""
+        self.demonstration = demonstration
+        self.world = world
+        self.question = None
+        present = [Person(id, self.name(id)) for id in demonstration.people]
+        self.phrasebook = Phrasebook(self.activity, present)
 
     def _say(self, text: str, confidence: float) -> list[TeachingEvent]:
         if self.demonstration.finished:
@@ -276,11 +283,16 @@ class Teaching:
         outcome = self.world.execute(action)
         step = Step(behaviour.name, question.target, before, self.world.observe())
         finished = self.world.over
-        with self._store.transaction():
-            self._log_beginning()
-            self._store.append(STEP, {"demonstration": self.demonstration.id, **step.to_json()})
-            if finished:
-                self._store.append(FINISHED, {"demonstration": self.demonstration.id})
+        try:
+            with self._store.transaction():
+                self._log_beginning()
+                self._store.append(STEP, {"demonstration": self.demonstration.id, **step.to_json()})
+                if finished:
+                    self._store.append(FINISHED, {"demonstration": self.demonstration.id})
+        except BaseException:  # what is not in the log has not happened
+            self.world = self._replay(self.demonstration) or self.world
+            raise
+        self._logged = True
         self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
         name = self.name(question.target) if question.target else ""
         events: list[TeachingEvent] = [
@@ -310,7 +322,6 @@ class Teaching:
                     "people": list(self.demonstration.people),
                 },
             )
-            self._logged = True
 
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
@@ -318,22 +329,21 @@ class Teaching:
         last = self.demonstration.steps[-1]
         number = len(self.demonstration.steps)
         shorter = self.demonstration.without_last()
-        if not self._replay(shorter):
+        world = self._replay(shorter)
+        if world is None:
             return [Refused("This step cannot be undone: the simulator has changed since.")]
         self._store.append(UNDONE, {"demonstration": shorter.id, "step": number})
+        self._enter(shorter, world)
         return [StepUndone(number, last)]
 
-    def _replay(self, demonstration: Demonstration) -> bool:
-        """Bring world and session to where a demonstration is; False if the states differ."""
+    def _replay(self, demonstration: Demonstration) -> World | None:
+        """Make the world that a demonstration led to; None if its states come out differently."""
         world = self._make_world(demonstration.seed, demonstration.people)
         for step in demonstration.steps:
             behaviour = self.activity.behaviours.get(step.behaviour)
             if behaviour is None or world.observe() != step.state:
-                return False
+                return None
             world.execute(self.activity.action(behaviour, step.target, None))
             if world.observe() != step.after:
-                return False
-        self.world = world
-        self.demonstration = demonstration
-        self.question = None
-        return True
+                return None
+        return world

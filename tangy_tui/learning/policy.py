@@ -30,6 +30,10 @@ class NothingToLearnFrom(TangyError):
     """There is no demonstration with a step in it."""
 
 
+class NotOfThisActivity(TangyError):
+    """A demonstration shows what the activity, as it is now, does not have."""
+
+
 @dataclass(frozen=True, slots=True)
 class ForestSettings:
     """How the forest is grown: see scikit-learn's RandomForestClassifier."""
@@ -144,8 +148,17 @@ def learn_policy(
 
     Raises:
         NothingToLearnFrom: the demonstrations hold no step.
+        NotOfThisActivity: they were made before the activity was changed.
     """
     rows = training_rows(demonstrations)
+    situations = list(all_situations(activity))
+    strange = set(rows) - set(product(situations, activity.behaviours))
+    if strange:
+        situation, behaviour = min(strange)
+        raise NotOfThisActivity(
+            f"{activity.title} has changed since it was demonstrated, and no longer has "
+            f"{' / '.join(situation)} -> {behaviour}: demonstrate it in another data folder."
+        )
     if not rows:
         raise NothingToLearnFrom(
             "There is nothing to learn from yet: demonstrate a game first, with tangy teach."
@@ -159,10 +172,9 @@ def learn_policy(
         n_estimators=settings.trees,
         bootstrap=settings.bootstrap,
         min_samples_leaf=settings.min_samples_leaf,
-        random_state=settings.seed,
+        random_state=settings.seed % 2**32,
     )
     forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
-    situations = list(all_situations(activity))
     shares = forest.predict_proba(np.array([encode(s) for s in situations]))
     behaviours = [str(name) for name in forest.classes_]
     seen = Counter(situation for situation, _ in rows)

@@ -33,8 +33,10 @@ def _states_of(
                 for place, shown in product(sorted(asking), activity.user_states):
                     yield _state(rule.stage, people, asking, place, place, shown.name, unread)
             case "after":
-                for place in sorted(asking):
-                    yield _state(rule.stage, people, asking, place, place, unread, unread)
+                anywhere = () if activity.leaves_request(rule) else (FRONT, *idle)
+                for place in (*sorted(asking), *anywhere):
+                    head = place if place in asking else min(asking, default=None)
+                    yield _state(rule.stage, people, asking, place, head, unread, unread)
             case "requested or away" if asking:
                 head = min(asking)  # which one is the head does not matter to the triple
                 for place in (FRONT, *idle):
