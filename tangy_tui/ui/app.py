@@ -1,0 +1,254 @@
+"""The frame of the program: colours, keys that work everywhere, and leaving in good order.
+
+Widget ids that scripts and testers may rely on:
+    #home        the choices of the first screen
+    #status      the status line, at the top of every screen
+    #room        the room with robot and people
+    #transcript  the numbered steps of a demonstration or a game
+    #command     the command bar (its line to type in is #command-input)
+    #question    the dialog that verifies a command
+    #posteriors  what is believed of each person
+    #policy      the policy table
+    #log         what happened, in sentences
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from time import monotonic
+from typing import Any, ClassVar
+
+from textual.app import App, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.css.query import NoMatches
+from textual.screen import Screen
+
+from tangy_tui.ui.clean_output import CleanOutput
+from tangy_tui.ui.fresh_keys import Clock
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
+
+HANGUP_CODE = 129
+TERMINATED_CODE = 143
+
+FirstScreen = Callable[[], Screen[Any]]
+"""Makes the screen that the program begins with."""
+
+
+class TangyApp(App[None]):
+    """The program on a terminal. The screens bring the rest.
+
+    `return_code` is 0 after a normal end, 129 when the terminal went away, 143 after SIGTERM.
+    Every way out says `Stop` to all open screens first.
+    """
+
+    TITLE = "Tangy"
+    CSS_PATH = "tangy.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+x", "stop", "STOP the robot", priority=True, id="app.stop"),
+        Binding("ctrl+c", "quit", "Leave Tangy", priority=True, id="app.quit"),
+        Binding("f1", "help", "Help", priority=True, show=False, id="app.help.f1"),
+        Binding("question_mark", "help", "Help", key_display="?", id="app.help"),
+        Binding("colon", "command", "Type a command", key_display=":", id="app.command"),
+        Binding("escape", "back", "Back", id="app.back"),
+        Binding("s", "picture", "Save a picture of the screen", id="app.picture"),
+        Binding("m", "mouse", "Mouse on or off", id="app.mouse"),
+    ]
+
+    def __init__(
+        self,
+        first: FirstScreen | None = None,
+        *,
+        kind: TerminalKind | None = None,
+        pictures: Path | None = None,
+        clock: Clock = monotonic,
+    ) -> None:
+        """Make the program.
+
+        Args:
+            first: makes the first screen (default: an empty one).
+            kind: how the terminal is to be used (`terminal.terminal_kind()` finds out).
+            pictures: the folder that pictures of the screen are saved to (default: the current).
+            clock: seconds, on the scale of `time.monotonic`; dialogs and the room use it.
+        """
+        kind = kind or TerminalKind()
+        super().__init__(ansi_color=True if kind.ansi else None)
+        for theme in THEMES:
+            self.register_theme(theme)
+        self._use_theme(ANSI.name if kind.ansi else DARK.name)
+        self._filters.append(CleanOutput(ascii=kind.ascii))
+        self.animation_level = "none"
+        self.kind = kind
+        self.clock = clock
+        self.mouse = True
+        """Whether the mouse is Tangy's; without it, text is selected and copied as usual."""
+        self._first = first
+        self._pictures = pictures
+        self._leaving = False
+
+    def get_default_screen(self) -> Screen[Any]:
+        """Begin with the screen that was asked for."""
+        screen = self._first() if self._first is not None else super().get_default_screen()
+        self._load_screen_css(screen)  # Textual does this only for screens that are pushed
+        return screen
+
+    def get_theme_variable_defaults(self) -> dict[str, str]:
+        """Colours of the inks for themes that are not Tangy's own."""
+        return INK_DEFAULTS
+
+    def on_mount(self) -> None:
+        """End in good order when the terminal goes away or the system says so."""
+        loop = asyncio.get_running_loop()
+        for number, code in ((signal.SIGHUP, HANGUP_CODE), (signal.SIGTERM, TERMINATED_CODE)):
+            # Not on Windows, and not outside of the main thread.
+            with suppress(NotImplementedError, RuntimeError, ValueError):
+                loop.add_signal_handler(number, self._signalled, number.name, code)
+
+    def stop(self, reason: str) -> None:
+        """Say to every open screen, the topmost first, that the robot must stop."""
+        for screen in reversed(self.screen_stack):
+            screen.post_message(Stop(reason))
+
+    def leave(self, code: int = 0, reason: str = "the program ends") -> None:
+        """Say stop, let every screen act on it, and end with this exit status."""
+        if self._leaving:
+            return
+        self._leaving = True
+        self.stop(reason)
+        waiting = len(self.screen_stack)
+
+        def heard() -> None:
+            nonlocal waiting
+            waiting -= 1
+            if not waiting:
+                self.exit(return_code=code)
+
+        for screen in self.screen_stack:
+            if not screen.call_later(heard):
+                heard()
+
+    def action_stop(self) -> None:
+        """Stop the robot."""
+        self.stop("ctrl+x was pressed")
+
+    async def action_quit(self) -> None:
+        """Leave the program."""
+        self.leave()
+
+    def action_help(self) -> None:
+        """Show the help for where the user is."""
+        from tangy_tui.ui.screens.help import HelpScreen, help_for
+
+        if not isinstance(self.screen, HelpScreen):
+            self.push_screen(HelpScreen(help_for(self.screen)))
+
+    def action_command(self) -> None:
+        """Give the keys to the command bar, if the screen has one."""
+        with suppress(NoMatches):
+            self.screen.query_one("#command-input").focus()
+
+    async def action_back(self) -> None:
+        """Go back to the screen before; the first one stays."""
+        if len(self.screen_stack) > 1:
+            self.pop_screen()
+
+    def action_picture(self) -> None:
+        """Save the screen as an SVG picture and say where."""
+        folder = self._pictures or Path.cwd()
+        name = f"tangy-{datetime.now().astimezone():%Y-%m-%d-%H%M%S}.svg"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            path = self.save_screenshot(filename=name, path=str(folder))
+        except OSError as error:
+            self.say(f"The picture could not be saved in {folder}: {error.strerror}.", bad=True)
+        else:
+            self.say(f"Saved {path}")
+
+    def action_mouse(self) -> None:
+        """Take the mouse, or leave it to the terminal so that text can be copied."""
+        self.use_mouse(not self.mouse)
+        if self.mouse:
+            self.say("The mouse works in Tangy again. Press m to copy text with it.")
+        else:
+            self.say("The mouse is the terminal's: text can be copied. Press m to change back.")
+
+    def use_mouse(self, on: bool) -> None:
+        """Take the mouse, or leave it to the terminal."""
+        driver: Any = self._driver
+        if driver is not None and hasattr(driver, "_enable_mouse_support"):
+            if on:
+                driver._mouse = True
+                driver._enable_mouse_support()
+            else:
+                driver._disable_mouse_support()
+                driver._mouse = False
+        self.mouse = on
+
+    def say(self, sentence: str, *, bad: bool = False) -> None:
+        """Show a sentence for a few seconds."""
+        self.notify(sentence, severity="error" if bad else "information", markup=False)
+
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """List what the command palette offers: the keys of the screen, and the program's own."""
+        seen: set[str] = set()
+        for active in screen.active_bindings.values():
+            binding = active.binding
+            if binding.description and binding.show and binding.description not in seen:
+                seen.add(binding.description)
+                key = self.get_key_display(binding)
+
+                async def run(action: str = binding.action, node: Any = active.node) -> None:
+                    await self.run_action(action, node)
+
+                yield SystemCommand(binding.description, f"key {key}", run)
+        yield SystemCommand("Dark colours", "High contrast on black", self._themed(DARK.name))
+        yield SystemCommand("Light colours", "Dark on paper", self._themed(LIGHT.name))
+        yield SystemCommand("The terminal's colours", "Its own sixteen", self._themed(ANSI.name))
+
+    def action_command_palette(self) -> None:
+        """Show the command palette, without a blinking cursor."""
+        from textual.command import CommandPalette
+        from textual.widgets import Input
+
+        if isinstance(self.screen, CommandPalette):
+            return
+        palette = CommandPalette()
+        self.push_screen(palette)
+
+        def calm() -> None:
+            for line in palette.query(Input):
+                line.cursor_blink = False
+
+        palette.call_after_refresh(calm)
+
+    def _themed(self, name: str) -> Callable[[], None]:
+        def use() -> None:
+            self.ansi_color = None
+            self.theme = name
+
+        return use
+
+    def _use_theme(self, name: str) -> None:
+        """Choose the colours before the program runs, so that nothing is parsed twice."""
+        self.set_reactive(App.theme, name)
+        self._refresh_truecolor_filter(self.ansi_theme)
+        self.stylesheet.set_variables(self.get_css_variables())
+        theme = self.current_theme
+        self.set_class(theme.dark, "-dark-mode", update=False)
+        self.set_class(not theme.dark, "-light-mode", update=False)
+
+    def _signalled(self, name: str, code: int) -> None:
+        self.leave(code, f"{name} was received")
+
+
+def run_app(app: TangyApp, *, mouse: bool = True) -> int:
+    """Run the program and return its exit status."""
+    app.mouse = mouse
+    app.run(mouse=mouse)
+    return app.return_code or 0

@@ -1,0 +1,132 @@
+"""What all screens and dialogs share: help of their own, and a cover when there is no room."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, TypeVar
+
+from textual import events
+from textual.screen import ModalScreen, Screen
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.terminal import too_small
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import draw
+from tangy_tui.ui.widgets.wrapping import wrap
+
+ResultT = TypeVar("ResultT")
+
+
+class Cover(Widget, can_focus=True):
+    """Covers a screen that has too little room with one sentence, and takes the keys meanwhile."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    Cover { layer: cover; dock: top; width: 100%; height: 100%; background: $background; }
+    """
+
+    def __init__(self, sentence: str, keep: Widget | None) -> None:
+        super().__init__()
+        self._sentence = sentence
+        self._keep = keep
+
+    def on_mount(self) -> None:
+        """Take the keys."""
+        self.focus()
+
+    def say(self, sentence: str) -> None:
+        """Say something else."""
+        self._sentence = sentence
+        self.refresh()
+
+    def lift(self) -> None:
+        """Uncover the screen and give the keys back."""
+        keep = self._keep
+        self.remove()
+        self.screen.set_focus(keep if keep is not None and keep.is_attached else None)
+
+    def on_key(self, event: events.Key) -> None:
+        """Let no key through: nobody should answer what they cannot see."""
+        event.stop()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw the sentence in the middle."""
+        width, height = self.size
+        lines = wrap(self._sentence, max(1, width - 2))
+        n = y - max(0, (height - len(lines)) // 2)
+        text = lines[n] if 0 <= n < len(lines) else ""
+        return draw(self, ((text.center(width), "strong"),), width)
+
+
+def cover_if_small(screen: Screen[Any]) -> None:
+    """Cover a screen while the window is too small for it, uncover it when it is large enough."""
+    sentence = too_small(*screen.app.size)
+    covers = list(screen.query_children(Cover))
+    if sentence is None:
+        for cover in covers:
+            cover.lift()
+    elif covers:
+        covers[0].say(sentence)
+    else:
+        screen.mount(Cover(sentence, screen.focused))
+
+
+class TangyScreen(Screen[ResultT]):
+    """A screen of the program. `HELP` tells in a paragraph what it is for."""
+
+    DEFAULT_CSS = """
+    TangyScreen { layers: default cover; overflow: hidden hidden; }
+    """
+    HELP: ClassVar[str] = ""
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Cover the screen if it has too little room."""
+        cover_if_small(self)
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Cover the screen if it has too little room."""
+        cover_if_small(self)
+
+
+class Dialog(ModalScreen[ResultT]):
+    """A question or a message over a screen. It is answered once; STOP answers it with `no`."""
+
+    DEFAULT_CSS = """
+    Dialog { layers: default cover; align: center middle; overflow: hidden hidden; }
+    Dialog > .box {
+        width: 64;
+        max-width: 96%;
+        height: auto;
+        max-height: 96%;
+        border: round $accent;
+        border-title-color: $accent;
+        border-title-style: bold;
+        background: $surface;
+        padding: 1 2;
+    }
+    """
+    HELP: ClassVar[str] = ""
+
+    def __init__(self, no: ResultT, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._no = no
+        self._answered = False
+
+    def answer(self, result: ResultT) -> None:
+        """Close the dialog with a result; only the first one counts."""
+        if not self._answered and self.app.screen is self:
+            self._answered = True
+            self.dismiss(result)
+
+    def on_stop(self, message: Stop) -> None:
+        """Take STOP for a no."""
+        self.answer(self._no)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Cover the dialog if it has too little room."""
+        cover_if_small(self)
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Cover the dialog if it has too little room."""
+        cover_if_small(self)

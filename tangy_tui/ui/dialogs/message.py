@@ -1,0 +1,62 @@
+"""Something to read before going on: what went wrong, or where something was put."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys
+
+CLOSING_KEYS = ("enter", "space", "escape", "q")
+
+
+class MessageDialog(Dialog[None]):
+    """Shows a text, one paragraph for each line, until Enter, space or esc."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "nothing", "Close")]
+    HELP = "Read, and press Enter to go on."
+
+    def __init__(
+        self,
+        text: str,
+        title: str = "Tangy",
+        *,
+        clock: Clock = monotonic,
+        id: str = "message",
+    ) -> None:
+        super().__init__(None, id=id)
+        self._text = "\n".join(clean(line) for line in text.split("\n"))
+        self._title = clean(title)
+        self._keys = FreshKeys(clock)
+
+    def compose(self) -> ComposeResult:
+        """Lay out the text and the key."""
+        box = Static(
+            Content.assemble(
+                self._text, "\n\n", ("Enter", "$primary bold"), ("  go on", "$ink-dim")
+            ),
+            classes="box",
+        )
+        box.border_title = Content(self._title)
+        yield box
+
+    def on_mount(self) -> None:
+        """Take note of the moment from which keys count."""
+        self.call_after_refresh(self._keys.painted)
+
+    def on_key(self, event: events.Key) -> None:
+        """Close on Enter, space or esc."""
+        event.stop()
+        if event.key in CLOSING_KEYS and self._keys.fresh(event):
+            self.answer(None)
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""

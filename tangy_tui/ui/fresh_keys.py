@@ -1,0 +1,35 @@
+"""Telling keys that were meant for a question from keys that were typed before it was seen.
+
+A key is stamped when it is read from the terminal. It answers a dialog only if that was a moment
+after the dialog was painted; what was queued, or typed blindly, is dropped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import monotonic
+
+from textual import events
+
+SETTLE_SECONDS = 0.2
+"""How long a person needs at the least to see that there is a question (notes/terminal.md)."""
+
+Clock = Callable[[], float]
+"""Gives seconds on the scale on which Textual stamps keys, `time.monotonic`."""
+
+
+class FreshKeys:
+    """Says of each key whether it was typed after its dialog was on the screen."""
+
+    def __init__(self, clock: Clock = monotonic) -> None:
+        self._clock = clock
+        self._from: float | None = None
+
+    def painted(self) -> None:
+        """Note that the dialog has now been painted."""
+        if self._from is None:
+            self._from = self._clock() + SETTLE_SECONDS
+
+    def fresh(self, event: events.Key) -> bool:
+        """Say whether a key may answer."""
+        return self._from is not None and event.time >= self._from

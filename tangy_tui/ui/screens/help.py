@@ -1,0 +1,87 @@
+"""Help for where the user is: the screen, the widget that has the keys, and all keys there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.content import Content
+from textual.screen import Screen
+from textual.widgets import Static
+
+from tangy_tui.ui.base import Dialog
+
+
+@dataclass(frozen=True, slots=True)
+class Help:
+    """What there is to say: a title, paragraphs, and pairs of key and what it does."""
+
+    title: str
+    paragraphs: tuple[str, ...]
+    keys: tuple[tuple[str, str], ...]
+
+
+def help_for(screen: Screen[Any]) -> Help:
+    """Collect the help of a screen, of the widget that has the keys, and of the keys."""
+    focused = screen.focused
+    nodes: Iterable[Any] = (screen,) if focused is None else (screen, focused)
+    paragraphs = [text for node in nodes if (text := getattr(node, "HELP", ""))]
+    keys: dict[str, str] = {}
+    for active in screen.active_bindings.values():
+        binding = active.binding
+        if binding.description and (binding.show or binding.priority):
+            shown = screen.app.get_key_display(binding)
+            keys.setdefault(binding.description, shown)
+    title = str(screen.TITLE or "Tangy")
+    if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
+        title = f"{title} · {focused.border_title}"
+    return Help(title, tuple(paragraphs), tuple((key, does) for does, key in keys.items()))
+
+
+class HelpScreen(Dialog[None]):
+    """The help over a screen; any of esc, q, ? and Enter closes it."""
+
+    DEFAULT_CSS = """
+    HelpScreen > .box { width: 76; height: auto; }
+    HelpScreen Static { width: 100%; height: auto; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,q,enter,question_mark,f1", "close", "Close", show=False),
+    ]
+
+    def __init__(self, help: Help, *, id: str = "help") -> None:
+        super().__init__(None, id=id)
+        self._help = help
+
+    def compose(self) -> ComposeResult:
+        """Lay out paragraphs and keys."""
+        box = VerticalScroll(Static(self._content()), classes="box")
+        box.border_title = Content(f"Help: {self._help.title}")
+        box.border_subtitle = "esc closes"
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the arrows scroll."""
+        self.query_one(VerticalScroll).focus()
+
+    def action_close(self) -> None:
+        """Go back."""
+        self.answer(None)
+
+    def on_click(self, event: events.Click) -> None:
+        """Close when something else is clicked on."""
+        if event.widget is self:
+            self.answer(None)
+
+    def _content(self) -> Content:
+        parts: list[str | tuple[str, str] | Content] = []
+        for paragraph in self._help.paragraphs:
+            parts += [paragraph, "\n\n"]
+        for key, does in self._help.keys:
+            parts += [(f"{key:>9}", "$accent bold"), f"   {does}\n"]
+        return Content.assemble(*parts)

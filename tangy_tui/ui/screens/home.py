@@ -1,0 +1,204 @@
+"""The first screen: what can be done with Tangy, each by one letter, and how far it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One line: the letter, the name (also its id, in lower case), and what it is for."""
+
+    key: str
+    name: str
+    does: str
+
+    @property
+    def id(self) -> str:
+        """The word it is known by."""
+        return self.name.lower()
+
+
+CHOICES = (
+    Choice("t", "Teach", "show Tangy how the activity is run"),
+    Choice("l", "Learn", "make a policy from what was shown"),
+    Choice("p", "Play", "let Tangy run the activity"),
+    Choice("o", "Policy", "what Tangy does in which situation"),
+    Choice("e", "People", "who takes part, and what persuades them"),
+    Choice("d", "Demo", "the whole story in a minute"),
+    Choice("h", "Help", "keys, and how to begin"),
+    Choice("q", "Quit", "leave Tangy"),
+)
+
+States = Callable[[], Mapping[str, str]]
+"""Gives a short line on how far each choice is, by its id: {"teach": "2 demonstrations"}."""
+
+
+class Menu(Widget, can_focus=True):
+    """The choices, one line each, with a line between them where there is room."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    Menu { height: 1fr; padding: 1 2; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "move(-1)", "Up", show=False),
+        Binding("down,j", "move(1)", "Down", show=False),
+        Binding("enter,space,right", "choose", "Choose", key_display="enter"),
+    ]
+
+    class Chosen(Message):
+        """A choice was made; `id` is its word."""
+
+        def __init__(self, id: str) -> None:
+            super().__init__()
+            self.id = id
+
+    def __init__(self, choices: Sequence[Choice], id: str | None = "home") -> None:
+        super().__init__(id=id)
+        self._choices = tuple(choices)
+        self._states: Mapping[str, str] = {}
+        self._at = 0
+
+    @property
+    def chosen(self) -> Choice:
+        """The choice that the cursor is on."""
+        return self._choices[self._at]
+
+    def show(self, states: Mapping[str, str]) -> None:
+        """Say how far each choice is."""
+        if states != self._states:
+            self._states = dict(states)
+            self.refresh()
+
+    def point(self, id: str) -> None:
+        """Move the cursor to a choice."""
+        self._at = next((n for n, c in enumerate(self._choices) if c.id == id), self._at)
+        self.refresh()
+
+    def action_move(self, by: int) -> None:
+        """Move the cursor."""
+        self._at = (self._at + by) % len(self._choices)
+        self.refresh()
+
+    def action_choose(self) -> None:
+        """Choose what the cursor is on."""
+        self.post_message(self.Chosen(self.chosen.id))
+
+    def on_key(self, event: events.Key) -> None:
+        """Choose by letter."""
+        for choice in self._choices:
+            if event.key == choice.key:
+                event.stop()
+                self.point(choice.id)
+                self.action_choose()
+
+    def on_click(self, event: events.Click) -> None:
+        """Choose with the mouse."""
+        line = self._line(event.y - self.styles.padding.top)
+        if line is not None:
+            self._at = line
+            self.refresh()
+            self.action_choose()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        width = self.size.width
+        line = self._line(y)
+        if line is None:
+            return draw(self, self._heading(y), width)
+        over = "now" if line == self._at else ""
+        return draw(self, self._row(self._choices[line], line == self._at, width), width, over)
+
+    def _spacing(self) -> int:
+        return 2 if self.size.height >= 2 * len(self._choices) + 3 else 1
+
+    def _line(self, y: int) -> int | None:
+        """Return which choice stands on line `y` of the content."""
+        line, rest = divmod(y - 3, self._spacing())
+        return line if not rest and 0 <= line < len(self._choices) else None
+
+    def _heading(self, y: int) -> Row:
+        if y == 0:
+            return (("T A N G Y", "robot"),)
+        if y == 1:
+            return (("Teach a robot a group activity, and let it run that activity.", "dim"),)
+        return ()
+
+    def _row(self, choice: Choice, here: bool, width: int) -> Row:
+        name = fit(choice.name, 9)
+        state = clean(self._states.get(choice.id, ""))
+        head = 6 + len(name)
+        does_width = min(42, width - head) if width >= 100 or not state else 0
+        state_width = width - head - does_width
+        return (
+            ("▸ " if here else "  ", "robot"),
+            (choice.key, "robot"),
+            ("  ", "text"),
+            (name, "strong"),
+            (" ", "text"),
+            (fit(choice.does, does_width), "dim"),
+            (shorten(state, state_width), "text"),
+        )
+
+
+class HomeScreen(TangyScreen[None]):
+    """The first screen. Posts `HomeScreen.Chosen` to itself and the app, which opens the rest."""
+
+    TITLE = "Home"
+    HELP = (
+        "Begin with Teach: show Tangy a game by typing or saying what it should do. Then Learn, "
+        "and then Play. Choose by letter, or with the arrows and Enter."
+    )
+    AUTO_FOCUS = "#home"
+
+    class Chosen(Message):
+        """A choice was made; `id` is teach, learn, play, policy, people, demo."""
+
+        def __init__(self, id: str) -> None:
+            super().__init__()
+            self.id = id
+
+    def __init__(
+        self, states: States = dict, *, choices: Sequence[Choice] = CHOICES, note: str = ""
+    ) -> None:
+        """Make the screen; `states` is asked each time that it is shown."""
+        super().__init__()
+        self._states = states
+        self._menu = Menu(choices)
+        self._note = note
+
+    def compose(self) -> ComposeResult:
+        """Lay out the status line and the choices."""
+        yield StatusLine(Status(mode="home", note=self._note))
+        yield self._menu
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Look how far things are."""
+        self._menu.show(self._states())
+
+    def on_menu_chosen(self, event: Menu.Chosen) -> None:
+        """Do what the program can do by itself, and tell the app of the rest."""
+        event.stop()
+        app: Any = self.app
+        if event.id == "quit":
+            app.leave()
+        elif event.id == "help":
+            app.action_help()
+        else:
+            self.post_message(self.Chosen(event.id))

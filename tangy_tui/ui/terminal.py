@@ -1,0 +1,90 @@
+"""What the terminal at hand can show: decided once, before anything of Textual is imported."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TextIO
+
+MIN_WIDTH = 60
+MIN_HEIGHT = 18
+
+FEW_COLOURS = ("linux", "xterm", "screen", "ansi", "vt", "cons", "rxvt")
+"""Terminals that Rich writes 16 colours to, unless their name or COLORTERM promises more."""
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalKind:
+    """How the program is to be shown.
+
+    `full_screen` is False where only lines make sense, and `reason` then says why. `ansi` asks
+    for the terminal's own 16 colours, `ascii` for characters 32 to 126 only.
+    """
+
+    full_screen: bool = True
+    ansi: bool = False
+    ascii: bool = False
+    reason: str = ""
+
+
+def terminal_kind(
+    environ: Mapping[str, str] | None = None,
+    *,
+    stdin: TextIO | None = None,
+    stdout: TextIO | None = None,
+    ascii: bool | None = None,
+) -> TerminalKind:
+    """Say how to show the program on this terminal.
+
+    Args:
+        environ: the environment (default: the process's own).
+        stdin, stdout: the streams that must be a terminal (default: the process's own).
+        ascii: what the user asked for with `--ascii`; None decides by TERM and locale.
+    """
+    environ = os.environ if environ is None else environ
+    term = environ.get("TERM", "")
+    plain_text = ascii if ascii is not None else term == "linux" or not _speaks_utf8(environ)
+    ansi = bool(environ.get("NO_COLOR")) or _few_colours(environ)
+    reason = ""
+    if not all(_is_tty(s) for s in (stdin or sys.__stdin__, stdout or sys.__stdout__)):
+        reason = "input or output is not a terminal"
+    elif term in ("dumb", "unknown"):
+        reason = f"the terminal (TERM={term}) cannot place a cursor"
+    return TerminalKind(not reason, ansi, plain_text, reason)
+
+
+def too_small(width: int, height: int) -> str | None:
+    """Return the sentence for a window that is too small, or None."""
+    if width >= MIN_WIDTH and height >= MIN_HEIGHT:
+        return None
+    return (
+        f"Tangy needs {MIN_WIDTH} x {MIN_HEIGHT} characters; this window has "
+        f"{width} x {height}. Make it larger: nothing is lost."
+    )
+
+
+def _is_tty(stream: TextIO | None) -> bool:
+    try:
+        return stream is not None and stream.isatty()
+    except ValueError:  # closed
+        return False
+
+
+def _speaks_utf8(environ: Mapping[str, str]) -> bool:
+    """Look at the locale as the C library does: LC_ALL, then LC_CTYPE, then LANG."""
+    for key in ("LC_ALL", "LC_CTYPE", "LANG"):
+        if environ.get(key):
+            name = environ[key].lower().replace("-", "")
+            return "utf8" in name
+    return False
+
+
+def _few_colours(environ: Mapping[str, str]) -> bool:
+    term = environ.get("TERM", "")
+    if environ.get("COLORTERM", "").lower() in ("truecolor", "24bit"):
+        return term == "linux"
+    if any(more in term for more in ("256color", "direct", "kitty", "truecolor")):
+        return False
+    return term.startswith(FEW_COLOURS)

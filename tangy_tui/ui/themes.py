@@ -1,0 +1,115 @@
+"""The colours: a calm dark theme, a light one, and one in the terminal's own sixteen colours.
+
+Widgets draw in inks, named after what is said and not after a colour. No ink tells anything by
+colour alone: beside it there is always a word or a mark.
+"""
+
+from __future__ import annotations
+
+from textual.theme import Theme
+
+INKS = (
+    "text",
+    "dim",  # less important
+    "strong",  # a heading, a number to look at
+    "robot",
+    "person",
+    "good",
+    "warn",
+    "bad",
+    "floor",
+    "table",
+    "curve",
+    "cursor",  # the row that a key would act on
+    "now",  # the row that is in use at this moment
+)
+"""What a widget can draw in; `.ink--*` in tangy.tcss gives each its colour."""
+
+INK_CLASSES = frozenset(f"ink--{name}" for name in INKS)
+
+DARK = Theme(
+    name="tangy-dark",
+    dark=True,
+    primary="#8ab4f8",
+    secondary="#6c8ebf",
+    accent="#ffc46b",
+    warning="#ffd479",
+    error="#ff8a80",
+    success="#8fdc9a",
+    foreground="#e8eaed",
+    background="#11161d",
+    surface="#171d26",
+    panel="#1d2530",
+    variables={
+        "ink-dim": "#9aa5b4",
+        "ink-floor": "#3b4757",
+        "ink-table": "#c8a27a",
+        "ink-person": "#9ecbff",
+        "ink-line": "#4a5768",
+        "ink-now": "#2b3f5c",
+        "ink-cursor": "#24303f",
+        "input-cursor-background": "#ffc46b",
+        "input-cursor-foreground": "#11161d",
+    },
+)
+
+LIGHT = Theme(
+    name="tangy-light",
+    dark=False,
+    primary="#0b57b0",
+    secondary="#3a6ea5",
+    accent="#8a4b00",
+    warning="#7a5200",
+    error="#a8201a",
+    success="#1a6b2f",
+    foreground="#1b1f24",
+    background="#fbfaf7",
+    surface="#f3f1ec",
+    panel="#e9e6df",
+    variables={
+        "ink-dim": "#545d68",
+        "ink-floor": "#c9c4b8",
+        "ink-table": "#7b5327",
+        "ink-person": "#0b4a94",
+        "ink-line": "#9b9587",
+        "ink-now": "#cfe0f7",
+        "ink-cursor": "#e2ded4",
+        "input-cursor-background": "#8a4b00",
+        "input-cursor-foreground": "#fbfaf7",
+    },
+)
+
+ANSI = Theme(
+    name="tangy-ansi",
+    dark=True,
+    ansi=True,
+    primary="ansi_blue",
+    secondary="ansi_cyan",
+    accent="ansi_yellow",
+    warning="ansi_yellow",
+    error="ansi_red",
+    success="ansi_green",
+    foreground="ansi_default",
+    background="ansi_default",
+    surface="ansi_default",
+    panel="ansi_default",
+    boost="ansi_default",
+    variables={
+        "ink-dim": "ansi_default",
+        "ink-floor": "ansi_default",
+        "ink-table": "ansi_yellow",
+        "ink-person": "ansi_cyan",
+        "ink-line": "ansi_default",
+        "ink-now": "ansi_default",
+        "ink-cursor": "ansi_default",
+        "input-cursor-background": "ansi_default",
+        "input-cursor-foreground": "ansi_default",
+        "border": "ansi_yellow",
+        "border-blurred": "ansi_default",
+    },
+)
+
+THEMES = (DARK, LIGHT, ANSI)
+
+INK_DEFAULTS = DARK.variables
+"""What the inks are in a theme that does not name them (Textual's own, from the palette)."""

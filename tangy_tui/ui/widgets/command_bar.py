@@ -1,0 +1,303 @@
+"""The command bar: one line to type a command in, with completion and history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+from textual.screen import Screen
+from textual.strip import Strip
+from textual.suggester import Suggester
+from textual.timer import Timer
+from textual.widget import Widget
+from textual.widgets import Input, Static
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Span, draw
+
+Complete = Callable[[str], tuple[str, ...]]
+"""Gives the commands that begin with (or are meant by) what was typed, likeliest first."""
+
+CLOSED_SECONDS = 2.0
+"""How long the bar stays closed after a command if nobody says what became of it."""
+
+MOST_HISTORY = 200
+LONGEST = 200
+
+
+class _Ghost(Suggester):
+    """Shows the first match that goes on from what was typed."""
+
+    def __init__(self, complete: Complete) -> None:
+        super().__init__(use_cache=False, case_sensitive=True)
+        self._complete = complete
+
+    async def get_suggestion(self, value: str) -> str | None:
+        matches = self._complete(value) if value.strip() else ()
+        return next((value + m[len(value) :] for m in matches if _goes_on(value, m)), None)
+
+
+def _goes_on(value: str, match: str) -> bool:
+    return len(match) > len(value) and match.lower().startswith(value.lower())
+
+
+class Matches(Widget):
+    """One line with the commands that fit what was typed so far."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    Matches { height: 1; padding: 0 0 0 2; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._matches: tuple[str, ...] = ()
+        self._typed = ""
+
+    def show(self, typed: str, matches: tuple[str, ...]) -> None:
+        """Show these matches; what was typed of them is written strongly."""
+        if (typed, matches) != (self._typed, self._matches):
+            self._typed = typed
+            self._matches = matches
+            self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw the line."""
+        return draw(self, self._row(self.size.width), self.size.width)
+
+    def _row(self, width: int) -> Row:
+        row: list[Span] = []
+        used = 0
+        for n, match in enumerate(self._matches):
+            text = clean(match)
+            left = len(self._matches) - n
+            more = f"  +{left - 1}" if left > 1 else ""
+            gap = "   " if row else ""
+            if used + len(gap) + cell_len(text) + len(more) > width:
+                row.append((f"  +{left}", "dim"))
+                break
+            head = len(self._typed) if _goes_on(self._typed, text) else 0
+            row += [(gap + text[:head], "strong"), (text[head:], "dim")]
+            used += len(gap) + cell_len(text)
+        return tuple(row)
+
+
+class CommandInput(Input):
+    """The line itself. While it is `closed` it swallows what is typed."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("tab", "accept", "Complete the command"),
+        Binding("up", "recall(-1)", "The command before"),
+        Binding("down", "recall(1)", "The command after", show=False),
+        Binding("escape", "leave", "Leave the command bar"),
+    ]
+    HELP = (
+        "Type what Tangy should do, for example: call number. Tab or the right arrow completes "
+        "it, Enter gives it, and Tangy asks before it does anything. Esc leaves the bar, so that "
+        "single letters are keys again."
+    )
+
+    closed = False
+    """Whether a command is being looked at, so that keys have nowhere to go."""
+
+    class Entered(Message):
+        """A command was entered."""
+
+        def __init__(self, text: str) -> None:
+            super().__init__()
+            self.text = text
+
+    def __init__(self, complete: Complete, placeholder: str) -> None:
+        super().__init__(
+            placeholder=placeholder,
+            suggester=_Ghost(complete),
+            select_on_focus=False,
+            max_length=LONGEST,
+            compact=True,
+            id="command-input",
+        )
+        self.cursor_blink = False
+        self.history: list[str] = []
+        self._at = 0
+        self._draft = ""
+
+    async def _on_key(self, event: events.Key) -> None:
+        """Handle each key before the next one.
+
+        Textual lets Enter and the arrows travel up to the app and back while the letters behind
+        them are inserted already; keys that arrive in one piece would change places.
+        """
+        bindings = self._bindings.key_to_bindings.get(event.key, [])
+        asks_for_help = event.key == "question_mark" and not self.value
+        if self.closed or bindings or asks_for_help:
+            event.stop()
+            event.prevent_default()
+        if self.closed:
+            return
+        if asks_for_help:
+            await self.run_action("app.help")
+        elif bindings:
+            await self.run_action(bindings[0].action)
+        else:
+            await super()._on_key(event)
+
+    def _on_paste(self, event: events.Paste) -> None:
+        if not self.closed and event.text.strip():
+            self.insert_text_at_cursor(clean(event.text.strip().splitlines()[0])[:LONGEST])
+        event.prevent_default()
+        event.stop()
+
+    def remember(self, text: str) -> None:
+        """Add a command to the history."""
+        if not self.history or self.history[-1] != text:
+            self.history.append(text)
+            del self.history[:-MOST_HISTORY]
+        self._at = len(self.history)
+
+    def put(self, text: str) -> None:
+        """Replace what stands in the line, the cursor at its end."""
+        self.value = text
+        self.cursor_position = len(text)
+
+    async def action_submit(self) -> None:
+        """Enter the command, and close at once."""
+        text = self.value.strip()
+        if text:
+            self.closed = True
+            self.remember(text)
+            self.clear()
+            self.post_message(self.Entered(text))
+
+    def action_accept(self) -> None:
+        """Take the suggestion, or go to the next widget if there is none."""
+        if self._suggestion:
+            self.put(self._suggestion)
+        else:
+            self.screen.focus_next()
+
+    def action_recall(self, by: int) -> None:
+        """Bring back a command from the history; after the last one, what was being typed."""
+        if not self.history:
+            return
+        if self._at >= len(self.history):
+            self._draft = self.value
+            self._at = len(self.history)
+        self._at = min(len(self.history), max(0, self._at + by))
+        self.put(self._draft if self._at == len(self.history) else self.history[self._at])
+
+    def action_leave(self) -> None:
+        """Give the keys back to the screen."""
+        self.screen.set_focus(None)
+
+
+class CommandBar(Vertical):
+    """A line of matches and a line to type in: two lines high.
+
+    `Given` carries a command. From that moment the bar is closed and swallows keys, so that what
+    is typed ahead neither answers a question that is about to come nor lands in the next command.
+    It opens again when the screen says what became of the command: `ready()` (done, or refused in
+    words elsewhere) or `restore(text)` (not understood, or answered with no), when a dialog above
+    it has closed, or by itself after two seconds.
+    """
+
+    DEFAULT_CSS = """
+    CommandBar { height: 2; }
+    CommandBar > Horizontal { height: 1; }
+    CommandBar .prompt { width: 2; color: $accent; text-style: bold; }
+    CommandBar Input.-textual-compact {
+        width: 1fr; height: 1; padding: 0; border: none !important;
+        background: $background; background-tint: $background 0%;
+    }
+    CommandBar Input.-textual-compact:focus { background-tint: $background 0%; }
+    """
+
+    class Given(Message):
+        """A command was given. `text` is what was typed, without spaces around it."""
+
+        def __init__(self, bar: CommandBar, text: str) -> None:
+            super().__init__()
+            self.bar = bar
+            self.text = text
+
+        @property
+        def control(self) -> CommandBar:
+            """The bar it was given in."""
+            return self.bar
+
+    def __init__(
+        self,
+        complete: Complete = lambda prefix: (),
+        *,
+        placeholder: str = "type a command, or ? for help",
+        id: str | None = "command",
+    ) -> None:
+        super().__init__(id=id)
+        self._complete = complete
+        self._matches = Matches()
+        self._input = CommandInput(complete, placeholder)
+        self._prompt = Static("> ", classes="prompt", markup=False)
+        self._reopen: Timer | None = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the matches above the line."""
+        yield self._matches
+        with Horizontal():
+            yield self._prompt
+            yield self._input
+
+    @property
+    def text(self) -> str:
+        """What stands in the bar."""
+        return self._input.value
+
+    @property
+    def closed(self) -> bool:
+        """Whether it swallows keys because a command is being looked at."""
+        return self._input.closed
+
+    def focus_input(self) -> None:
+        """Give the keys to the bar."""
+        self._input.focus()
+
+    def restore(self, text: str) -> None:
+        """Put a text back to be changed, and open the bar."""
+        self._input.put(clean(text)[:LONGEST])
+        self.ready()
+        self._input.focus()
+
+    def ready(self) -> None:
+        """Open the bar for the next command."""
+        if self._reopen is not None:
+            self._reopen.stop()
+            self._reopen = None
+        if self._input.closed:
+            self._input.closed = False
+            self._prompt.update("> ")
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Show what fits."""
+        event.stop()
+        typed = event.value
+        self._matches.show(typed, self._complete(typed) if typed.strip() else ())
+
+    def on_command_input_entered(self, event: CommandInput.Entered) -> None:
+        """Give the command."""
+        event.stop()
+        self._prompt.update("· ")
+        self._reopen = self.set_timer(CLOSED_SECONDS, self.ready)
+        self.post_message(self.Given(self, event.text))
+
+    def on_mount(self) -> None:
+        """Watch for dialogs that close."""
+        self.app.screen_change_signal.subscribe(self, self._screen_changed)
+
+    def _screen_changed(self, screen: Screen[object]) -> None:
+        if screen is self.screen:
+            self.ready()

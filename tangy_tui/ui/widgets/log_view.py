@@ -1,0 +1,78 @@
+"""What happened, in sentences: the newest at the end, bounded, following the end."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import ClassVar, Literal
+
+from textual import events
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Rows
+from tangy_tui.ui.widgets.wrapping import wrap
+
+Kind = Literal["text", "dim", "good", "warn", "bad"]
+
+MARKS: dict[str, str] = {"text": "  ", "dim": "  ", "good": "✓ ", "warn": "! ", "bad": "✗ "}
+"""What stands before a sentence, so that no kind is told by colour alone."""
+
+
+class LogView(ScrollView, can_focus=True):
+    """Sentences with a mark before them, wrapped to the width."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    LogView { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    """
+    HELP = "What happened and what Tangy said, the newest at the end. Up and down scroll."
+
+    def __init__(
+        self, *, most: int = 500, id: str | None = "log", classes: str | None = None
+    ) -> None:
+        super().__init__(id=id, classes=classes)
+        self.border_title = "Log"
+        self._lines: deque[tuple[str, Kind]] = deque(maxlen=most)
+        self._rows = Rows(self)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What stands in the log."""
+        return tuple(text for text, _ in self._lines)
+
+    def write(self, sentence: str, kind: Kind = "text") -> None:
+        """Add a sentence; the view follows unless it was scrolled back."""
+        follow = self.is_vertical_scroll_end
+        self._lines.append((clean(sentence), kind))
+        self._show(follow)
+
+    def clear(self) -> None:
+        """Empty the log."""
+        self._lines.clear()
+        self._show(True)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Wrap anew."""
+        self._show(self.is_vertical_scroll_end)
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _show(self, follow: bool) -> None:
+        if not self.is_attached or self._rows.width <= 4:
+            return
+        rows: list[Row] = []
+        for text, kind in self._lines:
+            for n, line in enumerate(wrap(text, self._rows.width - 2)):
+                rows.append(((MARKS[kind] if n == 0 else "  ", kind), (line, kind)))
+        self._rows.put(rows)
+        if follow:
+            self._rows.show(len(rows) - 1)

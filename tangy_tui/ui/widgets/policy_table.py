@@ -1,0 +1,218 @@
+"""The learnt policy as a table (Table II): in which situation Tangy does what, and how surely."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit
+
+UNSURE = 0.7
+"""A share of the votes below this one is written as a warning."""
+
+EIGHTHS = " ▏▎▍▌▋▊▉█"
+
+
+@dataclass(frozen=True, slots=True)
+class PolicyRow:
+    """One situation: what is done there, the share of votes (0 to 1), and how often it was seen.
+
+    `note` is a word on it, such as "never shown"; it is written as a warning.
+    """
+
+    situation: str
+    behaviour: str
+    share: float
+    seen: int
+    note: str = ""
+
+
+def bar(share: float, width: int) -> str:
+    """Draw a share as a bar that is full at 1."""
+    eighths = round(min(1.0, max(0.0, share)) * width * 8)
+    full, rest = divmod(eighths, 8)
+    return ("█" * full + (EIGHTHS[rest] if rest else "")).ljust(width)
+
+
+class PolicyTable(ScrollView, can_focus=True):
+    """Rows of situation and behaviour; up and down choose one, Enter tells of it.
+
+    `highlight` marks the row that is in use at the moment. The first line of the table is its
+    heading and is part of what is scrolled.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    PolicyTable { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "choose(-1)", "Previous row", show=False),
+        Binding("down,j", "choose(1)", "Next row", show=False),
+        Binding("pageup", "choose(-10)", "Ten rows back", show=False),
+        Binding("pagedown", "choose(10)", "Ten rows on", show=False),
+        Binding("home", "choose(-1000000)", "First row", show=False),
+        Binding("end", "choose(1000000)", "Last row", show=False),
+        Binding("enter", "tell", "Tell of the row", show=False),
+    ]
+    HELP = (
+        "What Tangy has learnt: in which situation it does what, the share of the votes for it, "
+        "and how often the situation was shown to it."
+    )
+
+    class Chosen(Message):
+        """A row was chosen with Enter."""
+
+        def __init__(self, table: PolicyTable, index: int, row: PolicyRow) -> None:
+            super().__init__()
+            self.table = table
+            self.index = index
+            self.row = row
+
+        @property
+        def control(self) -> PolicyTable:
+            """The table it was chosen in."""
+            return self.table
+
+    def __init__(
+        self,
+        *,
+        empty: str = "Nothing learnt yet.",
+        id: str | None = "policy",
+        classes: str | None = None,
+    ) -> None:
+        super().__init__(id=id, classes=classes)
+        self.border_title = "Policy"
+        self._table: tuple[PolicyRow, ...] = ()
+        self._empty = clean(empty)
+        self._now: int | None = None
+        self._chosen: int | None = None
+        self._rows = Rows(self)
+
+    @property
+    def rows(self) -> tuple[PolicyRow, ...]:
+        """What is shown."""
+        return self._table
+
+    @property
+    def chosen(self) -> int | None:
+        """The row that the cursor is on."""
+        return self._chosen
+
+    def show(self, rows: Sequence[PolicyRow], highlight: str | None = None) -> None:
+        """Show these rows; `highlight` names the situation that is in use."""
+        self._table = tuple(rows)
+        self._chosen = None
+        self._now = self._index(highlight)
+        self._show()
+
+    def highlight(self, situation: str | None) -> None:
+        """Mark the row that is in use; None marks none."""
+        self._now = self._index(situation)
+        self._mark()
+
+    def action_choose(self, by: int) -> None:
+        """Move the cursor."""
+        if self._table:
+            at = (-1 if by > 0 else len(self._table)) if self._chosen is None else self._chosen
+            self._chosen = min(len(self._table) - 1, max(0, at + by))
+            self._mark()
+
+    def action_tell(self) -> None:
+        """Post `Chosen` for the row under the cursor."""
+        if self._chosen is not None:
+            self.post_message(self.Chosen(self, self._chosen, self._table[self._chosen]))
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out anew."""
+        self._show()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _index(self, situation: str | None) -> int | None:
+        return next((n for n, r in enumerate(self._table) if r.situation == situation), None)
+
+    def _show(self) -> None:
+        if not self.is_attached or self._rows.width <= 0:
+            return
+        if self._table:
+            self._rows.put(self._lines(self._rows.width))
+        else:
+            self._rows.put([((self._empty, "dim"),)])
+        self._mark()
+
+    def _lines(self, width: int) -> list[Row]:
+        table = [
+            (clean(r.situation), clean(r.behaviour), r.share, r.seen, clean(r.note))
+            for r in self._table
+        ]
+        situation = max(cell_len(s) for s, *_ in table)
+        behaviour = max(cell_len(b) for _, b, *_ in table)
+        bar_width = 10 if width >= 70 else 5 if width >= 52 else 0
+        notes = max(cell_len(note) for *_, note in table)
+        fixed = 2 + bar_width + 5 + 6
+        left = width - fixed - behaviour - 2
+        notes = min(notes, max(0, left - situation - 2))
+        situation = min(situation, max(8, left - (notes + 2 if notes else 0)))
+        behaviour = min(behaviour, max(6, width - fixed - situation - 2))
+        heading: Row = (
+            (fit("  situation", situation + 2), "dim"),
+            (fit("  behaviour", behaviour + 2), "dim"),
+            (fit(" votes", bar_width + 5), "dim"),
+            ("  seen", "dim"),
+        )
+        return [
+            heading,
+            *(self._row(r, situation, behaviour, bar_width, notes) for r in table),
+        ]
+
+    def _row(
+        self,
+        row: tuple[str, str, float, int, str],
+        situation: int,
+        behaviour: int,
+        bar_width: int,
+        notes: int,
+    ) -> Row:
+        where, does, share, seen, note = row
+        sure = share >= UNSURE and seen > 0
+        spans: list[Span] = [
+            ("  ", "text"),
+            (fit(where, situation), "text"),
+            ("  ", "text"),
+            (fit(does, behaviour), "strong"),
+            (" ", "text"),
+            (bar(share, bar_width), "curve" if sure else "warn"),
+            (f" {'1.0' if share >= 0.995 else f'{share:.2f}'[1:]:>3}", "text" if sure else "warn"),
+            (f"{seen:>6}", "text" if seen else "warn"),
+        ]
+        if notes:
+            spans += [("  ", "text"), (fit(note, notes), "warn")]
+        return tuple(spans)
+
+    def _mark(self) -> None:
+        marks: dict[int, str] = {}
+        if self._chosen is not None:
+            marks[self._chosen + 1] = "cursor"
+        if self._now is not None:
+            marks[self._now + 1] = "now"
+        self._rows.mark(marks)
+        seen = self._chosen if self._chosen is not None else self._now
+        if seen is not None:
+            self._rows.show(0 if seen == 0 else seen + 1)

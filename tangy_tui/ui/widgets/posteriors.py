@@ -1,0 +1,161 @@
+"""What is believed of each person (Eq. 1): a small curve for every persuasive strategy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual import events
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_profiles.beliefs import Beliefs, Beta, probability_best
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit
+
+BLOCKS = " ▁▂▃▄▅▆▇█"
+LOWEST_PEAK = 3.0
+"""A density up to this one is drawn to the same scale, so that an unknown belief lies flat."""
+
+WIDE = 44
+"""From this width each strategy has a line; below it, each person has one."""
+
+LONGEST_CURVE = 24
+
+
+def curve(belief: Beta, width: int) -> str:
+    """Draw the density from 0 (left) to 1 (right) in so many characters."""
+    density = belief.density(width)
+    peak = max(LOWEST_PEAK, *density)
+    levels = len(BLOCKS) - 1
+    return "".join(BLOCKS[round(value / peak * levels)] for value in density)
+
+
+class Posteriors(ScrollView, can_focus=True):
+    """For each person and strategy: curve, times complied of times asked, mean and P(best).
+
+    The strategy that is most probably the best has a mark. Only lines that changed are drawn.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    Posteriors { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    """
+    HELP = (
+        "What Tangy believes of each person: how probable it is that they do what they are asked "
+        "for, with each way of asking. The curve runs from 0 (left) to 1 (right); 7/9 means done "
+        "7 times of 9; then the mean, and the probability that this way is the best of all."
+    )
+
+    def __init__(self, *, id: str | None = "posteriors", classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self.border_title = "Posteriors"
+        self._beliefs: dict[str, Beliefs] = {}
+        self._names: Mapping[str, str] = {}
+        self._highlight: tuple[str, str] | None = None
+        self._best: dict[str, dict[str, float]] = {}
+        self._rows = Rows(self)
+
+    def show(
+        self,
+        beliefs: Mapping[str, Beliefs],
+        names: Mapping[str, str],
+        highlight: tuple[str, str] | None = None,
+    ) -> None:
+        """Show what is believed; `highlight` marks the person and strategy in use."""
+        for person, profile in beliefs.items():
+            if self._beliefs.get(person) != profile:
+                self._best[person] = probability_best(profile)
+        self._beliefs = {person: dict(profile) for person, profile in beliefs.items()}
+        self._names = dict(names)
+        self._highlight = highlight
+        self._show()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out anew."""
+        self._show()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _show(self) -> None:
+        width = self._rows.width
+        if not self.is_attached or width <= 0:
+            return
+        rows: list[Row] = []
+        marks: dict[int, str] = {}
+        for person, profile in self._beliefs.items():
+            name = clean(self._names.get(person, person))
+            if width < WIDE:
+                if self._highlight is not None and self._highlight[0] == person:
+                    marks[len(rows)] = "now"
+                rows.append(self._compact(person, name, profile, width))
+                continue
+            rows.append(((fit(name, width), "person"),))
+            for strategy, belief in profile.items():
+                if self._highlight == (person, strategy):
+                    marks[len(rows)] = "now"
+                rows.append(self._line(person, strategy, belief, width))
+        self._rows.put(rows or [(("Nothing is known of anybody yet.", "dim"),)], marks)
+        if marks:
+            self._rows.show(min(marks))
+
+    def _line(self, person: str, strategy: str, belief: Beta, width: int) -> Row:
+        """One strategy: name, curve, counts, mean, P(best)."""
+        best = self._best[person]
+        leads = best[strategy] == max(best.values()) and belief.trials > 0
+        label = min(12, max(cell_len(s) for s in self._beliefs[person]))
+        tail: tuple[Span, ...] = (
+            (f" {_counts(belief):>7}", "text"),
+            (f"  {_share(belief.mean)}", "strong"),
+            (f"  best {_share(best[strategy])}", "good" if leads else "dim"),
+            (" ★" if leads else "  ", "good"),
+        )
+        used = 3 + label + sum(cell_len(text) for text, _ in tail)
+        points = min(LONGEST_CURVE, max(6, width - used))
+        return (
+            ("  ", "text"),
+            (fit(clean(strategy), label), "text"),
+            (" ", "text"),
+            (curve(belief, points), "curve"),
+            *tail,
+        )
+
+    def _compact(self, person: str, name: str, profile: Beliefs, width: int) -> Row:
+        """One person: the strategy in use or the best one, with its curve and mean."""
+        best = self._best[person]
+        strategy = max(best, key=lambda s: best[s])
+        if self._highlight is not None and self._highlight[0] == person:
+            strategy = self._highlight[1]
+        belief = profile[strategy]
+        leads = best[strategy] == max(best.values()) and belief.trials > 0
+        label = min(10, max(cell_len(s) for s in profile))
+        tail = f" {_counts(belief)} {_share(belief.mean)}"
+        mark = "★" if leads else " "
+        room = width - label - cell_len(tail) - 3
+        points = min(10, max(0, room - 6))
+        return (
+            (fit(name, max(4, min(10, room - points))), "person"),
+            (" ", "text"),
+            (fit(clean(strategy), label), "text"),
+            (mark, "good"),
+            (curve(belief, points) if points >= 4 else "", "curve"),
+            (tail, "strong"),
+        )
+
+
+def _counts(belief: Beta) -> str:
+    return f"{round(belief.alpha - 1)}/{belief.trials}"
+
+
+def _share(value: float) -> str:
+    """Write a share in three characters, as papers do: .87, and 1.0 when it is as good as sure."""
+    return "1.0" if value >= 0.995 else f".{round(value * 100):02d}"

@@ -1,0 +1,156 @@
+"""Where things are drawn in a room of so many characters: rows, columns, and what gets left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from rich.cells import cell_len
+
+from tangy_profiles.room import Point, Room
+from tangy_tui.ui.widgets.rows import Row, Span
+
+SPRITE_WIDTH = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The rows of a room view; a height of 0 means that there was no room for it.
+
+    From the top: wall, board (numbers called), speech, floor, table, head and name and doings of
+    the people.
+    """
+
+    width: int
+    height: int
+    board: int
+    speech: int
+    floor: int
+    table: int
+    doing: int
+
+    @property
+    def board_row(self) -> int:
+        """The first row under the wall."""
+        return 1
+
+    @property
+    def speech_row(self) -> int:
+        """Where speech begins."""
+        return 1 + self.board
+
+    @property
+    def floor_row(self) -> int:
+        """Where the floor begins."""
+        return 1 + self.board + self.speech
+
+    @property
+    def table_row(self) -> int:
+        """Where the table begins."""
+        return self.floor_row + self.floor
+
+    @property
+    def head_row(self) -> int:
+        """Where the people begin: heads and request marks, then names, then what they do."""
+        return self.table_row + self.table
+
+    @property
+    def sprite(self) -> int:
+        """How many rows the robot has."""
+        return 2 if self.floor >= 4 else 1
+
+
+def plan(width: int, height: int) -> Plan:
+    """Give the rows out: what a teacher must see first, then comfort, then floor to drive on."""
+    rows = {"board": 0, "speech": 0, "floor": 2, "table": 1, "doing": 1}
+    spare = height - 3 - sum(rows.values())  # the wall, heads and names
+    for part, wanted in (
+        ("floor", 3),
+        ("speech", 1),
+        ("floor", 4),
+        ("doing", 2),
+        ("board", 1),
+        ("floor", 5),
+        ("speech", 2),
+        ("table", 3),
+    ):
+        step = wanted - rows[part]
+        if 0 < step <= spare:
+            rows[part] += step
+            spare -= step
+    rows["floor"] += max(0, spare)
+    return Plan(width, height, **rows)
+
+
+class Grid:
+    """Turns metres into columns and rows: zoomed to the table, a slot for each person."""
+
+    def __init__(self, room: Room, people: int, plan: Plan) -> None:
+        seats = [seat.x for seat in room.seated(people)]
+        gaps = [b - a for a, b in pairwise(seats)]
+        left, near, right, _ = room.table
+        margin = min(gaps) / 2 if gaps else (right - left) / 2
+        self._from = seats[0] - margin
+        self._scale = plan.width / max(0.1, seats[-1] + margin - self._from)
+        self._top = room.front.y
+        self._depth = max(0.1, near - room.reach - room.front.y)
+        self._plan = plan
+        self.centres = [self.column(x) for x in seats]
+        middles = [(a + b) // 2 for a, b in pairwise(self.centres)]
+        self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
+        self.table = (self.column(left), self.column(right))
+
+    def column(self, x: float) -> int:
+        """Return the column of a place."""
+        return min(self._plan.width - 1, max(0, int((x - self._from) * self._scale)))
+
+    def sprite(self, point: Point) -> tuple[int, int]:
+        """Return column and row of the left upper corner of the robot at a place."""
+        plan = self._plan
+        share = min(1.0, max(0.0, (point.y - self._top) / self._depth))
+        row = plan.floor_row + round(share * (plan.floor - plan.sprite))
+        column = self.column(point.x) - SPRITE_WIDTH // 2
+        return min(plan.width - SPRITE_WIDTH, max(0, column)), row
+
+
+class Line:
+    """One line of cells to place pieces of text on, later ones over earlier ones."""
+
+    def __init__(self, width: int) -> None:
+        self._cells = [" "] * width
+        self._inks = ["text"] * width
+
+    def put(self, column: int, text: str, ink: str) -> None:
+        """Place text from a column on; what lies outside the line is cut."""
+        for character in text:
+            cells = cell_len(character)
+            if cells and column >= 0 and column + cells <= len(self._cells):
+                self._cells[column] = character
+                self._inks[column] = ink
+                if cells == 2:
+                    self._cells[column + 1] = ""
+                    self._inks[column + 1] = ink
+            elif not cells and 0 < column <= len(self._cells):
+                self._cells[column - 1] += character
+            column += cells
+
+    def copy(self) -> Line:
+        """Return the same line, to place more on."""
+        line = Line(0)
+        line._cells = self._cells[:]
+        line._inks = self._inks[:]
+        return line
+
+    def centre(self, start: int, end: int, text: str, ink: str) -> None:
+        """Place text in the middle between two columns."""
+        self.put(start + max(0, (end - start - cell_len(text)) // 2), text, ink)
+
+    def row(self) -> Row:
+        """Return the line in as few pieces as it has inks."""
+        spans: list[Span] = []
+        for cell, ink in zip(self._cells, self._inks, strict=True):
+            if spans and (spans[-1][1] == ink):
+                spans[-1] = (spans[-1][0] + cell, ink)
+            else:
+                spans.append((cell, ink))
+        return tuple(spans)

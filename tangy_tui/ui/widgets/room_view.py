@@ -1,0 +1,364 @@
+"""The room as a grid of characters: robot, front, table, and what each person is doing.
+
+It draws by the line and puts on the terminal only the cells that changed: over a slow link, a
+robot that walks at ten frames a second costs some hundred bytes a frame, and one that stands none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+from textual import events
+from textual.geometry import Region
+from textual.message import Message
+from textual.strip import Strip
+from textual.timer import Timer
+from textual.widget import Widget
+
+from tangy_profiles.person import Person
+from tangy_profiles.room import Point, Room
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import FRONT
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fresh_keys import Clock
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
+from tangy_tui.ui.widgets.rows import draw, shorten
+from tangy_tui.ui.widgets.wrapping import wrap
+
+FRAME_SECONDS = 0.1
+FLOOR_DOTS = 8  # columns from one dot to the next
+
+EMPTY = Scene(FRONT, (), {}, (), None)
+
+
+class RoomView(Widget):
+    """Robot and people in the activity room, seen from behind the people's backs.
+
+    `show` draws a scene at once; `drive` lets the robot walk to where it is going.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    RoomView { width: 1fr; height: 1fr; min-height: 7; }
+    """
+    HELP = (
+        "The room: Tangy and the front above, the people at the table below. ?1 marks who asks "
+        "for help and whose turn it is; under each name stands what that person is doing."
+    )
+
+    class Arrived(Message):
+        """The robot has arrived at a place: the front, or a person's id."""
+
+        def __init__(self, room: RoomView, place: str) -> None:
+            super().__init__()
+            self.room = room
+            self.place = place
+
+        @property
+        def control(self) -> RoomView:
+            """The room it arrived in."""
+            return self.room
+
+    def __init__(
+        self,
+        room: Room,
+        people: Sequence[Person],
+        *,
+        robot: str = "Tangy",
+        label: Callable[[int], str] = str,
+        clock: Clock | None = None,
+        id: str | None = "room",
+        classes: str | None = None,
+    ) -> None:
+        """Make the view.
+
+        Args:
+            room: size, front, table and seats, in metres.
+            people: who sits where, in the order of the seats.
+            robot: the name on the robot.
+            label: writes a called number (`activity.deck.label`).
+            clock: seconds (default: the app's).
+        """
+        super().__init__(id=id, classes=classes)
+        self.border_title = "Room"
+        self.pace = 1.0
+        """How many times faster than told the robot walks."""
+        self._room = room
+        self._people = tuple(people)
+        self._ids = tuple(person.id for person in people)
+        self._robot = clean(robot)[:SPRITE_WIDTH]
+        self._label = label
+        self._clock_given = clock
+        self._scene = EMPTY
+        self._speech = ""
+        self._at = room.stand(FRONT, self._ids)
+        self._seen = self._at
+        self._from = self._at
+        self._to = self._at
+        self._going: str | None = None
+        self._share = 0.0
+        self._seconds = 0.0
+        self._last = 0.0
+        self._heading = ""
+        self._timer: Timer | None = None
+        self._plan: Plan = plan(1, 1)
+        self._grid: Grid | None = None
+        self._base: list[Line] = []
+        self._strips: dict[int, Strip] = {}
+        self._sprite_at = (0, 0)
+
+    @property
+    def scene(self) -> Scene:
+        """What is shown."""
+        return self._scene
+
+    @property
+    def going(self) -> str | None:
+        """The place that the robot is walking to, or None while it stands."""
+        return self._going
+
+    @property
+    def place_of_robot(self) -> Point:
+        """Where the robot is seen at this moment, in metres."""
+        return self._seen
+
+    def show(self, scene: Scene) -> None:
+        """Draw a scene. A robot that is walking to the scene's place goes on walking."""
+        self._scene = scene
+        if self._going != scene.place:
+            self._halt()
+            self._at = self._stand(scene.place)
+        self._draw_again()
+
+    def put(self, place: str) -> None:
+        """Put the robot in a place at once, without walking."""
+        self._halt()
+        self._at = self._stand(place)
+        self._draw_again()
+
+    def say(self, speech: str) -> None:
+        """Show what the robot says; nothing if empty."""
+        self._speech = clean(speech)
+        self._draw_again()
+
+    def drive(self, to: str, seconds: float) -> None:
+        """Let the robot walk to the front or to a person; posts `Arrived` when it is there.
+
+        It walks from where it is seen, so it does not matter whether the scene that has it at
+        the end of its way is shown before or after.
+        """
+        self._from = self._at = self._seen
+        self._to = self._stand(to)
+        self._going = to
+        self._share = 0.0
+        self._seconds = seconds
+        self._last = self._clock()
+        if seconds <= 0 or not self.is_attached:
+            self._arrive()
+            return
+        self._turn()
+        self._move_sprite(turned=True)
+        if self._timer is None:
+            self._timer = self.set_interval(FRAME_SECONDS, self.tick)
+
+    def skip(self) -> None:
+        """Let the robot be where it is going."""
+        if self._going is not None:
+            self._arrive()
+
+    def tick(self) -> None:
+        """Draw the next frame of a walk."""
+        if self._going is None:
+            return
+        now = self._clock()
+        self._share += (now - self._last) * self.pace / self._seconds
+        self._last = now
+        if self._share >= 1:
+            self._arrive()
+        else:
+            self._at = self._from.towards(self._to, self._share)
+            self._move_sprite()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay everything out anew."""
+        self._plan = plan(max(SPRITE_WIDTH, self.size.width), max(1, self.size.height))
+        self._grid = Grid(self._room, max(1, len(self._people)), self._plan)
+        self._turn()
+        self._draw_again()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._strips.clear()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line, or take it as it was drawn."""
+        self._seen = self._at
+        if y not in self._strips:
+            self._strips[y] = draw(self, self._row(y).row(), self.size.width)
+        return self._strips[y]
+
+    def _clock(self) -> float:
+        clock: Clock = self._clock_given or self.app.clock  # type: ignore[attr-defined]
+        return clock()
+
+    def _stand(self, place: str) -> Point:
+        known = place == FRONT or place in self._ids
+        return self._room.stand(place if known else FRONT, self._ids)
+
+    def _halt(self) -> None:
+        self._going = None
+        self._heading = ""
+        if self._timer is not None:
+            self._timer.stop()
+            self._timer = None
+
+    def _arrive(self) -> None:
+        place = self._going
+        self._halt()
+        self._at = self._to
+        self._move_sprite(turned=True)
+        if place is not None:
+            self.post_message(self.Arrived(self, place))
+
+    def _turn(self) -> None:
+        """Find the direction of travel as it is seen."""
+        if self._going is None or self._grid is None:
+            self._heading = ""
+            return
+        (x1, y1), (x2, y2) = self._grid.sprite(self._from), self._grid.sprite(self._to)
+        if abs(x2 - x1) >= 2 * abs(y2 - y1):
+            self._heading = "▸" if x2 > x1 else "◂" if x2 < x1 else ""
+        else:
+            self._heading = "▾" if y2 > y1 else "▴"
+
+    def _move_sprite(self, *, turned: bool = False) -> None:
+        """Put on the screen the cells that the robot left and those that it came to."""
+        if self._grid is None:
+            return
+        old, new = self._sprite_at, self._grid.sprite(self._at)
+        if old == new and not turned:
+            return
+        self._sprite_at = new
+        rows: dict[int, tuple[int, int]] = {}
+        for x, y in (old, new):
+            for row in range(y, y + self._plan.sprite):
+                left, right = rows.get(row, (x, x))
+                rows[row] = (min(left, x), max(right, x))
+        regions: list[Region] = []
+        for row, (left, right) in rows.items():
+            self._strips.pop(row, None)
+            regions.append(Region(left, row, right - left + SPRITE_WIDTH, 1))
+        self.refresh(*regions)
+
+    def _draw_again(self) -> None:
+        """Lay out the scene, and put on the screen the lines that are not as they were."""
+        if self._grid is None:
+            return
+        self._sprite_at = self._grid.sprite(self._at)
+        self._base = self._lines(self._grid)
+        width = self.size.width
+        changed: list[Region] = []
+        for y in range(self._plan.height):
+            strip = draw(self, self._row(y).row(), width)
+            if self._strips.get(y) != strip:
+                self._strips[y] = strip
+                changed.append(Region(0, y, width, 1))
+        if changed:
+            self.refresh(*changed)
+
+    def _row(self, y: int) -> Line:
+        """Return a line of the scene with the robot on it."""
+        if y >= len(self._base):
+            return Line(self._plan.width)
+        line = self._base[y]
+        x, top = self._sprite_at
+        if not top <= y < top + self._plan.sprite:
+            return line
+        line = line.copy()
+        if y == top:
+            left = self._heading if self._heading == "◂" else " "
+            right = self._heading if self._heading and self._heading != "◂" else " "
+            line.put(x, f"{left}[• •]{right}", "robot")
+        else:
+            line.put(x, self._robot.center(SPRITE_WIDTH), "robot")
+        return line
+
+    def _lines(self, grid: Grid) -> list[Line]:
+        """Lay out everything but the robot."""
+        plan, scene = self._plan, self._scene
+        lines = [Line(plan.width) for _ in range(plan.height + 12)]
+        self._draw_wall(lines, grid)
+        for n, text in enumerate(self._speech_lines()):
+            lines[plan.speech_row + n].centre(0, plan.width, text, "text")
+        for y in range(plan.floor_row + 1, plan.table_row, 2):
+            for x in range(FLOOR_DOTS // 2, plan.width, FLOOR_DOTS):
+                lines[y].put(x, "·", "floor")
+        self._draw_table(lines, grid)
+        for n, (start, end) in enumerate(grid.slots[: len(self._people)]):
+            self._draw_person(lines, self._people[n], scene, start, end)
+        return lines[: plan.height]
+
+    def _draw_wall(self, lines: list[Line], grid: Grid) -> None:
+        plan = self._plan
+        lines[0].put(0, "━" * plan.width, "floor")
+        front = grid.column(self._room.front.x)
+        lines[0].put(max(0, front - 3), " Front ", "dim")
+        called = self._scene.called
+        if not called:
+            return
+        head, newest = f"{len(called)} called: ", self._label(called[-1])
+        before = "  ".join(self._label(n) for n in reversed(called[-12:-1]))
+        row = plan.board_row if plan.board else 0
+        room = plan.width - 2 if plan.board else plan.width - front - 6
+        text = f" {head}{newest}"
+        rest = shorten(f"  {before}", room - len(text) - 1) if plan.board else ""
+        start = (plan.width - len(text) - len(rest)) // 2 if plan.board else plan.width - len(text)
+        if len(text) <= room:
+            lines[row].put(start, f" {head}", "dim")
+            lines[row].put(start + 1 + len(head), newest, "strong")
+            lines[row].put(start + len(text), rest, "dim")
+
+    def _speech_lines(self) -> list[str]:
+        if not self._speech or not self._plan.speech:
+            return []
+        lines = wrap(f"“{self._speech}”", self._plan.width - 2)
+        if len(lines) > self._plan.speech:
+            lines = lines[: self._plan.speech]
+            lines[-1] = shorten(lines[-1] + " …", self._plan.width - 3) + "”"
+        return lines
+
+    def _draw_table(self, lines: list[Line], grid: Grid) -> None:
+        plan = self._plan
+        left, right = grid.table
+        row, inner = plan.table_row, max(0, right - left - 1)
+        if plan.table == 3:
+            lines[row].put(left, "╭" + "─" * inner + "╮", "table")
+            lines[row + 1].put(left, "│" + " " * inner + "│", "table")
+            lines[row + 2].put(left, "╰" + "─" * inner + "╯", "table")
+        else:
+            lines[row].put(left, "╘" + "═" * inner + "╛", "table")
+        card = self._scene.card
+        for person, centre in zip(self._people, grid.centres, strict=False):
+            read = card is not None and card.person == person.id
+            lines[row + plan.table // 2].put(centre - 1, "[▦]", "robot" if read else "table")
+
+    def _draw_person(
+        self, lines: list[Line], person: Person, scene: Scene, start: int, end: int
+    ) -> None:
+        row, width = self._plan.head_row, end - start - 1
+        asking = person.id in scene.requests
+        if asking:
+            turn = scene.requests.index(person.id) + 1
+            lines[row].centre(start, end, f"●?{turn}", "warn")
+        else:
+            lines[row].centre(start, end, "●", "person")
+        name = shorten(clean(person.name), width)
+        lines[row + 1].centre(start, end, name, "warn" if asking else "person")
+        doing = wrap(clean(scene.doing.get(person.id, "")), width)
+        if len(doing) > self._plan.doing:
+            doing = [*doing[: self._plan.doing - 1], " ".join(doing[self._plan.doing - 1 :])]
+        for n, text in enumerate(doing):
+            lines[row + 2 + n].centre(start, end, shorten(text, width), "dim")

@@ -1,0 +1,146 @@
+"""Lines of text in inks: how the widgets that draw line by line keep, compare and draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.cells import cell_len, set_cell_size
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region, Size
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+from textual.widget import Widget
+
+Span = tuple[str, str]
+"""A piece of text and the ink it is written in."""
+
+Row = tuple[Span, ...]
+"""One line."""
+
+
+def fit(text: str, width: int) -> str:
+    """Return text in exactly so many cells: filled with spaces, or cut with an ellipsis."""
+    if width <= 0:
+        return ""
+    if cell_len(text) <= width:
+        return set_cell_size(text, width)
+    return set_cell_size(text, width - 1).rstrip().ljust(width - 1) + "…" if width > 1 else "…"
+
+
+def shorten(text: str, width: int) -> str:
+    """Return text in at most so many cells, cut with an ellipsis."""
+    if cell_len(text) <= width:
+        return text
+    return set_cell_size(text, width - 1).rstrip() + "…" if width > 0 else ""
+
+
+def ink(widget: Widget, name: str, over: str = "") -> Style:
+    """Return the style of an ink on a widget, on a row that is marked `over` (cursor, now)."""
+    if name == "blank":  # a foreground would be written to the terminal for nothing
+        style = Style(bgcolor=ink(widget, "text").bgcolor)
+    else:
+        style = widget.get_component_rich_style(f"ink--{name}")
+    if over:
+        mark = widget.get_component_rich_style(f"ink--{over}", partial=True)
+        style += Style(
+            bgcolor=mark.bgcolor,
+            bold=mark.bold,
+            reverse=mark.reverse,
+            underline=mark.underline,
+        )
+    return style
+
+
+def draw(widget: Widget, row: Row, width: int, over: str = "") -> Strip:
+    """Draw one line over the whole width of a widget."""
+    segments = [
+        Segment(text, ink(widget, "blank" if text.isspace() else name, over))
+        for text, name in row
+        if text
+    ]
+    return Strip(segments).adjust_cell_length(width, ink(widget, "blank", over))
+
+
+class Rows:
+    """The lines of one scrolled widget; puts on the screen only those that changed."""
+
+    def __init__(self, widget: ScrollView) -> None:
+        self._widget = widget
+        self._rows: list[Row] = []
+        self._marks: dict[int, str] = {}
+        self._strips: dict[int, Strip] = {}
+        self._width = 0
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def width(self) -> int:
+        """The cells that a line has at present."""
+        return self._widget.scrollable_content_region.width
+
+    @property
+    def height(self) -> int:
+        """The lines that are seen at once."""
+        return self._widget.scrollable_content_region.height
+
+    def put(self, rows: Sequence[Row], marks: Mapping[int, str] | None = None) -> None:
+        """Show these lines; `marks` names the ink that lies over a whole line (cursor, now)."""
+        new_marks = dict(marks or {})
+        old = self._rows
+        changed = {
+            y
+            for y in range(max(len(old), len(rows)))
+            if y >= len(old)
+            or y >= len(rows)
+            or old[y] != rows[y]
+            or self._marks.get(y) != new_marks.get(y)
+        }
+        self._rows = list(rows)
+        self._marks = new_marks
+        if len(rows) != len(old):
+            self._widget.virtual_size = Size(0, len(rows))
+        self.redraw(changed)
+
+    def mark(self, marks: Mapping[int, str]) -> None:
+        """Move the marks that lie over whole lines."""
+        changed = {y for y in {*self._marks, *marks} if self._marks.get(y) != marks.get(y)}
+        self._marks = dict(marks)
+        self.redraw(changed)
+
+    def redraw(self, changed: set[int]) -> None:
+        """Draw some lines again, if they are seen."""
+        top = self._widget.scroll_offset.y
+        width = self._widget.size.width
+        regions: list[Region] = []
+        for y in changed:
+            self._strips.pop(y, None)
+            if top <= y < top + self._widget.size.height:
+                regions.append(Region(0, y - top, width, 1))
+        if regions and self._widget.is_attached:
+            self._widget.refresh(*regions)
+
+    def forget(self) -> None:
+        """Forget what was drawn, after the colours changed."""
+        self._strips.clear()
+
+    def strip(self, y: int) -> Strip:
+        """Return what is drawn on line `y` of the widget."""
+        width = self.width
+        if width != self._width:
+            self._strips.clear()
+            self._width = width
+        index = y + self._widget.scroll_offset.y
+        if index not in self._strips:
+            row = self._rows[index] if index < len(self._rows) else ()
+            self._strips[index] = draw(self._widget, row, width, self._marks.get(index, ""))
+        return self._strips[index]
+
+    def show(self, index: int) -> None:
+        """Scroll as little as needed for a line to be seen."""
+        top, height = self._widget.scroll_offset.y, max(1, self.height)
+        if index < top:
+            self._widget.scroll_to(y=index, animate=False)
+        elif index >= top + height:
+            self._widget.scroll_to(y=index - height + 1, animate=False)

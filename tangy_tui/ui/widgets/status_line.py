@@ -1,0 +1,93 @@
+"""The line that is always seen: which part of Tangy, how the robot is, where in the activity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
+
+STOP = "^x STOP"
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What the status line says; empty parts are left out.
+
+    `robot` and STOP are seen at every width; the others go from the right when there is no room.
+    `alarm` writes the robot's part as a warning, with a mark.
+    """
+
+    mode: str = ""
+    robot: str = ""
+    stage: str = ""
+    game: int | None = None
+    step: int | None = None
+    note: str = ""
+    alarm: bool = False
+
+
+class StatusLine(Widget):
+    """One line, at the top of every screen."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    StatusLine { height: 1; dock: top; background: $panel; padding: 0 1; }
+    """
+
+    def __init__(self, status: Status | None = None, *, id: str | None = "status") -> None:
+        super().__init__(id=id)
+        self._status = status or Status()
+
+    @property
+    def status(self) -> Status:
+        """What it says."""
+        return self._status
+
+    def show(self, status: Status) -> None:
+        """Say something else."""
+        if status != self._status:
+            self._status = status
+            self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw the line."""
+        width = self.size.width
+        return draw(self, self._row(width), width)
+
+    def _row(self, width: int) -> Row:
+        status = self._status
+        mark = "! " if status.alarm else ""
+        parts: list[Span] = [
+            (f"TANGY {clean(status.mode)}".rstrip(), "strong"),
+        ]
+        if status.robot:
+            word = f"{mark}robot {clean(status.robot)}"
+            parts.append((word, "bad" if status.alarm else "good"))
+        if status.stage:
+            parts.append((f"stage {clean(status.stage).upper()}", "robot"))
+        if status.game is not None:
+            parts.append((f"game {status.game}", "text"))
+        if status.step is not None:
+            parts.append((f"step {status.step}", "text"))
+        if status.note:
+            parts.append((clean(status.note), "dim"))
+        room = width - len(STOP) - 2
+        row: list[Span] = []
+        used = 0
+        for n, (text, name) in enumerate(parts):
+            gap = " │ " if row else ""
+            left = room - used - len(gap)
+            if n >= 2 and cell_len(text) > left and (n < len(parts) - 1 or left < 12):
+                break
+            text = shorten(text, left)
+            row += [(gap, "dim"), (text, name)]
+            used += len(gap) + cell_len(text)
+        row += [(" " * max(0, width - used - len(STOP)), "text"), (STOP, "bad")]
+        return tuple(row)
