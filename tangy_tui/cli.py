@@ -101,7 +101,7 @@ def teach(
             from tangy_tui.ui.program import run_teaching
 
             status = run_teaching(
-                house, teaching, mic=mic, resume=not new, games=games, speed=speed,
+                house, teaching, ears=None, resume=not new, games=games, speed=speed,
                 ascii_only=ascii_only,
             )  # fmt: skip
             raise typer.Exit(status)
@@ -127,6 +127,7 @@ def learn(
     from tangy_profiles.reading import nearest
     from tangy_tui.learning.library import keep_policy, read_demonstrations
     from tangy_tui.learning.policy import FORESTS, learn_policy
+    from tangy_tui.wording import counted, situation_words
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
@@ -153,17 +154,15 @@ def learn(
             return
         steps = sum(len(d.steps) for d in used)
         print(
-            f"Learnt {policy.name!r} from {_count(len(used), 'demonstration')} ({steps} steps): "
+            f"Learnt {policy.name!r} from {counted(len(used), 'demonstration')} ({steps} steps): "
             f"{len(seen)} of {len(house.activity.situations)} situations were shown."
         )
-        from tangy_tui.wording import situation_words
-
         for situation in house.activity.situations:
             if situation not in seen:
                 print(f"  not shown yet: {situation_words(house.activity, situation)}")
         if left_out:
             print(
-                f"{_count(left_out, 'unfinished demonstration')} left out; "
+                f"{counted(left_out, 'unfinished demonstration')} left out; "
                 "--unfinished learns from them too."
             )
 
@@ -201,9 +200,10 @@ def play(
     ascii_only: Ascii = False,
 ) -> None:
     """Let Tangy facilitate games in simulation, by the policy it has learnt."""
-    from tangy_tui.learning.library import load_policy
+    from tangy_tui.learning.library import load_policy, need_policy
 
     with _house(data, activity, users) as house:
+        need_policy(house.store, house.activity)
         if not (headless or as_json) and _full_screen():
             from tangy_tui.ui.program import run_playing
 
@@ -502,10 +502,6 @@ def _print_line(line: str) -> None:
 
 def _print_json(document: Any) -> None:
     print(json.dumps(document, ensure_ascii=False, indent=2))
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def main() -> None:

@@ -51,6 +51,8 @@ class House:
             ProfileError: a profile has a mistake, or there is no such activity.
             StoreError: the data folder cannot be used, or another Tangy writes to it.
         """
+        self.profile = activity
+        """The activity as it was asked for: a name, or the path of a file."""
         self.activity: Activity = load_activity(activity)
         self.robot: Robot = load_robot()
         self.robot.check(self.activity)

@@ -11,7 +11,7 @@ from tangy_tui.learning.demonstrating import Begun, Executed, Next
 from tangy_tui.learning.effects import learn_effects
 from tangy_tui.learning.library import keep_policy, read_demonstrations
 from tangy_tui.learning.policy import Policy, learn_policy
-from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.lines import belief_lines, game_lines
 from tangy_tui.wording import situation_words
 
@@ -23,7 +23,7 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
     """Tell the story line by line; return what the game added up to."""
     activity = house.activity
     write(f"1. A teacher demonstrates {activity.title} {DEMONSTRATIONS} times.")
-    teaching = house.teaching("scripted", seed)
+    teaching = house.teaching(SCRIPTED, seed)
     teacher = ScriptedTeacher(teaching)
     events = teaching.begin()
     seen = set()

@@ -13,6 +13,11 @@ Name = Callable[[str], str]
 """Gives a person's name for an id."""
 
 
+def counted(number: int, noun: str) -> str:
+    """Write a number with its noun: "1 step", "2 steps"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def situation_words(activity: Activity, situation: Situation) -> str:
     """Write a triple in a few words: the stage, and what matters about the attended person.
 

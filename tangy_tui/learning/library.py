@@ -60,6 +60,30 @@ def keep_policy(store: Store, policy: Policy) -> None:
     store.append(POLICY, policy.to_json())
 
 
+def last_policy(store: Store, activity: str) -> Mapping[str, Any] | None:
+    """Return what was kept of the last policy of an activity (`Policy.to_json`), or None."""
+    kept: Mapping[str, Any] | None = None
+    for event in store.events(POLICY):
+        if event.body["activity"] == activity:
+            kept = event.body
+    return kept
+
+
+def need_policy(store: Store, activity: Activity) -> Mapping[str, Any]:
+    """Return what was kept of the last policy of an activity.
+
+    Raises:
+        NoPolicy: none has been learnt; says how to.
+    """
+    kept = last_policy(store, activity.name)
+    if kept is None:
+        raise NoPolicy(
+            f"Tangy has not learnt {activity.title} yet: "
+            "demonstrate it with `tangy teach`, then run `tangy learn`."
+        )
+    return kept
+
+
 def load_policy(store: Store, activity: Activity) -> tuple[Policy, list[str]]:
     """Learn the last kept policy of an activity again from its demonstrations.
 
@@ -70,15 +94,7 @@ def load_policy(store: Store, activity: Activity) -> tuple[Policy, list[str]]:
     Raises:
         NoPolicy: none has been learnt, or its demonstrations are gone.
     """
-    kept: Mapping[str, Any] | None = None
-    for event in store.events(POLICY):
-        if event.body["activity"] == activity.name:
-            kept = event.body
-    if kept is None:
-        raise NoPolicy(
-            f"Tangy has not learnt {activity.title} yet: "
-            "demonstrate it with `tangy teach`, then run `tangy learn`."
-        )
+    kept = need_policy(store, activity)
     shown = {d.id: d for d in read_demonstrations(store, activity.name)}
     missing = [id for id in kept["demonstrations"] if id not in shown]
     if missing:

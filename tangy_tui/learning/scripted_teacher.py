@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.demonstrating import Next, Reply, Say, Teaching, TeachingEvent
 
+SCRIPTED = "scripted"
+"""The name under which its demonstrations are kept."""
+
 MOST_STEPS = 2_000
 """A demonstration longer than this is not going to end (real ones have about 62 steps)."""
 

@@ -1,0 +1,264 @@
+"""The program on a terminal: which screen follows which, and what each is given to work with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from textual.screen import Screen
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House, teacher_name
+from tangy_tui.learning import library
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.effects import Effects, learn_effects
+from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.scripted_teacher import SCRIPTED
+from tangy_tui.ui.app import TangyApp, run_app
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.terminal import terminal_kind
+from tangy_tui.wording import counted
+
+STORY_TEACHING = (2.0, 6.0, 12.0)
+"""Steps a second of the demo's three demonstrations: slow enough to read at first."""
+
+PLAYING = 20.0
+"""Times life at which a game is watched unless another speed is asked for."""
+
+STORY_PLAYING = 100.0
+"""Times life of the demo's game: half an hour in about 20 s."""
+
+
+Start = Callable[["Program"], Coroutine[Any, Any, None]]
+"""What the program does first, above its home screen."""
+
+
+class Program(TangyApp):
+    """Tangy's screens, put together around one house."""
+
+    def __init__(self, house: House, start: Start | None = None, **settings: Any) -> None:
+        """Make the program; without a start it waits at home."""
+        super().__init__(self._home, pictures=house.store.folder, **settings)
+        self.house = house
+        self._start = start
+
+    def on_mount(self) -> None:
+        """Do what comes first."""
+        super().on_mount()
+        if self._start is not None:
+            self.run_worker(self._start(self))
+
+    def _home(self) -> Screen[Any]:
+        return HomeScreen(self._states, note=self.house.activity.title)
+
+    def _states(self) -> Mapping[str, str]:
+        """Say how far each choice is."""
+        shown = library.read_demonstrations(self.house.store, self.house.activity.name)
+        finished = sum(1 for d in shown if d.finished)
+        unfinished = sum(1 for d in shown if d.steps and not d.finished)
+        kept = library.last_policy(self.house.store, self.house.activity.name)
+        people = ", ".join(person.name for person in self.house.people)
+        return {
+            "teach": counted(finished, "demonstration")
+            + (f", {unfinished} unfinished" if unfinished else ""),
+            "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
+            "play": "" if kept is not None else "learn first",
+            "policy": "" if kept is None else str(kept["name"]),
+            "people": people,
+        }
+
+    # ---------------------------------------------------------------------------------- ways
+
+    def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
+        """Open what was chosen."""
+        match event.id:
+            case "teach":
+                self.teach(self.house.teaching(teacher_name(), None))
+            case "learn":
+                self.run_worker(self._learn(), exclusive=True)
+            case "play":
+                self.run_worker(self.play(), exclusive=True)
+            case "policy":
+                self.run_worker(self._show_policy(), exclusive=True)
+            case "people":
+                self.people()
+            case "demo":
+                self.run_worker(self._demo_aside(), exclusive=True)
+
+    def teach(self, teaching: Teaching) -> None:
+        """Open the teaching screen."""
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        self.push_screen(TeachScreen(self.house, teaching))
+
+    def people(self) -> None:
+        """Open the people screen."""
+        from tangy_tui.ui.screens.people import PeopleScreen
+
+        self.push_screen(PeopleScreen(self.house))
+
+    def action_learn(self) -> None:
+        """Learn from all finished demonstrations."""
+        self.run_worker(self._learn(), exclusive=True)
+
+    async def _learn(self) -> None:
+        from tangy_tui.story import learn
+
+        policy = await self._in_thread("Tangy is learning ...", lambda: learn(self.house))
+        if policy is not None:
+            await self._open_policy(policy)
+
+    async def _show_policy(self) -> None:
+        policy = await self._load_policy()
+        if policy is not None:
+            await self._open_policy(policy)
+
+    async def play(self, games: int = 1, speed: float = PLAYING, seed: int | None = None) -> None:
+        """Open the playing screen with the policy that was learnt last."""
+        from tangy_tui.ui.screens.play import PlayScreen
+
+        policy = await self._load_policy()
+        if policy is not None:
+            facilitation = self.house.facilitation(policy, seed)
+            await self.push_screen(PlayScreen(self.house, facilitation, games=games, speed=speed))
+
+    async def _open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
+        from tangy_tui.ui.screens.policy import PolicyScreen
+
+        screen = PolicyScreen(self.house, policy, effects_of(self.house, policy), leave_after)
+        await self.push_screen_wait(screen)
+
+    async def _load_policy(self) -> Policy | None:
+        """Learn the kept policy again; what must be said of it is said before it is used."""
+        house = self.house
+        loaded = await self._in_thread(
+            "Tangy is recalling what it learnt ...",
+            lambda: library.load_policy(house.store, house.activity),
+        )
+        if loaded is None:
+            return None
+        policy, notices = loaded
+        if notices:
+            await self.push_screen_wait(MessageDialog("\n".join(notices), title="Policy"))
+        return policy
+
+    async def _in_thread(self, what: str, work: Any) -> Any:
+        """Do slow work beside the screen; None if it failed for a reason that was shown."""
+        self.say(what)
+        try:
+            return await self.run_worker(work, thread=True, exit_on_error=False).wait()
+        except Exception as error:
+            cause = getattr(error, "error", error)  # a worker wraps what was raised in it
+            if not isinstance(cause, TangyError):
+                raise
+            self.clear_notifications()
+            await self.push_screen_wait(MessageDialog(str(cause), title="Not yet"))
+            return None
+        finally:
+            self.clear_notifications()
+
+    # ---------------------------------------------------------------------------------- demo
+
+    async def _demo_aside(self) -> None:
+        """Tell the story in a data folder of its own, so that nothing of it stays."""
+        own = self.house
+        with TemporaryDirectory(prefix="tangy-demo-") as scratch:
+            self.house = House(Path(scratch), activity=own.profile, users=len(own.people))
+            try:
+                await self.tell_story(1)
+            finally:
+                self.house.close()
+                self.house = own
+
+    async def tell_story(self, seed: int) -> None:
+        """Three demonstrations by a scripted teacher, learning, one game, what is believed."""
+        from tangy_tui.story import learn
+        from tangy_tui.ui.screens.people import PeopleScreen
+        from tangy_tui.ui.screens.play import PlayScreen
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        house = self.house
+        teaching = house.teaching(SCRIPTED, seed)
+        for number, pace in enumerate(STORY_TEACHING):
+            complete = await self.push_screen_wait(
+                TeachScreen(house, teaching, scripted=pace, another=number > 0)
+            )
+            if not complete:
+                return
+        policy = await self._in_thread("Tangy is learning ...", lambda: learn(house))
+        await self._open_policy(policy, leave_after=6.0)
+        facilitation = house.facilitation(policy, seed)
+        await self.push_screen_wait(
+            PlayScreen(house, facilitation, speed=STORY_PLAYING, leave_after=3.0)
+        )
+        await self.push_screen_wait(PeopleScreen(house, leave_after=None))
+
+
+def effects_of(house: House, policy: Policy) -> Effects:
+    """Learn the effects from the demonstrations that a policy rests on."""
+    shown = library.read_demonstrations(house.store, house.activity.name)
+    return learn_effects(house.activity, [d for d in shown if d.id in policy.demonstrations])
+
+
+def run_program(house: House, *, ascii_only: bool) -> int:
+    """Open the program at its first screen; return the exit status."""
+    return _run(house, None, ascii_only)
+
+
+def run_teaching(
+    house: House,
+    teaching: Teaching,
+    *,
+    ears: Ears | None,
+    resume: bool,
+    games: int,
+    speed: float | None,
+    ascii_only: bool,
+) -> int:
+    """Open the teaching screen; return the exit status.
+
+    The scripted teacher gives `games` demonstrations at `speed` steps a second, and the program
+    ends; a person goes home from here.
+    """
+
+    async def start(program: Program) -> None:
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        pace = speed if teaching.teacher == SCRIPTED else None
+        for number in range(games if pace else 1):
+            screen = TeachScreen(
+                house, teaching, resume=resume, another=number > 0, ears=ears, scripted=pace
+            )
+            complete = await program.push_screen_wait(screen)
+            if pace and not complete:
+                break
+        if pace:
+            program.leave()
+
+    return _run(house, start, ascii_only)
+
+
+def run_playing(
+    house: House, *, games: int, speed: float, seed: int | None, ascii_only: bool
+) -> int:
+    """Open the playing screen; return the exit status."""
+    return _run(house, lambda program: program.play(games, speed, seed), ascii_only)
+
+
+def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:
+    """Tell the whole story in the program; return the exit status."""
+
+    async def start(program: Program) -> None:
+        await program.tell_story(seed)
+        program.leave()
+
+    return _run(house, start, ascii_only)
+
+
+def _run(house: House, start: Start | None, ascii_only: bool) -> int:
+    kind = terminal_kind(ascii=True if ascii_only else None)
+    return run_app(Program(house, start, kind=kind))

@@ -1,0 +1,279 @@
+"""The playing screen: Tangy facilitates by itself; room, steps, policy, posteriors and log."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import (
+    Acted,
+    Facilitation,
+    GameBegun,
+    GameEnded,
+    GameEvent,
+    Learnt,
+)
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.panels import WIDE, panel
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.screens.policy import policy_rows
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import situation_words
+
+SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Times life; at 1 a game takes the half hour that it takes among people."""
+
+DRIVING_SHARE = 0.5
+"""The share of a step's time in which the picture of the robot drives."""
+
+
+class PlayScreen(TangyScreen[Tally]):
+    """Games by the learnt policy, watched at any speed. Dismissed with what they added up to."""
+
+    CSS_PATH = "play.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    HELP = (
+        "Tangy plays by what it has learnt. p pauses and goes on, n does one step, + and - change "
+        "the speed, e skips to the end of the game, g begins another. On the right: how sure "
+        "Tangy is of its policy, and what it believes about which way of speaking works with whom."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("p", "pause", "Pause or go on"),
+        Binding("n", "one_step", "One step"),
+        Binding("plus,equals_sign", "speed(1)", "Faster", key_display="+"),
+        Binding("minus", "speed(-1)", "Slower", key_display="-"),
+        Binding("e", "skip", "Skip to the end of the game"),
+        Binding("g", "again", "Another game"),
+        Binding("1", "panel('room')", "Room", show=False),
+        Binding("2", "panel('transcript')", "Steps", show=False),
+        Binding("3", "panel('policy')", "Policy", show=False),
+        Binding("4", "panel('posteriors')", "Posteriors", show=False),
+        Binding("5", "panel('log')", "Log", show=False),
+        Binding("escape", "leave", "Leave"),
+    ]
+
+    def __init__(
+        self,
+        house: House,
+        facilitation: Facilitation,
+        *,
+        games: int = 1,
+        speed: float = 20,
+        leave_after: float | None = None,
+    ) -> None:
+        """Make the screen.
+
+        Args:
+            games: how many are played one after another.
+            speed: times life.
+            leave_after: seconds after the last game at which the screen closes by itself.
+        """
+        super().__init__()
+        self._house = house
+        self._facilitation = facilitation
+        self._games = games
+        self._speed = speed
+        self._leave_after = leave_after
+        self._tally = Tally()
+        self._going = asyncio.Event()
+        self._going.set()
+        self._nudge = asyncio.Event()
+        self._skipping = False
+        self._single = False
+        self._status = Status(mode="play")
+
+    def compose(self) -> ComposeResult:
+        """Lay out the panels; which of them are seen at 80 columns `1` to `5` choose."""
+        yield StatusLine()
+        with Horizontal(id="body"):
+            with Vertical(id="left"):
+                yield panel(
+                    RoomView(
+                        self._house.room,
+                        self._house.people,
+                        robot=self._house.robot.title,
+                        label=self._house.activity.deck.label,
+                    )
+                )
+                yield panel(LogView(id="log"))
+            with Vertical(id="right"):
+                yield panel(Transcript(id="transcript"))
+                yield panel(PolicyTable())
+                yield panel(Posteriors())
+
+    def on_mount(self) -> None:
+        """Show what is known, and begin."""
+        activity = self._house.activity
+        self.query_one(PolicyTable).show(policy_rows(activity, self._facilitation.policy))
+        self._show_beliefs(None)
+        self.action_panel("transcript")
+        self.run_worker(self._play(), name="game", exclusive=True)
+
+    # ---------------------------------------------------------------------------------- keys
+
+    def action_pause(self) -> None:
+        """Pause, or go on."""
+        if self._going.is_set():
+            self._going.clear()
+        else:
+            self._going.set()
+        self._nudge.set()
+        self._show_status()
+
+    def action_one_step(self) -> None:
+        """Do one step and pause."""
+        self._single = True
+        self._going.set()
+        self._nudge.set()
+
+    def action_speed(self, by: int) -> None:
+        """Play faster or slower."""
+        nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - self._speed))
+        self._speed = SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
+        self._nudge.set()
+        self._show_status()
+
+    def action_skip(self) -> None:
+        """Play the rest of the game at once."""
+        self._skipping = True
+        self._going.set()
+        self._nudge.set()
+
+    def action_again(self) -> None:
+        """Play one more game."""
+        self._games += 1
+        if self._facilitation.over and self._tally.games + 1 == self._games:
+            self.run_worker(self._play(), name="game", exclusive=True)
+
+    def action_panel(self, name: str) -> None:
+        """Show a panel where there is no room for all of them, and give it the keys."""
+        for panel in ("transcript", "policy", "posteriors", "log"):
+            self.query_one(f"#{panel}").set_class(panel == name, "-chosen")
+        if name != "room":
+            self.query_one(f"#{name}").focus()
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.dismiss(self._tally)
+
+    def on_stop(self, message: Stop) -> None:
+        """Stop the robot: nothing more is executed until somebody lets it go on."""
+        self._skipping = False
+        self._going.clear()
+        self._nudge.set()
+        self.query_one(LogView).write("STOP. Press p to go on.", "bad")
+        self._show_status(robot="STOPPED", alarm=True)
+
+    # ---------------------------------------------------------------------------------- game
+
+    async def _play(self) -> None:
+        facilitation = self._facilitation
+        while self._tally.games < self._games:
+            self._tell(facilitation.begin())
+            while not facilitation.over:
+                await self._going.wait()
+                if self._single:
+                    self._single = False
+                    self._going.clear()
+                events = facilitation.step()
+                self._tell(events)
+                if self._skipping:
+                    await asyncio.sleep(0)  # let the screen and the keys live
+                else:
+                    await self._wait(events)
+            self._skipping = False
+        if self._leave_after is not None:
+            await asyncio.sleep(self._leave_after)
+            self.dismiss(self._tally)
+
+    async def _wait(self, events: list[GameEvent]) -> None:
+        """Let a step's time pass; a key that changes the pace ends it early."""
+        seconds = sum(e.outcome.seconds for e in events if isinstance(e, Acted))
+        self._nudge.clear()
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._nudge.wait(), seconds / self._speed)
+
+    def _tell(self, events: list[GameEvent]) -> None:
+        self._tally.add(events)
+        log = self.query_one(LogView)
+        for event in events:
+            match event:
+                case GameBegun(_, number, state):
+                    log.write(f"Game {number} begins.", "dim")
+                    self.query_one(Transcript).clear()
+                    self._status = Status(mode="play", stage=state.stage, game=number)
+                    self._show_scene(0, drive=False)
+                case Acted():
+                    self._show_step(event)
+                case Learnt(response, belief):
+                    name = self._house.name(response.person)
+                    what = "complied" if response.complied else "followed, but late"
+                    log.write(
+                        f"{name} {what}: {response.strategy} has worked "
+                        f"{belief.alpha - 1:.0f} of {belief.trials} times.",
+                        "good" if response.complied else "dim",
+                    )
+                    self._show_beliefs((response.person, response.strategy))
+                case GameEnded(_, steps, None):
+                    log.write(f"The game is over after {steps} steps. g plays another.", "good")
+                case GameEnded(_, steps, reason):
+                    log.write(f"The game stopped after {steps} steps. {reason}", "bad")
+        self._show_status()
+
+    def _show_step(self, event: Acted) -> None:
+        activity, house = self._house.activity, self._house
+        words = situation_words(activity, event.state.situation)
+        target = f" ({house.name(event.action.target)})" if event.action.target else ""
+        how = f", {event.choice.strategy}" if event.choice else ""
+        self.query_one(Transcript).append(f"{words} -> {event.action.behaviour.name}{target}{how}")
+        self.query_one(LogView).write(event.speech)
+        self.query_one(RoomView).say(event.speech)
+        self.query_one(PolicyTable).highlight(words)
+        if event.choice is not None:
+            self._show_beliefs((event.choice.person, event.choice.strategy))
+        self._status = Status(
+            mode="play",
+            stage=event.after.stage,
+            game=self._facilitation.games,
+            step=event.number,
+        )
+        self._show_scene(event.outcome.seconds, drive=event.state.place != event.after.place)
+
+    def _show_scene(self, seconds: float, *, drive: bool) -> None:
+        room = self.query_one(RoomView)
+        scene = self._facilitation.world.scene()
+        if drive and not self._skipping:
+            room.drive(scene.place, seconds / self._speed * DRIVING_SHARE)
+        room.show(scene)
+
+    def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
+        names: Mapping[str, str] = self._house.names
+        self.query_one(Posteriors).show(self._facilitation.persuasion.beliefs, names, highlight)
+
+    def _show_status(self, robot: str = "OK", alarm: bool = False) -> None:
+        paused = not self._going.is_set() and not self._facilitation.over
+        status = self._status
+        self.query_one(StatusLine).show(
+            Status(
+                mode="play",
+                robot=robot,
+                stage="over" if self._facilitation.over else status.stage,
+                game=status.game,
+                step=status.step,
+                note="paused" if paused else f"x{self._speed:g}",
+                alarm=alarm,
+            )
+        )

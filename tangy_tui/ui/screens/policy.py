@@ -1,0 +1,98 @@
+"""The policy screen: what Tangy would do in every situation, and how sure it is."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Static
+
+from tangy_profiles.activity import Activity
+from tangy_tui.house import House
+from tangy_tui.learning.effects import Effects
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
+from tangy_tui.ui.panels import panel
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.wording import situation_words
+
+
+def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
+    """Return a row for every situation that can come about, in the order of a game."""
+    rows = []
+    for situation in activity.situations:
+        decision = policy.decide(situation)
+        note = "" if decision.sure else "not sure" if decision.seen else "never shown"
+        rows.append(
+            PolicyRow(
+                situation_words(activity, situation),
+                decision.behaviour,
+                decision.share,
+                decision.seen,
+                note,
+            )
+        )
+    return rows
+
+
+class PolicyScreen(TangyScreen[None]):
+    """The policy table with vote shares, and the learnt effects."""
+
+    CSS_PATH = "policy.tcss"
+    HELP = (
+        "One row for each situation that can come about: what Tangy does, which share of the "
+        "trees voted for it, and how often it was demonstrated. Below: what was seen to follow "
+        "each behaviour. A situation that was never shown needs another demonstration."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,enter", "leave", "Back")]
+
+    def __init__(
+        self, house: House, policy: Policy, effects: Effects, leave_after: float | None = None
+    ) -> None:
+        """Make the screen; `leave_after` so many seconds it closes by itself."""
+        super().__init__()
+        self._house = house
+        self._policy = policy
+        self._effects = effects
+        self._leave_after = leave_after
+
+    def compose(self) -> ComposeResult:
+        """Lay out the table and the effects."""
+        yield StatusLine(Status(mode="policy", note=self._policy.name))
+        yield Static(self._summary(), id="summary", markup=False)
+        yield panel(PolicyTable())
+        yield panel(LogView(id="effects"), "What follows")
+
+    def on_mount(self) -> None:
+        """Fill both."""
+        activity = self._house.activity
+        table = self.query_one(PolicyTable)
+        table.show(policy_rows(activity, self._policy))
+        table.focus()
+        effects = self.query_one(LogView)
+        for behaviour in activity.behaviours:
+            variables = self._effects.values.get(behaviour)
+            if variables is None:
+                effects.write(f"{behaviour}: never demonstrated", "warn")
+            else:
+                told = (f"{v} {' or '.join(sorted(seen))}" for v, seen in variables.items())
+                effects.write(f"{behaviour}: {'; '.join(told)}")
+        if self._leave_after is not None:
+            self.set_timer(self._leave_after, self.action_leave)
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.dismiss(None)
+
+    def _summary(self) -> str:
+        policy, activity = self._policy, self._house.activity
+        shown = sum(1 for s in activity.situations if policy.decide(s).seen)
+        count = len(policy.demonstrations)
+        plural = "" if count == 1 else "s"
+        return (
+            f"Learnt from {count} demonstration{plural}: {shown} of {len(activity.situations)} "
+            f"situations were shown."
+        )

@@ -1,0 +1,294 @@
+"""The teaching screen (III-A-2): the simulated room, the trajectory, and one line for commands."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Static
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.learning.demonstrating import (
+    Asked,
+    Begun,
+    Executed,
+    Finished,
+    Next,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    StepUndone,
+    TeacherCommand,
+    Teaching,
+    TeachingEvent,
+    Undo,
+)
+from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.panels import WIDE, panel
+from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import state_words, step_words
+
+DRIVING_PACE = 4.0
+"""How many times faster than the robot the picture of it drives: nobody waits for a picture."""
+
+
+class TeachScreen(TangyScreen[bool]):
+    """One teacher's session. Dismissed with True when the wanted demonstrations are complete."""
+
+    CSS_PATH = "teach.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    HELP = (
+        "You are the teacher. Look at the room, decide what Tangy should do, and type it: "
+        "greet everyone, call number, go to user 2. Tangy asks whether it understood; "
+        "press y and it is done. People press a button when they want help (1, 2, ... is the "
+        "order); go to them, look at what the line Now says about their card, and react. "
+        "The game ends when you have celebrated a bingo and said goodbye."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("u", "undo", "Undo the last step"),
+        Binding("ctrl+z", "undo", "Undo the last step", show=False, priority=True),
+        Binding("r", "learn", "Learn from the demonstrations"),
+        Binding("d", "next", "Another demonstration"),
+        Binding("escape", "leave", "Leave; your steps are kept"),
+    ]
+
+    def __init__(
+        self,
+        house: House,
+        teaching: Teaching,
+        *,
+        resume: bool = True,
+        another: bool = False,
+        ears: Ears | None = None,
+        scripted: float | None = None,
+    ) -> None:
+        """Make the screen.
+
+        Args:
+            resume: take up an unfinished demonstration of this teacher.
+            another: the session has begun already; begin its next demonstration.
+            ears: opens the source of spoken commands, if there is one.
+            scripted: let a scripted teacher give the demonstration, this many steps a second.
+        """
+        super().__init__()
+        self._house = house
+        self._teaching = teaching
+        self._resume = resume
+        self._ears = ears
+        self._scripted = scripted
+        self._another = another
+        self._free = asyncio.Event()
+
+    def compose(self) -> ComposeResult:
+        """Lay out status, room, what was said, the trajectory, the situation, the commands."""
+        yield StatusLine()
+        with Horizontal(id="body"):
+            with Vertical(id="left"):
+                yield panel(
+                    RoomView(
+                        self._house.room,
+                        self._house.people,
+                        robot=self._house.robot.title,
+                        label=self._teaching.activity.deck.label,
+                    )
+                )
+                yield panel(LogView(id="log"))
+            yield panel(
+                Transcript(empty="No steps yet. Type what Tangy should do first.", id="transcript")
+            )
+        yield Static(id="now", markup=False)
+        yield CommandBar(self._teaching.phrasebook.complete, id="command")
+
+    def on_mount(self) -> None:
+        """Begin the session."""
+        teaching = self._teaching
+        self._tell(teaching.apply(Next()) if self._another else teaching.begin(resume=self._resume))
+        self.query_one(CommandBar).focus_input()
+        self._free.set()
+        if self._scripted is not None:
+            self.run_worker(self._follow_script(self._scripted), name="scripted teacher")
+        if self._ears is not None:
+            self.run_worker(self._listen(self._ears), name="ears")
+
+    # ------------------------------------------------------------------------------ commands
+
+    def on_command_bar_given(self, event: CommandBar.Given) -> None:
+        """Put a typed command to Tangy."""
+        event.stop()
+        self._apply(Say(event.text))
+
+    def action_undo(self) -> None:
+        """Take the last step back."""
+        self._apply(Undo())
+
+    def action_next(self) -> None:
+        """Begin another demonstration."""
+        self._apply(Next())
+
+    def action_leave(self) -> None:
+        """Go back; what was verified is kept."""
+        self.dismiss(False)
+
+    async def action_learn(self) -> None:
+        """Learn from all finished demonstrations, and show the policy."""
+        await self.run_action("app.learn")
+
+    def on_stop(self, message: Stop) -> None:
+        """Say what STOP means where nothing can move."""
+        self._log.write("STOP: this robot is simulated, and it stands still.", "warn")
+
+    def _apply(self, command: TeacherCommand) -> None:
+        self._tell(self._teaching.apply(command))
+
+    # -------------------------------------------------------------------------------- events
+
+    def _tell(self, events: list[TeachingEvent]) -> None:
+        bar = self.query_one(CommandBar)
+        for event in events:
+            match event:
+                case Asked():
+                    self._ask(event)
+                    return
+                case NotUnderstood(heard, suggestions):
+                    near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
+                    self._log.write(f"I do not know what {heard!r} means.{near}", "warn")
+                    bar.restore(heard)
+                case Rejected(heard):
+                    self._log.write("Not done. Give a new command.", "dim")
+                    bar.restore(heard)
+                case Refused(reason):
+                    self._log.write(reason, "warn")
+                case Executed():
+                    self._show_step(event)
+                case StepUndone(number, step):
+                    self.query_one(Transcript).remove_last()
+                    self._log.write(f"Step {number} is undone: {step.behaviour}.", "warn")
+                    self.query_one(RoomView).say("")
+                    self._show_scene(self._teaching.world.observe().place)
+                case Begun(demonstration, resumed):
+                    self._show_beginning(len(demonstration.steps), resumed)
+                case Finished(demonstration):
+                    self._finish(len(demonstration.steps))
+        bar.ready()
+        self._show_state()
+        self._free.set()
+
+    def _ask(self, asked: Asked) -> None:
+        self._free.clear()
+        behaviours = self._teaching.activity.behaviours
+        self.app.push_screen(
+            QuestionDialog(
+                asked.question,
+                heard=asked.heard,
+                confidence=asked.confidence,
+                alternatives=[behaviours[name].question for name in asked.alternatives],
+            ),
+            self._answered,
+        )
+
+    def _answered(self, answer: Answer | None) -> None:
+        if answer is None:
+            answer = Answer(False)
+        chosen = None if answer.alternative is None else answer.alternative + 1
+        self._apply(Reply(answer.yes, chosen))
+
+    def _show_step(self, event: Executed) -> None:
+        self.query_one(Transcript).append(
+            step_words(self._teaching.activity, event.step, self._teaching.name)
+        )
+        self._log.write(event.speech)
+        self.query_one(RoomView).say(event.speech)
+        self._show_scene(event.step.state.place)
+
+    def _show_scene(self, came_from: str) -> None:
+        room = self.query_one(RoomView)
+        scene = self._teaching.world.scene()
+        if came_from != scene.place:
+            stand, people = self._house.room.stand, self._teaching.people
+            way = stand(came_from, people).distance(stand(scene.place, people))
+            room.drive(scene.place, way / self._house.robot.speed / DRIVING_PACE)
+        room.show(scene)
+
+    def _show_beginning(self, steps: int, resumed: bool) -> None:
+        teaching = self._teaching
+        self.query_one(Transcript).fill(
+            [step_words(teaching.activity, s, teaching.name) for s in teaching.demonstration.steps]
+        )
+        self._show_scene(teaching.world.observe().place)
+        if resumed:
+            self._log.write(f"Going on where you left, after {steps} steps.", "good")
+        else:
+            self._log.write(
+                f"A new game of {teaching.activity.title}, demonstrated by {teaching.teacher}.",
+                "dim",
+            )
+
+    def _finish(self, steps: int) -> None:
+        self._log.write(
+            f"Game complete, {steps} steps. Esc, then: d for another game, r to let Tangy learn.",
+            "good",
+        )
+
+    def _show_state(self) -> None:
+        teaching = self._teaching
+        state = teaching.world.observe()
+        self.query_one(StatusLine).show(
+            Status(
+                mode="teach",
+                stage=state.stage if not teaching.world.over else "over",
+                step=len(teaching.demonstration.steps),
+                note=f"{teaching.teacher}'s game {teaching.demonstration.seed}",
+            )
+        )
+        words = (
+            "The game is over."
+            if teaching.world.over
+            else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
+        )
+        self.query_one("#now", Static).update(f"Now: {words}")
+
+    @property
+    def _log(self) -> LogView:
+        return self.query_one(LogView)
+
+    # ----------------------------------------------------------------- other ways to command
+
+    async def _listen(self, ears: Ears) -> None:
+        """Take spoken commands, one at a time: the next when the last is answered."""
+        try:
+            async for said in ears():
+                await self._free.wait()
+                self._apply(said)
+        except TangyError as error:
+            self._log.write(str(error), "bad")
+
+    async def _follow_script(self, pace: float) -> None:
+        """Let the scripted teacher type, and answer as a person would."""
+        teacher = ScriptedTeacher(self._teaching)
+        bar = self.query_one(CommandBar)
+        while not self._teaching.demonstration.finished:
+            command = teacher.command()
+            if isinstance(command, Say):
+                bar.restore(command.text)
+                await asyncio.sleep(0.4 / pace)
+            events = self._teaching.apply(command)
+            if events and isinstance(events[0], Asked):
+                events = self._teaching.apply(Reply(yes=True))
+            bar.restore("")
+            self._tell(events)
+            await asyncio.sleep(0.6 / pace)
+        self.dismiss(True)

@@ -1,0 +1,92 @@
+"""CPU until the first screen is readable: `tangy`, beside the SQL client harlequin.
+
+Run by hand: `python tests/bench/first_paint.py HARLEQUIN` with the path of harlequin's program.
+Each is started in a pty of 120 x 40, what it writes is read by a terminal in memory, and when a
+word of its first screen can be read there the CPU that the process has used (user and system, of
+/proc) is noted. The two take turns; the ratio of the medians counts.
+"""
+
+from __future__ import annotations
+
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from time import monotonic
+
+import pyte
+
+ROUNDS = 7
+COLUMNS, LINES = 120, 40
+PATIENCE = 30.0  # s
+
+
+def cpu_until(word: str, command: Sequence[str], home: str) -> tuple[float, float]:
+    """Return CPU seconds and wall seconds until `word` can be read on the screen."""
+    screen = pyte.Screen(COLUMNS, LINES)
+    stream = pyte.ByteStream(screen)
+    parent, child = pty.openpty()
+    import fcntl
+    import struct
+    import termios
+
+    fcntl.ioctl(child, termios.TIOCSWINSZ, struct.pack("HHHH", LINES, COLUMNS, 0, 0))
+    environment = {
+        **os.environ,
+        "TERM": "xterm-256color",
+        "HOME": home,
+        "XDG_DATA_HOME": home,
+        "LANG": "C.UTF-8",
+    }
+    begun = monotonic()
+    process = subprocess.Popen(  # noqa: S603 - our own two programs
+        command, stdin=child, stdout=child, stderr=child, env=environment, start_new_session=True
+    )
+    os.close(child)
+    try:
+        while monotonic() - begun < PATIENCE:
+            if select.select([parent], [], [], 0.5)[0]:
+                stream.feed(os.read(parent, 65536))
+            if any(word in line for line in screen.display):
+                fields = Path(f"/proc/{process.pid}/stat").read_text().rsplit(") ", 1)[1].split()
+                ticks = int(fields[11]) + int(fields[12])
+                return ticks / os.sysconf("SC_CLK_TCK"), monotonic() - begun
+        shown = "\n".join(line.rstrip() for line in screen.display if line.strip())
+        raise SystemExit(f"{command[0]} never showed {word!r}; it shows:\n{shown}")
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        os.close(parent)
+
+
+def main() -> None:
+    """Print the table."""
+    if len(sys.argv) != 2:
+        raise SystemExit("usage: python tests/bench/first_paint.py PATH_OF_HARLEQUIN")
+    tangy = str(Path(sys.executable).parent / "tangy")
+    rows: dict[str, list[tuple[float, float]]] = {"tangy": [], "harlequin": []}
+    with tempfile.TemporaryDirectory() as home:
+        for turn in range(ROUNDS + 1):
+            mine = cpu_until("Teach", [tangy, "--data", home + "/data"], home)
+            theirs = cpu_until("Catalog", [sys.argv[1]], home)
+            if turn:  # the first turn fills the disk cache
+                rows["tangy"].append(mine)
+                rows["harlequin"].append(theirs)
+    print(f"first paint at {COLUMNS} x {LINES}, median of {ROUNDS} turns   CPU s   wall s")
+    for name, measured in rows.items():
+        print(
+            f"  {name:44}  {median(m[0] for m in measured):7.2f}  "
+            f"{median(m[1] for m in measured):7.2f}"
+        )
+    ratio = median(m[0] for m in rows["tangy"]) / median(m[0] for m in rows["harlequin"])
+    print(f"  ratio of CPU (wanted: at most 0.5) {'':8}  {ratio:7.2f}")
+
+
+if __name__ == "__main__":
+    main()
