@@ -52,7 +52,8 @@ class TangyApp(App[None]):
     CSS_PATH = "tangy.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+x", "stop", "STOP the robot", priority=True, id="app.stop"),
-        Binding("ctrl+c", "quit", "Leave Tangy", priority=True, id="app.quit"),
+        Binding("ctrl+c,ctrl+q", "quit", "Leave Tangy", priority=True, id="app.quit"),
+        Binding("ctrl+p", "command_palette", "All commands", priority=True, id="app.palette"),
         Binding("f1", "help", "Help", priority=True, show=False, id="app.help.f1"),
         Binding("question_mark", "help", "Help", key_display="?", id="app.help"),
         Binding("colon", "command", "Type a command", key_display=":", id="app.command"),

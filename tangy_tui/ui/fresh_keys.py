@@ -18,17 +18,22 @@ Clock = Callable[[], float]
 """Gives seconds on the scale on which Textual stamps keys, `time.monotonic`."""
 
 
+def clock_of(app: object) -> Clock:
+    """Return the clock of Tangy's app; of any other app, the one that Textual stamps keys by."""
+    clock: Clock = getattr(app, "clock", monotonic)
+    return clock
+
+
 class FreshKeys:
     """Says of each key whether it was typed after its dialog was on the screen."""
 
-    def __init__(self, clock: Clock = monotonic) -> None:
-        self._clock = clock
+    def __init__(self) -> None:
         self._from: float | None = None
 
-    def painted(self) -> None:
+    def painted(self, clock: Clock) -> None:
         """Note that the dialog has now been painted."""
         if self._from is None:
-            self._from = self._clock() + SETTLE_SECONDS
+            self._from = clock() + SETTLE_SECONDS
 
     def fresh(self, event: events.Key) -> bool:
         """Say whether a key may answer."""

@@ -6,7 +6,7 @@ colour alone: beside it there is always a word or a mark.
 
 from __future__ import annotations
 
-from textual.theme import Theme
+from textual.theme import BUILTIN_THEMES, Theme
 
 INKS = (
     "text",
@@ -48,6 +48,12 @@ DARK = Theme(
         "ink-line": "#4a5768",
         "ink-now": "#2b3f5c",
         "ink-cursor": "#24303f",
+        "scrollbar": "#4a5768",
+        "scrollbar-hover": "#6c8ebf",
+        "scrollbar-active": "#8ab4f8",
+        "scrollbar-background": "#1d2530",
+        "scrollbar-background-hover": "#1d2530",
+        "scrollbar-background-active": "#1d2530",
         "input-cursor-background": "#ffc46b",
         "input-cursor-foreground": "#11161d",
     },
@@ -74,6 +80,12 @@ LIGHT = Theme(
         "ink-line": "#9b9587",
         "ink-now": "#cfe0f7",
         "ink-cursor": "#e2ded4",
+        "scrollbar": "#9b9587",
+        "scrollbar-hover": "#3a6ea5",
+        "scrollbar-active": "#0b57b0",
+        "scrollbar-background": "#e9e6df",
+        "scrollbar-background-hover": "#e9e6df",
+        "scrollbar-background-active": "#e9e6df",
         "input-cursor-background": "#8a4b00",
         "input-cursor-foreground": "#fbfaf7",
     },
@@ -95,6 +107,7 @@ ANSI = Theme(
     panel="ansi_default",
     boost="ansi_default",
     variables={
+        **BUILTIN_THEMES["ansi-dark"].variables,
         "ink-dim": "ansi_default",
         "ink-floor": "ansi_default",
         "ink-table": "ansi_yellow",

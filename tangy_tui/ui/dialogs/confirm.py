@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import ClassVar
 
 from textual import events
@@ -13,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 
 
 class ConfirmDialog(Dialog[bool]):
@@ -32,14 +31,15 @@ class ConfirmDialog(Dialog[bool]):
         *,
         yes: str = "yes",
         no: str = "no",
-        clock: Clock = monotonic,
+        clock: Clock | None = None,
         id: str = "confirm",
     ) -> None:
         super().__init__(False, id=id)
         self._question = clean(question)
         self._detail = clean(detail)
         self._words = (clean(yes), clean(no))
-        self._keys = FreshKeys(clock)
+        self._clock = clock
+        self._keys = FreshKeys()
 
     def compose(self) -> ComposeResult:
         """Lay out question, detail and keys."""
@@ -52,7 +52,7 @@ class ConfirmDialog(Dialog[bool]):
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted)
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, n or esc."""

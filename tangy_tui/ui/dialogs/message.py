@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import ClassVar
 
 from textual import events
@@ -13,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 
 CLOSING_KEYS = ("enter", "space", "escape", "q")
 
@@ -29,13 +28,14 @@ class MessageDialog(Dialog[None]):
         text: str,
         title: str = "Tangy",
         *,
-        clock: Clock = monotonic,
+        clock: Clock | None = None,
         id: str = "message",
     ) -> None:
         super().__init__(None, id=id)
         self._text = "\n".join(clean(line) for line in text.split("\n"))
         self._title = clean(title)
-        self._keys = FreshKeys(clock)
+        self._clock = clock
+        self._keys = FreshKeys()
 
     def compose(self) -> ComposeResult:
         """Lay out the text and the key."""
@@ -50,7 +50,7 @@ class MessageDialog(Dialog[None]):
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted)
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 
     def on_key(self, event: events.Key) -> None:
         """Close on Enter, space or esc."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from time import monotonic
 from typing import ClassVar
 
 from textual import events
@@ -15,7 +14,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.rows import shorten
 
 MOST_ALTERNATIVES = 3
@@ -61,7 +60,7 @@ class QuestionDialog(Dialog[Answer]):
         heard: str = "",
         confidence: float | None = None,
         alternatives: Sequence[str] = (),
-        clock: Clock = monotonic,
+        clock: Clock | None = None,
         id: str = "question",
     ) -> None:
         """Make the question.
@@ -71,7 +70,7 @@ class QuestionDialog(Dialog[Answer]):
             heard: the words that it was understood from.
             confidence: from 0 to 1.
             alternatives: other behaviours it may have been; the first three are offered.
-            clock: seconds, on the scale of `time.monotonic`.
+            clock: seconds, on the scale of `time.monotonic` (default: the app's).
         """
         super().__init__(NO, id=id)
         self._behaviour = clean(behaviour)
@@ -79,7 +78,8 @@ class QuestionDialog(Dialog[Answer]):
         self._confidence = confidence
         self._alternatives = tuple(clean(a) for a in alternatives[:MOST_ALTERNATIVES])
         self._numbers = ("1", "2", "3")[: len(self._alternatives)]
-        self._keys = FreshKeys(clock)
+        self._clock = clock
+        self._keys = FreshKeys()
 
     @property
     def behaviour(self) -> str:
@@ -94,7 +94,7 @@ class QuestionDialog(Dialog[Answer]):
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted)
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, n, esc or a number, if the question was on the screen by then."""

@@ -16,14 +16,20 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 
+KEY = "$accent bold"
+
+Keys = tuple[tuple[str, str], ...]
+"""Pairs of a key and what it does."""
+
 
 @dataclass(frozen=True, slots=True)
 class Help:
-    """What there is to say: a title, paragraphs, and pairs of key and what it does."""
+    """What there is to say: a title, paragraphs, the keys here, and the keys everywhere."""
 
     title: str
     paragraphs: tuple[str, ...]
-    keys: tuple[tuple[str, str], ...]
+    here: Keys
+    everywhere: Keys
 
 
 def help_for(screen: Screen[Any]) -> Help:
@@ -31,16 +37,21 @@ def help_for(screen: Screen[Any]) -> Help:
     focused = screen.focused
     nodes: Iterable[Any] = (screen,) if focused is None else (screen, focused)
     paragraphs = [text for node in nodes if (text := getattr(node, "HELP", ""))]
-    keys: dict[str, str] = {}
+    here: dict[str, str] = {}
+    everywhere: dict[str, str] = {}
     for active in screen.active_bindings.values():
         binding = active.binding
-        if binding.description and (binding.show or binding.priority):
-            shown = screen.app.get_key_display(binding)
-            keys.setdefault(binding.description, shown)
+        if binding.description and binding.show:
+            keys = everywhere if active.node is screen.app else here
+            keys.setdefault(binding.description, screen.app.get_key_display(binding))
     title = str(screen.TITLE or "Tangy")
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"
-    return Help(title, tuple(paragraphs), tuple((key, does) for does, key in keys.items()))
+    return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
+
+
+def _pairs(keys: dict[str, str]) -> Keys:
+    return tuple((key, does) for does, key in keys.items())
 
 
 class HelpScreen(Dialog[None]):
@@ -82,6 +93,9 @@ class HelpScreen(Dialog[None]):
         parts: list[str | tuple[str, str] | Content] = []
         for paragraph in self._help.paragraphs:
             parts += [paragraph, "\n\n"]
-        for key, does in self._help.keys:
-            parts += [(f"{key:>9}", "$accent bold"), f"   {does}\n"]
-        return Content.assemble(*parts)
+        for heading, keys in (("Here", self._help.here), ("Everywhere", self._help.everywhere)):
+            if keys:
+                parts.append((f"{heading}\n", "$ink-dim"))
+                parts += [p for k, does in keys for p in ((f"{k:>8}", KEY), f"   {does}\n")]
+                parts.append("\n")
+        return Content.assemble(*parts).rstrip()

@@ -25,7 +25,7 @@ class LogView(ScrollView, can_focus=True):
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
-    LogView { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    LogView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
     HELP = "What happened and what Tangy said, the newest at the end. Up and down scroll."
 

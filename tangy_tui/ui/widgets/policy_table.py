@@ -20,6 +20,9 @@ from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit
 UNSURE = 0.7
 """A share of the votes below this one is written as a warning."""
 
+VOTES = (10, 5, 0)
+"""Columns that the bar of the votes may have, the widest that fits."""
+
 EIGHTHS = " ▏▎▍▌▋▊▉█"
 
 
@@ -47,13 +50,13 @@ def bar(share: float, width: int) -> str:
 class PolicyTable(ScrollView, can_focus=True):
     """Rows of situation and behaviour; up and down choose one, Enter tells of it.
 
-    `highlight` marks the row that is in use at the moment. The first line of the table is its
-    heading and is part of what is scrolled.
+    `highlight` marks the row that is in use at the moment. Where there is no room for a situation
+    and its behaviour side by side they stand one under the other.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
-    PolicyTable { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    PolicyTable { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "choose(-1)", "Previous row", show=False),
@@ -96,6 +99,7 @@ class PolicyTable(ScrollView, can_focus=True):
         self._empty = clean(empty)
         self._now: int | None = None
         self._chosen: int | None = None
+        self._stacked = False
         self._rows = Rows(self)
 
     @property
@@ -159,60 +163,79 @@ class PolicyTable(ScrollView, can_focus=True):
 
     def _lines(self, width: int) -> list[Row]:
         table = [
-            (clean(r.situation), clean(r.behaviour), r.share, r.seen, clean(r.note))
+            PolicyRow(clean(r.situation), clean(r.behaviour), r.share, r.seen, clean(r.note))
             for r in self._table
         ]
-        situation = max(cell_len(s) for s, *_ in table)
-        behaviour = max(cell_len(b) for _, b, *_ in table)
-        bar_width = 10 if width >= 70 else 5 if width >= 52 else 0
-        notes = max(cell_len(note) for *_, note in table)
-        fixed = 2 + bar_width + 5 + 6
-        left = width - fixed - behaviour - 2
-        notes = min(notes, max(0, left - situation - 2))
-        situation = min(situation, max(8, left - (notes + 2 if notes else 0)))
-        behaviour = min(behaviour, max(6, width - fixed - situation - 2))
-        heading: Row = (
-            (fit("  situation", situation + 2), "dim"),
-            (fit("  behaviour", behaviour + 2), "dim"),
-            (fit(" votes", bar_width + 5), "dim"),
-            ("  seen", "dim"),
-        )
+        situation = max(cell_len(r.situation) for r in table)
+        behaviour = max(cell_len(r.behaviour) for r in table)
+        note = max(cell_len(r.note) for r in table)
+        votes = next((v for v in VOTES if situation + behaviour + v + 12 <= width), None)
+        self._stacked = votes is None
+        if votes is None:
+            behaviour = min(behaviour, max(6, width - 13))
+            votes = 5 if behaviour + 18 <= width else 0
+            note = _worth(min(note, width - 15 - behaviour - votes))
+            return [
+                line
+                for r in table
+                for line in (
+                    ((fit(r.situation, width), "text"),),
+                    ((" > ", "dim"), *_decision(r, behaviour, votes, note)),
+                )
+            ]
+        note = _worth(min(note, width - situation - behaviour - votes - 14))
         return [
-            heading,
-            *(self._row(r, situation, behaviour, bar_width, notes) for r in table),
+            (
+                (fit("situation", situation), "dim"),
+                (fit("  behaviour", behaviour + 2), "dim"),
+                (f" {'votes':<{votes + 4}}", "dim"),
+                (" seen", "dim"),
+            ),
+            *(
+                (
+                    (fit(r.situation, situation), "text"),
+                    ("  ", "text"),
+                    *_decision(r, behaviour, votes, note),
+                )
+                for r in table
+            ),
         ]
-
-    def _row(
-        self,
-        row: tuple[str, str, float, int, str],
-        situation: int,
-        behaviour: int,
-        bar_width: int,
-        notes: int,
-    ) -> Row:
-        where, does, share, seen, note = row
-        sure = share >= UNSURE and seen > 0
-        spans: list[Span] = [
-            ("  ", "text"),
-            (fit(where, situation), "text"),
-            ("  ", "text"),
-            (fit(does, behaviour), "strong"),
-            (" ", "text"),
-            (bar(share, bar_width), "curve" if sure else "warn"),
-            (f" {'1.0' if share >= 0.995 else f'{share:.2f}'[1:]:>3}", "text" if sure else "warn"),
-            (f"{seen:>6}", "text" if seen else "warn"),
-        ]
-        if notes:
-            spans += [("  ", "text"), (fit(note, notes), "warn")]
-        return tuple(spans)
 
     def _mark(self) -> None:
         marks: dict[int, str] = {}
-        if self._chosen is not None:
-            marks[self._chosen + 1] = "cursor"
-        if self._now is not None:
-            marks[self._now + 1] = "now"
+        for index, ink in ((self._chosen, "cursor"), (self._now, "now")):
+            if index is not None:
+                marks.update(dict.fromkeys(self._places(index), ink))
         self._rows.mark(marks)
         seen = self._chosen if self._chosen is not None else self._now
         if seen is not None:
-            self._rows.show(0 if seen == 0 else seen + 1)
+            places = self._places(seen)
+            self._rows.show(0 if seen == 0 else places[0])
+            self._rows.show(places[-1])
+
+    def _places(self, index: int) -> range:
+        """Return the lines that a row of the table stands on."""
+        if self._stacked:
+            return range(2 * index, 2 * index + 2)
+        return range(index + 1, index + 2)
+
+
+def _worth(columns: int) -> int:
+    """Give a note no room rather than too little to be read."""
+    return columns if columns >= 8 else 0
+
+
+def _decision(row: PolicyRow, behaviour: int, votes: int, note: int) -> tuple[Span, ...]:
+    """Write what is done, how surely, how often it was seen, and the note on it."""
+    sure = row.share >= UNSURE and row.seen > 0
+    share = "1.0" if row.share >= 0.995 else f"{row.share:.2f}"[1:]
+    spans: list[Span] = [
+        (fit(row.behaviour, behaviour), "strong"),
+        (" ", "text"),
+        (bar(row.share, votes), "curve" if sure else "warn"),
+        (f" {share:>3}", "text" if sure else "warn"),
+        (f"{row.seen:>5}", "text" if row.seen else "warn"),
+    ]
+    if note:
+        spans += [("  ", "text"), (fit(row.note, note), "warn")]
+    return tuple(spans)

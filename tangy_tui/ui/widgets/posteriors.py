@@ -19,8 +19,11 @@ BLOCKS = " ▁▂▃▄▅▆▇█"
 LOWEST_PEAK = 3.0
 """A density up to this one is drawn to the same scale, so that an unknown belief lies flat."""
 
-WIDE = 44
+LINES_FROM = 36
 """From this width each strategy has a line; below it, each person has one."""
+
+WORDS_FROM = 50
+"""From this width it says in words what is the probability of being best."""
 
 LONGEST_CURVE = 24
 
@@ -41,7 +44,7 @@ class Posteriors(ScrollView, can_focus=True):
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
-    Posteriors { overflow-x: hidden; scrollbar-size-vertical: 1; }
+    Posteriors { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
     HELP = (
         "What Tangy believes of each person: how probable it is that they do what they are asked "
@@ -49,8 +52,16 @@ class Posteriors(ScrollView, can_focus=True):
         "7 times of 9; then the mean, and the probability that this way is the best of all."
     )
 
-    def __init__(self, *, id: str | None = "posteriors", classes: str | None = None) -> None:
+    def __init__(
+        self,
+        *,
+        compact: bool | None = None,
+        id: str | None = "posteriors",
+        classes: str | None = None,
+    ) -> None:
+        """Make the view; `compact` gives each person one line (None: where it is narrow)."""
         super().__init__(id=id, classes=classes)
+        self._compact_wanted = compact
         self.border_title = "Posteriors"
         self._beliefs: dict[str, Beliefs] = {}
         self._names: Mapping[str, str] = {}
@@ -90,11 +101,13 @@ class Posteriors(ScrollView, can_focus=True):
         width = self._rows.width
         if not self.is_attached or width <= 0:
             return
+        compact = width < LINES_FROM if self._compact_wanted is None else self._compact_wanted
+        self.border_subtitle = "" if compact else "done/asked, mean, P(best)"
         rows: list[Row] = []
         marks: dict[int, str] = {}
         for person, profile in self._beliefs.items():
             name = clean(self._names.get(person, person))
-            if width < WIDE:
+            if compact:
                 if self._highlight is not None and self._highlight[0] == person:
                     marks[len(rows)] = "now"
                 rows.append(self._compact(person, name, profile, width))
@@ -113,16 +126,17 @@ class Posteriors(ScrollView, can_focus=True):
         best = self._best[person]
         leads = best[strategy] == max(best.values()) and belief.trials > 0
         label = min(12, max(cell_len(s) for s in self._beliefs[person]))
+        word = " best " if width >= WORDS_FROM else ""
         tail: tuple[Span, ...] = (
-            (f" {_counts(belief):>7}", "text"),
-            (f"  {_share(belief.mean)}", "strong"),
-            (f"  best {_share(best[strategy])}", "good" if leads else "dim"),
-            (" ★" if leads else "  ", "good"),
+            (f" {_counts(belief):>6}", "text"),
+            (f" {_share(belief.mean)}", "strong"),
+            (f" {word}{_share(best[strategy])}", "good" if leads else "dim"),
+            ("★" if leads else " ", "good"),
         )
-        used = 3 + label + sum(cell_len(text) for text, _ in tail)
+        used = 2 + label + sum(cell_len(text) for text, _ in tail)
         points = min(LONGEST_CURVE, max(6, width - used))
         return (
-            ("  ", "text"),
+            (" ", "text"),
             (fit(clean(strategy), label), "text"),
             (" ", "text"),
             (curve(belief, points), "curve"),

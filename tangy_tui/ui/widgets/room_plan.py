@@ -11,6 +11,8 @@ from tangy_profiles.room import Point, Room
 from tangy_tui.ui.widgets.rows import Row, Span
 
 SPRITE_WIDTH = 7
+ROOMY_SLOT = 14
+"""Columns for each person from which what they do stands on one line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +62,13 @@ class Plan:
         return 2 if self.floor >= 4 else 1
 
 
-def plan(width: int, height: int) -> Plan:
+def plan(width: int, height: int, people: int = 4) -> Plan:
     """Give the rows out: what a teacher must see first, then comfort, then floor to drive on."""
+    crowded = width < people * ROOMY_SLOT
     rows = {"board": 0, "speech": 0, "floor": 2, "table": 1, "doing": 1}
     spare = height - 3 - sum(rows.values())  # the wall, heads and names
     for part, wanted in (
+        ("doing", 2 if crowded else 1),
         ("floor", 3),
         ("speech", 1),
         ("floor", 4),
@@ -96,7 +100,7 @@ class Grid:
         self._depth = max(0.1, near - room.reach - room.front.y)
         self._plan = plan
         self.centres = [self.column(x) for x in seats]
-        middles = [(a + b) // 2 for a, b in pairwise(self.centres)]
+        middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
         self.table = (self.column(left), self.column(right))
 
@@ -141,16 +145,18 @@ class Line:
         line._inks = self._inks[:]
         return line
 
-    def centre(self, start: int, end: int, text: str, ink: str) -> None:
-        """Place text in the middle between two columns."""
-        self.put(start + max(0, (end - start - cell_len(text)) // 2), text, ink)
+    def centre(self, column: int, text: str, ink: str) -> None:
+        """Place text around a column, within the line."""
+        cells = cell_len(text)
+        start = column - (cells - 1) // 2
+        self.put(max(0, min(start, len(self._cells) - cells)), text, ink)
 
     def row(self) -> Row:
-        """Return the line in as few pieces as it has inks."""
+        """Return the line in as few pieces as it has inks; a blank needs no ink of its own."""
         spans: list[Span] = []
         for cell, ink in zip(self._cells, self._inks, strict=True):
-            if spans and (spans[-1][1] == ink):
-                spans[-1] = (spans[-1][0] + cell, ink)
+            if spans and (cell == " " or spans[-1][1] == ink):
+                spans[-1] = (spans[-1][0] + cell, spans[-1][1])
             else:
                 spans.append((cell, ink))
         return tuple(spans)

@@ -21,7 +21,7 @@ from tangy_profiles.room import Point, Room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock
+from tangy_tui.ui.fresh_keys import Clock, clock_of
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
 from tangy_tui.ui.widgets.rows import draw, shorten
@@ -183,8 +183,9 @@ class RoomView(Widget):
 
     def on_resize(self, event: events.Resize) -> None:
         """Lay everything out anew."""
-        self._plan = plan(max(SPRITE_WIDTH, self.size.width), max(1, self.size.height))
-        self._grid = Grid(self._room, max(1, len(self._people)), self._plan)
+        people = max(1, len(self._people))
+        self._plan = plan(max(SPRITE_WIDTH, self.size.width), max(1, self.size.height), people)
+        self._grid = Grid(self._room, people, self._plan)
         self._turn()
         self._draw_again()
 
@@ -201,8 +202,7 @@ class RoomView(Widget):
         return self._strips[y]
 
     def _clock(self) -> float:
-        clock: Clock = self._clock_given or self.app.clock  # type: ignore[attr-defined]
-        return clock()
+        return (self._clock_given or clock_of(self.app))()
 
     def _stand(self, place: str) -> Point:
         known = place == FRONT or place in self._ids
@@ -292,13 +292,13 @@ class RoomView(Widget):
         lines = [Line(plan.width) for _ in range(plan.height + 12)]
         self._draw_wall(lines, grid)
         for n, text in enumerate(self._speech_lines()):
-            lines[plan.speech_row + n].centre(0, plan.width, text, "text")
+            lines[plan.speech_row + n].centre(plan.width // 2, text, "text")
         for y in range(plan.floor_row + 1, plan.table_row, 2):
             for x in range(FLOOR_DOTS // 2, plan.width, FLOOR_DOTS):
                 lines[y].put(x, "·", "floor")
         self._draw_table(lines, grid)
-        for n, (start, end) in enumerate(grid.slots[: len(self._people)]):
-            self._draw_person(lines, self._people[n], scene, start, end)
+        for person, centre, slot in zip(self._people, grid.centres, grid.slots, strict=False):
+            self._draw_person(lines, person, scene, centre, slot)
         return lines[: plan.height]
 
     def _draw_wall(self, lines: list[Line], grid: Grid) -> None:
@@ -346,19 +346,19 @@ class RoomView(Widget):
             lines[row + plan.table // 2].put(centre - 1, "[▦]", "robot" if read else "table")
 
     def _draw_person(
-        self, lines: list[Line], person: Person, scene: Scene, start: int, end: int
+        self, lines: list[Line], person: Person, scene: Scene, centre: int, slot: tuple[int, int]
     ) -> None:
-        row, width = self._plan.head_row, end - start - 1
+        row, width = self._plan.head_row, slot[1] - slot[0] - 1
         asking = person.id in scene.requests
         if asking:
             turn = scene.requests.index(person.id) + 1
-            lines[row].centre(start, end, f"●?{turn}", "warn")
+            lines[row].put(centre, f"●?{turn}", "warn")
         else:
-            lines[row].centre(start, end, "●", "person")
+            lines[row].put(centre, "●", "person")
         name = shorten(clean(person.name), width)
-        lines[row + 1].centre(start, end, name, "warn" if asking else "person")
+        lines[row + 1].centre(centre, name, "warn" if asking else "person")
         doing = wrap(clean(scene.doing.get(person.id, "")), width)
         if len(doing) > self._plan.doing:
             doing = [*doing[: self._plan.doing - 1], " ".join(doing[self._plan.doing - 1 :])]
         for n, text in enumerate(doing):
-            lines[row + 2 + n].centre(start, end, shorten(text, width), "dim")
+            lines[row + 2 + n].centre(centre, shorten(text, width), "dim")

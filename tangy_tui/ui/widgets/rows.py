@@ -19,6 +19,10 @@ Row = tuple[Span, ...]
 """One line."""
 
 
+SHAPES = ("curve",)
+"""Inks of text that is a picture."""
+
+
 def fit(text: str, width: int) -> str:
     """Return text in exactly so many cells: filled with spaces, or cut with an ellipsis."""
     if width <= 0:
@@ -41,6 +45,8 @@ def ink(widget: Widget, name: str, over: str = "") -> Style:
         style = Style(bgcolor=ink(widget, "text").bgcolor)
     else:
         style = widget.get_component_rich_style(f"ink--{name}")
+    if over and name in SHAPES:
+        over = "" if widget.app.native_ansi_color else over  # a picture is not to be reversed
     if over:
         mark = widget.get_component_rich_style(f"ink--{over}", partial=True)
         style += Style(
@@ -141,6 +147,6 @@ class Rows:
         """Scroll as little as needed for a line to be seen."""
         top, height = self._widget.scroll_offset.y, max(1, self.height)
         if index < top:
-            self._widget.scroll_to(y=index, animate=False)
+            self._widget.scroll_to(y=index, animate=False, force=True)
         elif index >= top + height:
-            self._widget.scroll_to(y=index - height + 1, animate=False)
+            self._widget.scroll_to(y=index - height + 1, animate=False, force=True)
