@@ -5,11 +5,25 @@ from __future__ import annotations
 from typing import TypeVar
 
 from textual.widget import Widget
+from textual.widgets import Static
 
 WidgetT = TypeVar("WidgetT", bound=Widget)
 
 WIDE = [(0, "-narrow"), (118, "-wide")]
 """Textual's horizontal breakpoints: the class a screen has from this many columns on."""
+
+
+def key_line(*keys: tuple[str, str]) -> Static:
+    """Make the last line of a screen: its keys, each with a word on what it does."""
+    from textual.content import Content
+
+    parts: list[str | tuple[str, str]] = []
+    for key, word in keys:
+        parts += [("  " if parts else "", ""), (key, "$primary bold"), (f" {word}", "$ink-dim")]
+    line = Static(Content.assemble(*parts), id="keys")
+    line.styles.height = 1
+    line.styles.padding = (0, 1)
+    return line
 
 
 def panel(widget: WidgetT, title: str = "") -> WidgetT:

@@ -21,6 +21,7 @@ from tangy_tui.ui.app import TangyApp, run_app
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import terminal_kind
+from tangy_tui.ui.writer import outlive_terminal
 from tangy_tui.wording import counted
 
 STORY_TEACHING = (2.0, 6.0, 12.0)
@@ -260,5 +261,6 @@ def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:
 
 
 def _run(house: House, start: Start | None, ascii_only: bool) -> int:
+    outlive_terminal()
     kind = terminal_kind(ascii=True if ascii_only else None)
     return run_app(Program(house, start, kind=kind))

@@ -12,7 +12,7 @@ from textual.widgets import Static
 from tangy_tui.house import House
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.widgets.posteriors import Posteriors
-from tangy_tui.ui.panels import panel
+from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 
@@ -42,6 +42,7 @@ class PeopleScreen(TangyScreen[None]):
             markup=False,
         )
         yield panel(Posteriors())
+        yield key_line(("up down", "scroll"), ("esc", "back"), ("?", "help"))
 
     def on_mount(self) -> None:
         """Fill them from the log."""

@@ -22,7 +22,7 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.panels import WIDE, panel
+from tangy_tui.ui.panels import WIDE, key_line, panel
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
@@ -113,6 +113,10 @@ class PlayScreen(TangyScreen[Tally]):
                 yield panel(Transcript(id="transcript"))
                 yield panel(PolicyTable())
                 yield panel(Posteriors())
+        yield key_line(
+            ("p", "pause"), ("n", "step"), ("+ -", "speed"), ("e", "end"), ("g", "again"),
+            ("1-5", "panels"), ("esc", "back"), ("?", "help"),
+        )  # fmt: skip
 
     def on_mount(self) -> None:
         """Show what is known, and begin."""

@@ -15,7 +15,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
-from tangy_tui.ui.panels import panel
+from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.wording import situation_words
 
@@ -65,6 +65,7 @@ class PolicyScreen(TangyScreen[None]):
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(PolicyTable())
         yield panel(LogView(id="effects"), "What follows")
+        yield key_line(("tab", "next panel"), ("up down", "scroll"), ("esc", "back"), ("?", "help"))
 
     def on_mount(self) -> None:
         """Fill both."""

@@ -51,6 +51,7 @@ class TeachScreen(TangyScreen[bool]):
 
     CSS_PATH = "teach.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
+    AUTO_FOCUS = "#command-input"
     HELP = (
         "You are the teacher. Look at the room, decide what Tangy should do, and type it: "
         "greet everyone, call number, go to user 2. Tangy asks whether it understood; "
@@ -117,7 +118,6 @@ class TeachScreen(TangyScreen[bool]):
         """Begin the session."""
         teaching = self._teaching
         self._tell(teaching.apply(Next()) if self._another else teaching.begin(resume=self._resume))
-        self.query_one(CommandBar).focus_input()
         self._free.set()
         if self._scripted is not None:
             self.run_worker(self._follow_script(self._scripted), name="scripted teacher")

@@ -1,0 +1,154 @@
+"""Teaching in a real terminal: typed, asked about, confirmed, kept, and taken up again."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import TANGY, OpenTerminal, Tmux
+
+
+@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (160, 45)])
+def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
+    open_tmux: Callable[[int, int], Tmux], tmp_path: Path, columns: int, lines: int
+) -> None:
+    tmux = open_tmux(columns, lines)
+    command = (TANGY, "teach", "--seed", "1", "--data", str(tmp_path / "data"))
+    tmux.run(*command)
+    tmux.until("type a command")
+    tmux("send-keys", "-l", "greet everyone")
+    tmux("send-keys", "Enter")
+    asked = tmux.until("Did you say: greet everyone?")
+    assert "Y  yes" in asked
+    assert "greeting" not in asked.replace("greet everyone", "")
+    tmux("send-keys", "Enter")
+    tmux("send-keys", "Space")
+    assert "Did you say" in tmux.text
+    tmux.until(lambda text: _answered(tmux, text))
+    tmux("send-keys", "C-c")
+    tmux.until(lambda text: text.rstrip().endswith(("#", "$")))  # the shell's prompt is back
+    tmux.run("clear;", *command)
+    again = tmux.until("-> greeting")
+    assert "step 1" in again
+    assert "type a command" in again
+
+
+def _answered(tmux: Tmux, text: str) -> bool:
+    """Press y until the question has taken it: it takes none in its first moment."""
+    if "-> greeting" in text:
+        return True
+    if "Did you say" in text:
+        tmux("send-keys", "y")
+    return False
+
+
+def test_a_y_typed_ahead_does_not_answer(open_terminal: OpenTerminal) -> None:
+    terminal = open_terminal("teach", "--seed", "1")
+    terminal.until("type a command")
+    terminal.type("greet everyone\ry")
+    terminal.until("Did you say: greet everyone?")
+    terminal.settle()
+    assert "Did you say" in terminal.text
+    assert "-> greeting" not in terminal.text
+    terminal.type("y")
+    terminal.until("-> greeting")
+
+
+def test_no_puts_the_words_back(open_terminal: OpenTerminal) -> None:
+    terminal = open_terminal("teach", "--seed", "1")
+    terminal.until("type a command")
+    terminal.type("call number\r")
+    terminal.until("Did you say: call number?")
+    terminal.settle(0.4)
+    terminal.type("n")
+    text = terminal.until(lambda shown: "Did you say" not in shown)
+    terminal.until("> call number")
+    assert "No steps yet" in text
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["term", "hup"]
+)
+def test_a_signal_ends_the_program_in_good_order(
+    open_terminal: OpenTerminal, number: signal.Signals, status: int
+) -> None:
+    terminal = open_terminal("teach", "--seed", "1")
+    terminal.until("type a command")
+    os.kill(terminal.process.pid, number)
+    assert terminal.wait() == status
+    assert b"\x1b[?1049l" in terminal.raw  # the shell's own screen is back
+
+
+def test_a_closed_window_ends_the_program_and_loses_nothing(
+    open_terminal: OpenTerminal,
+) -> None:
+    terminal = open_terminal("teach", "--seed", "1")
+    terminal.until("type a command")
+    terminal.type("greet everyone\r")
+    terminal.until("Did you say")
+    terminal.settle(0.4)
+    terminal.type("y")
+    terminal.until("-> greeting")
+    terminal.close()
+    terminal.process.wait(timeout=20)
+    again = open_terminal("teach")
+    again.until("-> greeting")
+
+
+def test_a_second_program_on_the_same_folder_is_told_who_has_it(
+    open_terminal: OpenTerminal,
+) -> None:
+    first = open_terminal("teach", "--seed", "1")
+    first.until("type a command")
+    second = open_terminal("teach")
+    assert second.wait() == 2
+    words = " ".join(second.text.split())
+    assert str(first.process.pid) in words
+    assert "--data" in words
+    first.type("greet everyone\r")
+    first.until("Did you say")
+
+
+def test_a_window_that_is_too_small_says_so_and_loses_nothing(
+    open_terminal: OpenTerminal,
+) -> None:
+    terminal = open_terminal("teach", "--seed", "1", columns=40, lines=10)
+    terminal.until(lambda text: "60 x 18" in " ".join(text.split()))
+    terminal.resize(80, 24)
+    terminal.until("type a command")
+    terminal.type("greet every")
+    terminal.until("greet every")
+    terminal.resize(40, 10)
+    terminal.until(lambda text: "60 x 18" in " ".join(text.split()))
+    terminal.resize(100, 30)
+    terminal.until("> greet every")
+
+
+def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
+    terminal = open_terminal("teach", "--seed", "1", environment={"TERM": "dumb"})
+    terminal.until("Commands:")
+    terminal.type("greet everyone\n")
+    terminal.until("Type Y to execute")
+    terminal.type("y\n")
+    terminal.until("-> greeting")
+    terminal.type("quit\n")
+    assert terminal.wait() == 0
+    assert b"\x1b" not in terminal.raw
+
+
+def test_a_terminal_without_utf8_gets_ascii(open_terminal: OpenTerminal) -> None:
+    terminal = open_terminal(
+        "teach", "--seed", "1", environment={"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0"}
+    )
+    terminal.until("type a command")
+    assert terminal.raw.isascii()
+
+
+def test_nothing_is_written_while_nothing_happens(open_terminal: OpenTerminal) -> None:
+    terminal = open_terminal("teach", "--seed", "1", columns=120, lines=40)
+    terminal.until("type a command")
+    terminal.settle(1.0)
+    assert terminal.read(2.0) == b""
