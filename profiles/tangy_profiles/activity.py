@@ -306,7 +306,7 @@ def _behaviour(entry: Table, strategies: dict[str, str], states: list[str]) -> B
     name = entry.text("name")
     spoken = entry.table("speech")
     speech = {s: _template(spoken, s) for s in strategies if s in spoken or len(strategies) == 1}
-    spoken.close()
+    spoken.close(also=strategies)
     persuades = entry.flag("persuades", False)
     if persuades and len(speech) < len(strategies):
         missing = next(s for s in strategies if s not in speech)

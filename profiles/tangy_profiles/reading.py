@@ -57,7 +57,7 @@ class Table:
 
     def wrong(self, key: str, problem: str) -> ProfileError:
         """Make the error for a key, with the value that stands there."""
-        shown = f" = {_SHORT.repr(self._values[key])}" if key in self._values else ""
+        shown = f" = {_short(_SHORT.repr(self._values[key]), 120)}" if key in self._values else ""
         return ProfileError(plain(f"{self.where(key)}{shown}: {_short(problem, 400)}"))
 
     def __contains__(self, key: str) -> bool:
@@ -163,15 +163,18 @@ class Table:
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
 
-    def close(self) -> None:
+    def close(self, also: Iterable[str] = ()) -> None:
         """Refuse keys that nobody asked for: mostly spelling mistakes.
+
+        Args:
+            also: further keys that could have stood here.
 
         Raises:
             ProfileError: naming the key and the nearest one that would be read.
         """
         for key in self._values:
             if key not in self._taken:
-                raise self.wrong(key, f"is not a key here; {nearest(key, self._taken)}")
+                raise self.wrong(key, f"is not a key here; {nearest(key, self._taken.union(also))}")
 
 
 def read_toml(path: Path) -> Table:

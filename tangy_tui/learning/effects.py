@@ -87,7 +87,7 @@ def transition(before: ActivityState, after: ActivityState, activity: Activity) 
     changes = {"robot's place": place}
     if before.stage in opening:
         changes["activity"] = "not begun" if after.stage in opening else "begun"
-    changes["win"] = "celebrated" if after.stage in closing else "not celebrated"
+    changes["end"] = "reached" if after.stage in closing else "not reached"
     if _counted(before.stage, activity):
         changes["stage"] = "not left" if after.stage == before.stage else "left"
     if person is not None:

@@ -1,0 +1,154 @@
+"""What many tests begin with: an activity, games demonstrated well, a store, the command line."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from functools import cache
+from itertools import count
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+from tangy_profiles.activity import Activity, load_activity, read_activity
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.store import Store
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+
+# The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
+settings.register_profile(
+    "tangy", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.register_profile("explore", settings.get_profile("tangy"), derandomize=False)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tangy"))
+
+TESTS = Path(__file__).parent
+
+
+@cache
+def _activity(name: str) -> Activity:
+    return load_activity(name) if name == "bingo" else read_activity(TESTS / f"{name}.toml")
+
+
+@cache
+def _demonstration(name: str, seed: int, users: int) -> Demonstration:
+    activity = _activity(name)
+    people = tuple(person.id for person in load_people(users))
+    world = SimulatedWorld(activity, people, seed=seed, users=load_users().teaching())
+    steps: list[Step] = []
+    while not world.over:
+        state = world.observe()
+        behaviour = activity.behaviours[activity.expected[state.situation]]
+        target = state.attended if behaviour.attends else None
+        world.execute(activity.action(behaviour, target, None))
+        steps.append(Step(behaviour.name, target, state, world.observe()))
+    return Demonstration(f"{name}-{seed}", name, "test", seed, people, tuple(steps), True)
+
+
+@pytest.fixture(scope="session")
+def activity() -> Activity:
+    """The activity that ships."""
+    return _activity("bingo")
+
+
+@pytest.fixture(scope="session")
+def lanterns() -> Activity:
+    """A made-up activity with other words, another deck and another way to end."""
+    return _activity("lanterns")
+
+
+@pytest.fixture(scope="session")
+def people() -> tuple[Person, ...]:
+    """The four sample people."""
+    return load_people(4)
+
+
+@pytest.fixture(scope="session")
+def ids(people: tuple[Person, ...]) -> tuple[str, ...]:
+    """The ids of the four sample people."""
+    return tuple(person.id for person in people)
+
+
+@pytest.fixture(scope="session")
+def demonstrate() -> Callable[[str, int, int], Demonstration]:
+    """Demonstrate one teaching game as expected: (activity, seed, users) -> demonstration."""
+    return _demonstration
+
+
+@pytest.fixture(scope="session")
+def cover() -> Callable[[str, int, int], tuple[Demonstration, ...]]:
+    """Demonstrate games until every situation was shown: (activity, seed, users) -> them."""
+
+    def covering(name: str, seed: int, users: int) -> tuple[Demonstration, ...]:
+        missing = set(_activity(name).expected)
+        shown: list[Demonstration] = []
+        for game in count():
+            shown.append(_demonstration(name, 1000 * seed + game, users))
+            missing -= {step.state.situation for step in shown[-1].steps}
+            if not missing:
+                return tuple(shown)
+        raise AssertionError("unreachable")
+
+    return covering
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    """An empty log that may be written."""
+    with Store.open(tmp_path / "data") as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from tangy_tui.house import House
+    from tangy_tui.learning.demonstrating import Next
+    from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+    from tangy_tui.story import learn
+
+    folder = tmp_path_factory.mktemp("taught") / "data"
+    house = House(folder)
+    teaching = house.teaching("scripted", 1)
+    teaching.begin()
+    for number in range(3):
+        if number:
+            teaching.apply(Next())
+        list(ScriptedTeacher(teaching).demonstrate())
+    learn(house)
+    house.close()
+    return folder
+
+
+@pytest.fixture
+def taught(_taught: Path, tmp_path: Path) -> Path:
+    """A data folder in which three demonstrations were given and learnt from."""
+    return Path(shutil.copytree(_taught, tmp_path / "taught"))
+
+
+@pytest.fixture
+def tangy(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Callable[..., CompletedProcess[str]]:
+    """Run the command line in this process: `tangy("play", "--json", stdin="")`."""
+    from tangy_tui.cli import main
+
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "home"))
+
+    def run(*arguments: object, stdin: str = "") -> CompletedProcess[str]:
+        monkeypatch.setattr(sys, "argv", ["tangy", *map(str, arguments)])
+        monkeypatch.setattr(sys, "stdin", io.StringIO(stdin))
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as stop:
+            main()
+        status = stop.value.code
+        assert isinstance(status, int)
+        return CompletedProcess(sys.argv, status, *capsys.readouterr())
+
+    return run

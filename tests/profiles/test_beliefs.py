@@ -1,0 +1,109 @@
+"""Beliefs: Beta(1, 1) at first, Eq. 2 after each response, P(best) by integration."""
+
+from __future__ import annotations
+
+from math import isclose, sqrt
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.beliefs import Beta, probability_best, uniform_beliefs
+
+counts = st.tuples(st.integers(0, 2000), st.integers(0, 2000))
+
+
+def test_a_stranger_is_believed_to_comply_with_anything_equally() -> None:
+    beliefs = uniform_beliefs(["praise", "neutral", "scarcity"])
+    assert set(beliefs.values()) == {Beta(1, 1)}
+    assert all(isclose(p, 1 / 3) for p in probability_best(beliefs).values())
+    assert Beta().density(5) == pytest.approx([1] * 5)
+    assert Beta().trials == 0
+
+
+@given(st.lists(st.booleans(), max_size=60))
+def test_a_response_adds_one_to_alpha_or_to_beta(responses: list[bool]) -> None:
+    belief = Beta()
+    for complied in responses:
+        before, belief = belief, belief.updated(complied)
+        assert (belief.alpha - before.alpha, belief.beta - before.beta) == (
+            (1, 0) if complied else (0, 1)
+        )
+    assert belief == Beta(1 + sum(responses), 1 + len(responses) - sum(responses))
+    assert belief.trials == len(responses)
+    assert belief.mean == (1 + sum(responses)) / (2 + len(responses))
+
+
+def test_updating_leaves_the_old_belief_as_it_was() -> None:
+    belief = Beta(2, 3)
+    belief.updated(True)
+    assert belief == Beta(2, 3)
+
+
+@given(counts)
+def test_the_density_is_a_distribution_around_the_mean(count: tuple[int, int]) -> None:
+    belief = Beta(1 + count[0], 1 + count[1])
+    points = 20_000
+    density = belief.density(points)
+    assert isclose(sum(density) / points, 1, rel_tol=1e-3)
+    mean = sum((i + 0.5) / points * d for i, d in enumerate(density)) / points
+    assert isclose(mean, belief.mean, abs_tol=1e-3)
+
+
+def test_samples_follow_the_belief() -> None:
+    rng = Random(4)
+    for belief in (Beta(1, 1), Beta(3, 2), Beta(40, 4)):
+        draws = [belief.sample(rng) for _ in range(4000)]
+        spread = sqrt(belief.mean * (1 - belief.mean) / (belief.alpha + belief.beta + 1))
+        assert abs(sum(draws) / 4000 - belief.mean) < 4 * spread / sqrt(4000)
+        assert all(0 <= draw <= 1 for draw in draws)
+
+
+@given(st.dictionaries(st.text(max_size=3), counts, min_size=1, max_size=6))
+def test_the_chances_of_being_best_sum_to_one(profile: dict[str, tuple[int, int]]) -> None:
+    best = probability_best({s: Beta(1 + a, 1 + b) for s, (a, b) in profile.items()})
+    assert list(best) == list(profile)
+    assert isclose(sum(best.values()), 1)
+    assert all(0 <= p <= 1 for p in best.values())
+
+
+@given(counts, st.permutations(["a", "b", "c"]))
+def test_the_chance_of_being_best_depends_on_the_belief_and_not_on_its_place(
+    count: tuple[int, int], order: list[str]
+) -> None:
+    beliefs = {"a": Beta(1 + count[0], 1 + count[1]), "b": Beta(4, 2), "c": Beta(2, 2)}
+    shuffled = probability_best({name: beliefs[name] for name in order})
+    assert shuffled == pytest.approx(probability_best(beliefs))
+
+
+@given(counts)
+def test_complying_never_makes_a_strategy_less_likely_the_best(count: tuple[int, int]) -> None:
+    belief, others = Beta(1 + count[0], 1 + count[1]), {"b": Beta(9, 3), "c": Beta(2, 5)}
+    now = probability_best({"a": belief, **others})["a"]
+    assert probability_best({"a": belief.updated(True), **others})["a"] >= now - 1e-9
+    assert probability_best({"a": belief.updated(False), **others})["a"] <= now + 1e-9
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        {"a": (1, 1), "b": (1, 1), "c": (1, 1), "d": (1, 1)},
+        {"a": (5, 1), "b": (2, 3), "c": (1, 1), "d": (2, 2)},
+        {"a": (20, 3), "b": (18, 4), "c": (6, 7), "d": (1, 2)},
+        {"a": (200, 20), "b": (190, 20), "c": (2, 2), "d": (90, 120)},
+        {"a": (1, 9), "b": (1, 1)},
+    ],
+)
+def test_the_chance_of_being_best_is_what_drawing_finds(
+    profile: dict[str, tuple[int, int]],
+) -> None:
+    beliefs = {s: Beta(a, b) for s, (a, b) in profile.items()}
+    rng, draws = Random(11), 20_000
+    won = dict.fromkeys(beliefs, 0)
+    for _ in range(draws):
+        drawn = {s: belief.sample(rng) for s, belief in beliefs.items()}
+        won[max(drawn, key=drawn.__getitem__)] += 1
+    for strategy, chance in probability_best(beliefs).items():
+        sd = sqrt(chance * (1 - chance) / draws)
+        assert abs(won[strategy] / draws - chance) < 4 * sd + 0.002

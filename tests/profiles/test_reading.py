@@ -1,0 +1,137 @@
+"""TOML is read key by key, and whatever stands in it, the reader gets a value or one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.errors import ProfileError, TangyError
+from tangy_profiles.reading import Table, nearest, plain, read_toml
+
+values: st.SearchStrategy[Any] = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
+    max_leaves=8,
+)
+READERS: dict[str, Callable[[Table, str], object]] = {
+    "text": lambda table, key: table.text(key),
+    "flag": lambda table, key: table.flag(key),
+    "number": lambda table, key: table.number(key, -5, 5),
+    "number of any size": lambda table, key: table.number(key),
+    "whole": lambda table, key: table.whole(key, -5, 5),
+    "numbers": lambda table, key: table.numbers(key, 2, -5, 5),
+    "words": lambda table, key: table.words(key),
+    "known words": lambda table, key: table.words(key, ["one", "two"]),
+    "choice": lambda table, key: table.choice(key, ["one", "two"]),
+    "table": lambda table, key: table.table(key),
+    "tables": lambda table, key: [list(t) for t in table.tables(key)],
+    "items": lambda table, _: dict(table.items()),
+    "close": lambda table, _: table.close(),
+}
+
+
+@pytest.mark.parametrize("reader", READERS)
+@given(values, st.text())
+def test_any_value_under_any_key_is_taken_or_refused_in_one_printable_line(
+    reader: str, value: Any, key: str
+) -> None:
+    table = Table({key: value}, "mine.toml", "here.")
+    try:
+        READERS[reader](table, key)
+    except ProfileError as error:
+        assert str(error).startswith("mine.toml: here.")
+        assert len(str(error)) < 800
+        assert plain(str(error)) == str(error)
+        assert "\n" not in str(error)
+
+
+@given(st.text())
+def test_text_is_given_back_as_it_stands_if_it_can_be_shown(value: str) -> None:
+    table = Table({"key": value}, "mine.toml")
+    if value.strip() and plain(value) == value:
+        assert table.text("key") == value
+    else:
+        with pytest.raises(ProfileError):
+            table.text("key")
+
+
+@given(st.floats() | st.integers(), st.floats(-9, 9), st.floats(-9, 9))
+def test_a_number_is_finite_and_within_its_range(value: float, low: float, high: float) -> None:
+    table = Table({"key": value}, "mine.toml")
+    if low <= value <= high:
+        assert table.number("key", low, high) == value
+    else:
+        with pytest.raises(ProfileError, match="must be a number from"):
+            table.number("key", low, high)
+
+
+def test_absent_keys_take_their_default_or_are_said_to_be_missing() -> None:
+    table = Table({}, "mine.toml")
+    assert table.text("a", "") == ""
+    assert table.flag("a", False) is False
+    assert table.number("a", default=2) == 2
+    assert table.whole("a", 1, 3, 2) == 2
+    assert table.words("a", default=()) == ()
+    assert table.choice("a", ["x"], "y") == "y"
+    assert list(table.table("a", optional=True)) == []
+    assert not list(table.tables("b", optional=True))
+    for reader in ("text", "flag", "number", "whole", "numbers", "words", "table", "choice"):
+        with pytest.raises(ProfileError, match=r"^mine\.toml: a: is missing; it must be "):
+            READERS[reader](table, "a")
+
+
+def test_a_key_that_nobody_took_is_refused_with_the_nearest_one() -> None:
+    table = Table({"name": "x", "tilte": "y"}, "mine.toml")
+    table.text("name")
+    table.text("title", "")
+    with pytest.raises(ProfileError, match="tilte = 'y': is not a key here; did you mean 'title'"):
+        table.close()
+    with pytest.raises(ProfileError, match="did you mean 'tilt'"):
+        table.close(also=["tilt"])
+
+
+def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
+    assert nearest("jok", ["joke", "greeting"]) == "did you mean 'joke'?"
+    assert nearest("zzz", ["joke", "greeting"]) == "choose one of: greeting, joke."
+    assert nearest("zzz", []) == "there is none to choose from."
+
+
+@given(st.text())
+def test_plain_text_has_nothing_that_acts_on_a_terminal(text: str) -> None:
+    shown = plain(text)
+    assert len(shown) == len(text)
+    assert plain(shown) == shown
+    for char in "\x00\x07\x08\x1b\r\n\t\x7f\x9b\x9d\u200b\u202e\u2066\ufeff":
+        assert char not in shown
+    assert all(a in (b, "\N{REPLACEMENT CHARACTER}") for a, b in zip(shown, text, strict=True))
+
+
+@given(st.binary(max_size=200))
+def test_any_bytes_are_a_table_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.toml"
+    path.write_bytes(content)
+    try:
+        read_toml(path)
+    except ProfileError as error:
+        assert str(error).startswith("any.toml: ")
+        assert plain(str(error)) == str(error)
+
+
+def test_the_name_of_a_broken_file_cannot_act_on_the_terminal(tmp_path: Path) -> None:
+    for content in (b"\xff", b"=", b"x = " + b"[" * 9999, b"#" * 1_000_001, b"x = 1" + b"0" * 5000):
+        path = tmp_path / "a\x1b[2J.toml"
+        path.write_bytes(content)
+        with pytest.raises(ProfileError) as caught:
+            read_toml(path)
+        assert str(caught.value).isprintable()
+
+
+def test_profile_errors_are_shown_like_all_errors_that_a_person_can_mend() -> None:
+    assert issubclass(ProfileError, TangyError)
