@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -23,6 +24,7 @@ from tangy_tui import __version__
 if TYPE_CHECKING:
     from tangy_tui.house import House
     from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.ears import Ears
     from tangy_tui.learning.policy import Policy
 
 app = typer.Typer(
@@ -93,20 +95,22 @@ def teach(
     from tangy_tui.house import teacher_name
 
     who = plain(teacher or teacher_name())[:40]
+    sound = _keys_from_terminal(script) if mic == "-" else 0
     with _house(data, activity, users) as house:
         teaching = house.teaching(who, seed)
+        ears = _ears(mic, teaching, sound, house)
         if who == "scripted" and (speed is None or not _full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif not (plain_lines or script or as_json) and _full_screen():
             from tangy_tui.ui.program import run_teaching
 
             status = run_teaching(
-                house, teaching, ears=None, resume=not new, games=games, speed=speed,
+                house, teaching, ears=ears, resume=not new, games=games, speed=speed,
                 ascii_only=ascii_only,
             )  # fmt: skip
             raise typer.Exit(status)
         else:
-            _teach_by_lines(teaching, script, mic, as_json, resume=not new)
+            _teach_by_lines(teaching, script, ears, as_json, resume=not new)
 
 
 @app.command()
@@ -382,37 +386,55 @@ def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
 
 
 def _teach_by_lines(
-    teaching: Teaching, script: Path | None, mic: str | None, as_json: bool, *, resume: bool
+    teaching: Teaching, script: Path | None, ears: Ears | None, as_json: bool, *, resume: bool
 ) -> None:
     from tangy_tui.lines import TeachingLines
 
-    read = _reader(script, mic)
     write: Callable[[str], None] = (lambda _: None) if as_json else _print_line
-    asyncio.run(TeachingLines(teaching, read, write).run(resume=resume))
+    lines = TeachingLines(teaching, _reader(script), write, ears, scripted=script is not None)
+    asyncio.run(lines.run(resume=resume))
     if as_json:
         _print_json({"demonstrations": [_demonstration_json(teaching.demonstration)]})
 
 
-def _reader(script: Path | None, mic: str | None) -> Callable[[], str | None]:
-    """Return where lines come from: the script, the terminal if audio is on stdin, or stdin."""
-    if script is not None:
-        try:
-            lines = iter(script.read_text(encoding="utf-8").splitlines())
-        except FileNotFoundError:
-            raise TangyError(plain(f"{script}: there is no such file.")) from None
-        except (OSError, UnicodeDecodeError):
-            raise TangyError(plain(f"{script}: cannot be read as text.")) from None
-        return lambda: next(lines, None)
-    stream = sys.stdin
-    if mic == "-":
-        try:
-            stream = Path("/dev/tty").open(encoding="utf-8")  # noqa: SIM115 - open to the end
-        except OSError:
-            raise TangyError(
-                "With --mic - the audio comes on standard input, so answers need a terminal "
-                "or --script FILE."
-            ) from None
-    return lambda: stream.readline() or None
+def _reader(script: Path | None) -> Callable[[], str | None]:
+    """Return where lines come from: the script, or standard input."""
+    if script is None:
+        return lambda: sys.stdin.readline() or None
+    try:
+        lines = iter(script.read_text(encoding="utf-8").splitlines())
+    except FileNotFoundError:
+        raise TangyError(plain(f"{script}: there is no such file.")) from None
+    except (OSError, UnicodeDecodeError):
+        raise TangyError(plain(f"{script}: cannot be read as text.")) from None
+    return lambda: next(lines, None)
+
+
+def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears | None:
+    if mic is None:
+        return None
+    from tangy_tui.learning.ears import Ears
+
+    return Ears(mic, teaching.phrasebook, stdin=sound, log=house.store.folder / "speech.log")
+
+
+def _keys_from_terminal(script: Path | None) -> int:
+    """Move the sound on standard input elsewhere, and read keys from the terminal instead.
+
+    Returns:
+        The file descriptor that now has the sound.
+    """
+    sound = os.dup(0)
+    try:
+        keys = os.open("/dev/null" if script is not None else "/dev/tty", os.O_RDWR)
+    except OSError:
+        raise TangyError(
+            "--mic -: the sound comes on standard input, so the answers need a terminal or "
+            "--script FILE."
+        ) from None
+    os.dup2(keys, 0)
+    os.close(keys)
+    return sound
 
 
 def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:

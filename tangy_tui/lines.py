@@ -6,7 +6,8 @@ It drives the same sessions as the screens. One thing is said per line, and noth
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from tangy_profiles.beliefs import probability_best
 from tangy_profiles.reading import plain
@@ -35,6 +36,7 @@ from tangy_tui.learning.demonstrating import (
     TeachingEvent,
     Undo,
 )
+from tangy_tui.learning.ears import Ears
 from tangy_tui.wording import Name, situation_words, state_words, step_words
 
 Read = Callable[[], str | None]
@@ -52,18 +54,25 @@ class TeachingLines:
         teaching: Teaching,
         read: Read,
         write: Write,
-        ears: AsyncIterator[Say] | None = None,
+        ears: Ears | None = None,
+        *,
+        scripted: bool = False,
     ) -> None:
         """Make the session.
 
         Args:
-            ears: spoken commands; each is put before the next typed one, and its question is
-                answered from `read` all the same.
+            ears: spoken commands, if there are any; their questions are answered from `read`.
+            scripted: the lines are all there already, so what is spoken goes before them.
         """
+        self._together = ears is not None and ears.live and not scripted
         self._teaching = teaching
         self._read = read
         self._write = write
         self._ears = ears
+        self._spoken: asyncio.Future[Say | None] | None = None
+        self._typed: asyncio.Future[str | None] | None = None
+        if ears is not None:
+            ears.tell = write
 
     async def run(self, *, resume: bool = True) -> None:
         """Teach until `quit` or the end of the input. What was verified is kept."""
@@ -85,12 +94,31 @@ class TeachingLines:
             )
 
     async def _next_line(self) -> str | Say | None:
-        if self._ears is not None and self._teaching.question is None:
-            try:
-                return await anext(self._ears)
-            except StopAsyncIteration:
-                self._ears = None
-        return await asyncio.to_thread(self._read)
+        """Return what comes next: the spoken command if one is due, otherwise a line.
+
+        A recording goes before the lines, so that a script can answer it; somebody who is
+        speaking now may as well type.
+        """
+        if self._ears is None or self._teaching.question is not None:
+            return await self._line()
+        spoken = self._spoken = self._spoken or asyncio.ensure_future(anext(self._ears, None))
+        typed = self._typed = self._typed or (self._reading() if self._together else None)
+        waiting: list[asyncio.Future[Any]] = [spoken] if typed is None else [spoken, typed]
+        done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+        if typed in done:
+            return await self._line()
+        said, self._spoken = await spoken, None
+        if said is None:
+            self._ears = None
+            return await self._line()
+        return said
+
+    def _reading(self) -> asyncio.Future[str | None]:
+        return asyncio.ensure_future(asyncio.to_thread(self._read))
+
+    async def _line(self) -> str | None:
+        line, self._typed = self._typed or self._reading(), None
+        return await line
 
     def _command(self, line: str) -> TeacherCommand | str:
         text = line.strip()

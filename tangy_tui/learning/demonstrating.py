@@ -18,6 +18,7 @@ from tangy_profiles.state import Outcome
 from tangy_profiles.store import Store
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.library import BEGUN, FINISHED, STEP, UNDONE, read_demonstrations
+from tangy_tui.learning.speech import UNDERSTOOD
 from tangy_tui.world import World
 
 MakeWorld: TypeAlias = Callable[[int, Sequence[str]], World]
@@ -226,10 +227,11 @@ class Teaching:
         if self.demonstration.finished:
             return [Refused("This game is over. Begin the next demonstration, or undo a step.")]
         command = self.phrasebook.understand(text)
-        if command is None:
+        if command is not None:
+            command = replace(command, confidence=command.confidence * confidence)
+        if command is None or (confidence < 1 and command.confidence < UNDERSTOOD):
             self.question = None
             return [NotUnderstood(text, self.phrasebook.suggestions(text))]
-        command = replace(command, confidence=command.confidence * confidence)
         return self._ask(command, command.behaviour)
 
     def _ask(self, command: Command, name: str) -> list[TeachingEvent]:

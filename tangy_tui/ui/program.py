@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Coroutine, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeVar
 
 from textual.screen import Screen
+from textual.worker import Worker, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library
 from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.effects import Effects, learn_effects
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.ui.app import TangyApp, run_app
 from tangy_tui.ui.dialogs.message import MessageDialog
@@ -23,6 +24,8 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 from tangy_tui.wording import counted
+
+T = TypeVar("T")
 
 STORY_TEACHING = (2.0, 6.0, 12.0)
 """Steps a second of the demo's three demonstrations: slow enough to read at first."""
@@ -147,17 +150,17 @@ class Program(TangyApp):
             await self.push_screen_wait(MessageDialog("\n".join(notices), title="Policy"))
         return policy
 
-    async def _in_thread(self, what: str, work: Any) -> Any:
+    async def _in_thread(self, what: str, work: Callable[[], T]) -> T | None:
         """Do slow work beside the screen; None if it failed for a reason that was shown."""
         self.say(what)
         try:
-            return await self.run_worker(work, thread=True, exit_on_error=False).wait()
-        except Exception as error:
-            cause = getattr(error, "error", error)  # a worker wraps what was raised in it
-            if not isinstance(cause, TangyError):
+            worker: Worker[T] = self.run_worker(work, thread=True, exit_on_error=False)
+            return await worker.wait()
+        except WorkerFailed as failed:
+            if not isinstance(failed.error, TangyError):
                 raise
             self.clear_notifications()
-            await self.push_screen_wait(MessageDialog(str(cause), title="Not yet"))
+            await self.push_screen_wait(MessageDialog(str(failed.error), title="Not yet"))
             return None
         finally:
             self.clear_notifications()
@@ -191,6 +194,8 @@ class Program(TangyApp):
             if not complete:
                 return
         policy = await self._in_thread("Tangy is learning ...", lambda: learn(house))
+        if policy is None:
+            return
         await self._open_policy(policy, leave_after=6.0)
         facilitation = house.facilitation(policy, seed)
         await self.push_screen_wait(

@@ -25,4 +25,4 @@ class OutlivingWriter(WriterThread):
 
 def outlive_terminal() -> None:
     """Let every program that is started from here on write with an `OutlivingWriter`."""
-    linux_driver.WriterThread = OutlivingWriter  # type: ignore[misc]
+    linux_driver.WriterThread = OutlivingWriter  # type: ignore[attr-defined]

@@ -126,6 +126,12 @@ class Terminal:
 OpenTerminal = Callable[..., Terminal]
 
 
+@pytest.fixture(scope="session")
+def tangy() -> str:
+    """The path of the program."""
+    return TANGY
+
+
 @pytest.fixture
 def open_terminal(tmp_path: Path) -> Iterator[OpenTerminal]:
     """Open terminals that run `tangy` with these words, in a data folder of the test's own."""

@@ -6,17 +6,20 @@ import os
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from conftest import TANGY, OpenTerminal, Tmux
+
+if TYPE_CHECKING:
+    from tests.real.conftest import OpenTerminal, Tmux
 
 
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (160, 45)])
 def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
-    open_tmux: Callable[[int, int], Tmux], tmp_path: Path, columns: int, lines: int
+    open_tmux: Callable[[int, int], Tmux], tangy: str, tmp_path: Path, columns: int, lines: int
 ) -> None:
     tmux = open_tmux(columns, lines)
-    command = (TANGY, "teach", "--seed", "1", "--data", str(tmp_path / "data"))
+    command = (tangy, "teach", "--seed", "1", "--data", str(tmp_path / "data"))
     tmux.run(*command)
     tmux.until("type a command")
     tmux("send-keys", "-l", "greet everyone")

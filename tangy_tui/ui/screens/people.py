@@ -11,8 +11,8 @@ from textual.widgets import Static
 
 from tangy_tui.house import House
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 

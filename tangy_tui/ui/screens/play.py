@@ -22,8 +22,8 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.panels import WIDE, key_line, panel
 from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import WIDE, key_line, panel
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -164,8 +164,8 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_panel(self, name: str) -> None:
         """Show a panel where there is no room for all of them, and give it the keys."""
-        for panel in ("transcript", "policy", "posteriors", "log"):
-            self.query_one(f"#{panel}").set_class(panel == name, "-chosen")
+        for id in ("transcript", "policy", "posteriors", "log"):
+            self.query_one(f"#{id}").set_class(id == name, "-chosen")
         if name != "room":
             self.query_one(f"#{name}").focus()
 

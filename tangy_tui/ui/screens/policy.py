@@ -13,9 +13,9 @@ from tangy_tui.house import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
-from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.wording import situation_words
 

@@ -32,9 +32,9 @@ from tangy_tui.learning.demonstrating import (
 from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.panels import WIDE, panel
 from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
 from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import WIDE, panel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -82,7 +82,7 @@ class TeachScreen(TangyScreen[bool]):
         Args:
             resume: take up an unfinished demonstration of this teacher.
             another: the session has begun already; begin its next demonstration.
-            ears: opens the source of spoken commands, if there is one.
+            ears: where spoken commands come from, if they do.
             scripted: let a scripted teacher give the demonstration, this many steps a second.
         """
         super().__init__()
@@ -189,6 +189,8 @@ class TeachScreen(TangyScreen[bool]):
 
     def _ask(self, asked: Asked) -> None:
         self._free.clear()
+        if self._ears is not None:
+            self._ears.shut()
         behaviours = self._teaching.activity.behaviours
         self.app.push_screen(
             QuestionDialog(
@@ -203,6 +205,8 @@ class TeachScreen(TangyScreen[bool]):
     def _answered(self, answer: Answer | None) -> None:
         if answer is None:
             answer = Answer(False)
+        if self._ears is not None:
+            self._ears.open()
         chosen = None if answer.alternative is None else answer.alternative + 1
         self._apply(Reply(answer.yes, chosen))
 
@@ -269,8 +273,9 @@ class TeachScreen(TangyScreen[bool]):
 
     async def _listen(self, ears: Ears) -> None:
         """Take spoken commands, one at a time: the next when the last is answered."""
+        ears.tell = lambda sentence: self._log.write(sentence, "dim")
         try:
-            async for said in ears():
+            async for said in ears:
                 await self._free.wait()
                 self._apply(said)
         except TangyError as error:

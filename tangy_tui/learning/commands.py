@@ -1,0 +1,412 @@
+"""What a teacher may say or type, and which behaviour is meant by it (III-A-1).
+
+The identified words are matched to the phrases and keywords that the activity lists for each
+behaviour. Typed and spoken words come through this one door, so both are understood alike.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity, Behaviour
+from tangy_profiles.person import Person
+
+LONGEST_TEXT = 200  # characters of a command that are looked at
+MOST_ALTERNATIVES = 3
+
+KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phrase of theirs
+KEYWORDS_AT_LEAST = 0.55  # and in one that is quite unlike
+NEAREST_AT_BEST = 0.79  # confidence of a phrase that is nearly the one that was said
+NEAREST_AT_LEAST = 0.45  # what is less like any phrase is not understood
+MENDED = 0.9  # what is left of the confidence when words were mended, besides their likeness
+CLEAR_LEAD = 0.2  # a lead over the next behaviour that takes nothing off the confidence
+ALTERNATIVE_AT_LEAST = 0.25
+UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
+SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
+
+FILLERS = frozenset(
+    (
+        *("a", "ah", "an", "and", "can", "could", "er", "hey", "just", "now", "ok", "okay"),
+        *("please", "so", "tangy", "the", "then", "uh", "um", "will", "would", "you"),
+    )
+)
+ARTICLES = frozenset(("a", "an", "the"))
+REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
+NUMBERS = (
+    *("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+    *("eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen"),
+    *("nineteen", "twenty"),
+)
+
+_WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*|[0-9]+")
+_ACCENTS = re.compile("[\u0300-\u036f]")
+
+Words = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A behaviour as it was asked for, to be verified before it is executed.
+
+    `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
+    1; `heard` is the text it was understood from; `alternatives` are up to three other
+    behaviours, likeliest first.
+    """
+
+    behaviour: str
+    arguments: Mapping[str, str]
+    confidence: float
+    heard: str
+    alternatives: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Phrase:
+    """One way to ask for a behaviour, or the keywords of one; numbers stand as digits.
+
+    `bare` are the words without fillers; `rank` orders what is equally good.
+    """
+
+    words: Words
+    bare: Words
+    behaviour: str
+    user: str | None
+    rank: tuple[int, int]
+
+    @property
+    def shown(self) -> str:
+        return " ".join(self.words)
+
+
+class Phrasebook:
+    """Every phrase and keyword of an activity, with the people who take part in it.
+
+    Behaviours that go to a person can be asked for with that person's number or name ("go to user
+    2", "go to user two", "go to rosa"). The number is the one their id ends with, or their place
+    in the list where the ids have none.
+    """
+
+    phrases: Mapping[str, str]
+
+    def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
+        self._behaviours = tuple(activity.behaviours)
+        self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
+        self._numbers = _numbers_of(people)
+        self._names = _names_of(people)
+        self._phrases: dict[Words, _Phrase] = {}
+        self._keywords: list[_Phrase] = []
+        for behaviour in activity.behaviours.values():
+            self._add_phrases(behaviour)
+        self._untold = len(self._phrases)
+        for behaviour in activity.behaviours.values():
+            self._add(_words(behaviour.name), behaviour.name, None, len(behaviour.phrases) + 1)
+        for behaviour in activity.behaviours.values():
+            self._add_keywords(behaviour)
+            if behaviour.effect == "go to user":
+                self._add_people(behaviour)
+        self.phrases = MappingProxyType(
+            {
+                form: phrase.behaviour
+                for phrase in self._phrases.values()
+                for form in (phrase.shown, _spoken(phrase.words))
+            }
+        )
+        self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
+        self._joined = _of_one_meaning(self._phrases.values(), lambda p: "".join(p.bare))
+        self._weights = self._word_weights()
+
+    def understand(self, text: str) -> Command | None:
+        """Find the behaviour that a text asks for.
+
+        An exact phrase counts 1. Keywords that point to one behaviour count less, by how unlike
+        its phrases the rest of the text is; then comes the nearest phrase, if it is near enough.
+        Words that look like typing slips of known ones are mended, which costs confidence too.
+        """
+        heard = _clean(text)
+        words = _words(heard)
+        if (exact := self._exact(words)) is not None:
+            return self._command(exact, 1.0, heard, words)
+        if any(word in REFUSALS and word not in self._weights for word in words):
+            return None
+        mended, trust = self._mend(words)
+        found = self._exact(mended) or self._joined.get("".join(_bare(words)))
+        confidence = min(trust, MENDED)
+        if found is None:
+            found = self._point(mended)
+            confidence = trust * self._keyword_confidence(mended, found)
+        if found is None:
+            found, confidence = self._nearest(mended, trust)
+        if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(words, found):
+            return None
+        return self._command(found, confidence, heard, mended)
+
+    def suggestions(self, text: str) -> tuple[str, ...]:
+        """Return up to three phrases that a text comes nearest to, of different behaviours."""
+        words, _ = self._mend(_words(_clean(text)))
+        near = [phrase.shown for likeness, phrase in self._ranking(words) if likeness > 0]
+        return tuple(near[:MOST_ALTERNATIVES])
+
+    def complete(self, prefix: str) -> tuple[str, ...]:
+        """Return the phrases that begin with what has been typed, the most usual ones first.
+
+        Case and spaces are of no account. Numbers are completed as digits, unless the prefix
+        already has a part of a number in words.
+        """
+        begun = re.sub(r"\s+", " ", _clean(prefix, strip=False).lstrip()).casefold()
+        ranked = sorted(self._phrases.values(), key=lambda phrase: phrase.rank)
+        shown = dict.fromkeys(p.shown for p in ranked if p.shown.startswith(begun))
+        if not shown:
+            written = (_spoken(phrase.words) for phrase in ranked)
+            shown = dict.fromkeys(form for form in written if form.startswith(begun))
+        return tuple(shown)
+
+    def spoken(self) -> tuple[str, ...]:
+        """Return the phrases as they are said, numbers in words: what a recogniser listens for.
+
+        The plain name of a behaviour is not among them unless the activity lists it as a phrase.
+        """
+        listed = list(self._phrases.values())
+        said = [p for place, p in enumerate(listed) if place < self._untold or p.user is not None]
+        return tuple(dict.fromkeys(_spoken(phrase.words) for phrase in said))
+
+    def _add(self, words: Words, behaviour: str, user: str | None, place: int) -> None:
+        """Enter a phrase; what was entered first keeps its meaning."""
+        if words and words not in self._phrases:
+            self._phrases[words] = self._entry(words, behaviour, user, place)
+
+    def _entry(self, words: Words, behaviour: str, user: str | None, place: int) -> _Phrase:
+        rank = (place, self._behaviours.index(behaviour))
+        return _Phrase(words, _bare(words), behaviour, user, rank)
+
+    def _add_phrases(self, behaviour: Behaviour) -> None:
+        for place, text in enumerate(behaviour.phrases):
+            self._add(_words(text), behaviour.name, None, place)
+        self._add(_words(behaviour.question), behaviour.name, None, len(behaviour.phrases))
+
+    def _add_people(self, behaviour: Behaviour) -> None:
+        """Put people in the place of the last word of each phrase: "go to [the] user"."""
+        for place, text in enumerate(behaviour.phrases):
+            *stem, noun = _words(text)
+            while stem and stem[-1] in ARTICLES:
+                stem.pop()
+            for number, user in self._numbers.items():
+                self._add((*stem, noun, number), behaviour.name, user, place)
+            for name, user in self._names.items():
+                self._add((*stem, *name), behaviour.name, user, place)
+
+    def _add_keywords(self, behaviour: Behaviour) -> None:
+        for place, entry in enumerate(behaviour.keywords):
+            words = _words(" ".join(entry))
+            forms: list[tuple[Words, str | None]] = [(words, None)]
+            if behaviour.effect == "go to user":
+                forms += [((*words, number), user) for number, user in self._numbers.items()]
+                forms += [((*words[:-1], *name), user) for name, user in self._names.items()]
+            self._keywords += [self._entry(w, behaviour.name, user, place) for w, user in forms]
+
+    def _exact(self, words: Words) -> _Phrase | None:
+        return self._phrases.get(words) or self._bare.get(" ".join(_bare(words)))
+
+    def _word_weights(self) -> dict[str, float]:
+        """Weigh every word of the phrasebook: the more behaviours share it, the less it tells."""
+        users: dict[str, set[str]] = defaultdict(set)
+        for phrase in (*self._phrases.values(), *self._keywords):
+            for word in phrase.words:
+                users[word].add(phrase.behaviour)
+        return {word: 1 / len(behaviours) for word, behaviours in users.items()}
+
+    def _weight(self, word: str) -> float:
+        return self._weights.get(word, UNKNOWN_WORD)
+
+    def _mend(self, words: Words) -> tuple[Words, float]:
+        """Put the known word for each typing slip; return the words and how far to trust them."""
+        mended: list[str] = []
+        trust = 1.0
+        for word in words:
+            if word not in self._weights and word not in FILLERS:
+                like, known = max((_likeness(word, known), known) for known in self._weights)
+                if like >= SAME_WORD:
+                    trust = min(trust, MENDED * like)
+                    word = known
+            mended.append(word)
+        return tuple(mended), trust
+
+    def _keyword_confidence(self, words: Words, found: _Phrase | None) -> float:
+        """Grade keywords by how like a phrase of the behaviour the whole text is."""
+        likeness = [
+            like for like, p in self._ranking(words) if found and p.behaviour == found.behaviour
+        ]
+        return KEYWORDS_AT_LEAST + (KEYWORDS_AT_BEST - KEYWORDS_AT_LEAST) * max(
+            likeness, default=0.0
+        )
+
+    def _point(self, words: Words) -> _Phrase | None:
+        """Return the keywords that were heard, if they all mean the same."""
+        found = [entry for entry in self._keywords if _in_order(entry.words, words)]
+        kept = [
+            entry
+            for entry in found
+            if not any(o.words != entry.words and _in_order(entry.words, o.words) for o in found)
+        ]
+        return kept[0] if len({(e.behaviour, e.user) for e in kept}) == 1 else None
+
+    def _numbers_fit(self, words: Words, found: _Phrase) -> bool:
+        """Refuse to go to anybody when a number was said that is not that person's."""
+        if found.behaviour not in self._to_people:
+            return True
+        said = {word for word in words if word.isdigit()}
+        return said <= {word for form in self._forms_of(found.user) for word in form}
+
+    def _forms_of(self, user: str | None) -> Iterator[Words]:
+        yield from ((number,) for number, id in self._numbers.items() if id == user)
+        yield from (name for name, id in self._names.items() if id == user)
+
+    def _nearest(self, words: Words, trust: float) -> tuple[_Phrase | None, float]:
+        ranked = self._ranking(words)
+        if not ranked:
+            return None, 0.0
+        likeness, best = ranked[0]
+        lead = likeness - (ranked[1][0] if len(ranked) > 1 else 0.0)
+        clear = 0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD)
+        return best, trust * NEAREST_AT_BEST * likeness * clear
+
+    def _command(self, found: _Phrase, confidence: float, heard: str, words: Words) -> Command:
+        others = [
+            phrase.behaviour
+            for likeness, phrase in self._ranking(words)
+            if phrase.behaviour != found.behaviour and likeness >= ALTERNATIVE_AT_LEAST
+        ]
+        arguments = MappingProxyType({} if found.user is None else {"user": found.user})
+        alternatives = tuple(others[:MOST_ALTERNATIVES])
+        return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
+
+    def _ranking(self, words: Words) -> list[tuple[float, _Phrase]]:
+        """Return each behaviour's phrase that is most like the words, the likest first."""
+        said = _bare(words)
+        best: dict[str, tuple[float, _Phrase]] = {}
+        for phrase in self._phrases.values():
+            likeness = self._phrase_likeness(said, phrase.bare) if said else 0.0
+            if likeness > best.get(phrase.behaviour, (0.0, phrase))[0]:
+                best[phrase.behaviour] = (likeness, phrase)
+        return sorted(best.values(), key=lambda found: (-found[0], found[1].rank))
+
+    def _phrase_likeness(self, said: Words, phrase: Words) -> float:
+        """Compare by an edit distance over words, each weighed by how much it tells."""
+        told = [self._weight(word) for word in phrase]
+        spent = [self._weight(word) for word in said]
+        row = [0.0]
+        for weight in told:
+            row.append(row[-1] + weight)
+        for word, cost in zip(said, spent, strict=True):
+            last, row = row, [row[0] + cost]
+            for place, (known, weight) in enumerate(zip(phrase, told, strict=True)):
+                swap = 0.0 if _stem(word) == _stem(known) else cost + weight
+                row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
+        return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
+
+
+def _of_one_meaning(
+    phrases: Iterable[_Phrase], key: Callable[[_Phrase], str]
+) -> dict[str, _Phrase]:
+    """Return the phrases by a key, where all phrases with that key mean the same."""
+    found: dict[str, list[_Phrase]] = defaultdict(list)
+    for phrase in phrases:
+        found[key(phrase)].append(phrase)
+    return {
+        form: same[0]
+        for form, same in found.items()
+        if form and len({(phrase.behaviour, phrase.user) for phrase in same}) == 1
+    }
+
+
+def _likeness(said: str, known: str) -> float:
+    """Return how like a typing slip of a known word this is: from 0 to 1.
+
+    Short words are taken for slips only of words with the same letters, or one more or less: one
+    letter exchanged in "go" or "mark" mostly makes another English word.
+    """
+    longest = max(len(said), len(known))
+    if not (said.isalpha() and known.isalpha()) or longest - min(len(said), len(known)) > 2:
+        return 0.0
+    if sorted(said) == sorted(known):
+        return 1 - 1 / (longest + 1)
+    if longest < 4 or (longest == 4 and len(said) == len(known)):
+        return 0.0
+    return 1 - _slips(said, known) / longest
+
+
+def _slips(one: str, other: str) -> int:
+    """Count the letters to insert, drop, replace or swap with their neighbour (OSA distance)."""
+    before: list[int] = []
+    last = list(range(len(other) + 1))
+    for i, letter in enumerate(one, 1):
+        row = [i]
+        for j, wanted in enumerate(other, 1):
+            row.append(min(last[j] + 1, row[-1] + 1, last[j - 1] + (letter != wanted)))
+            if i > 1 and j > 1 and letter == other[j - 2] and one[i - 2] == wanted:
+                row[-1] = min(row[-1], before[j - 2] + 1)
+        before, last = last, row
+    return last[-1]
+
+
+def _clean(text: str, *, strip: bool = True) -> str:
+    """Cap a text and take out what cannot be shown: controls, bidi marks, lone surrogates."""
+    spaced = (" " if char.isspace() else char for char in text[:LONGEST_TEXT])
+    shown = "".join(char for char in spaced if not unicodedata.category(char).startswith("C"))
+    return re.sub(" +", " ", shown).strip() if strip else shown
+
+
+def _words(text: str) -> Words:
+    """Split into lower-case words: accents and punctuation dropped, number words as digits."""
+    folded = unicodedata.normalize("NFKD", text[:LONGEST_TEXT]).casefold().replace("\u2019", "'")
+    plain = unicodedata.normalize("NFC", _ACCENTS.sub("", folded))
+    return tuple(_digits(word) for word in _WORD.findall(plain))
+
+
+def _digits(word: str) -> str:
+    """Write a number as digits, however it is written; other words stay as they are."""
+    if word.isascii() and word.isdigit():
+        return str(int(word))
+    return str(NUMBERS.index(word)) if word in NUMBERS else word
+
+
+def _spoken(words: Words) -> str:
+    """Write words as they are said, numbers up to twenty in words."""
+    return " ".join(
+        NUMBERS[int(word)] if word.isdigit() and int(word) < len(NUMBERS) else word
+        for word in words
+    )
+
+
+def _bare(words: Words) -> Words:
+    return tuple(word for word in words if word not in FILLERS)
+
+
+def _stem(word: str) -> str:
+    return word[:-1] if len(word) > 3 and word.endswith("s") else word
+
+
+def _in_order(wanted: Words, words: Words) -> bool:
+    rest = iter(words)
+    return all(word in rest for word in wanted)
+
+
+def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
+    """Return ids by number: the number that the ids end with, else the place in the list."""
+    ends = [re.search("[0-9]{1,2}$", person.id) for person in people]
+    numbers = [str(int(end.group())) for end in ends if end]
+    if len(set(numbers)) < len(people):
+        numbers = [str(place) for place in range(1, len(people) + 1)]
+    return {number: person.id for number, person in zip(numbers, people, strict=True)}
+
+
+def _names_of(people: Sequence[Person]) -> dict[Words, str]:
+    """Return ids by name; a name that two people share, or that has no word, is left out."""
+    named: dict[Words, list[str]] = defaultdict(list)
+    for person in people:
+        named[_words(_clean(person.name))].append(person.id)
+    return {name: ids[0] for name, ids in named.items() if _bare(name) and len(ids) == 1}

@@ -1,0 +1,45 @@
+"""The first screen is painted without what is heavy: nobody waits for a forest to see a menu."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+HEAVY = ("sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy")
+
+PAINT = """
+import asyncio, json, sys
+from pathlib import Path
+import tangy_tui
+from tangy_tui.house import House
+from tangy_tui.ui.program import Program
+
+async def paint():
+    with_house = House(Path(sys.argv[1]))
+    app = Program(with_house)
+    async with app.run_test(size=(80, 24)) as pilot:
+        await pilot.pause()
+        strips = app.screen._compositor.render_strips()
+        text = "\\n".join("".join(s.text for s in strip) for strip in strips)
+    with_house.close()
+    return text
+
+text = asyncio.run(paint())
+loaded = sorted({name.partition(".")[0] for name in sys.modules})
+print(json.dumps({"text": text, "loaded": loaded}))
+"""
+
+
+def test_the_first_screen_loads_nothing_heavy(tmp_path: Path) -> None:
+    done = subprocess.run(  # noqa: S603 - our own interpreter
+        [sys.executable, "-c", PAINT, str(tmp_path / "data")],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    seen = json.loads(done.stdout)
+    assert "Teach" in seen["text"]
+    assert "textual" in seen["loaded"]
+    assert not set(HEAVY) & set(seen["loaded"])
