@@ -1,50 +1,29 @@
 """The append-only event log of one data folder, and what is counted out of it.
 
-One process writes a folder at a time; any number may read beside it. Names of people stand in a
-table of their own, so that they can be forgotten while the counts that beliefs are made of stay.
+One process writes a folder at a time; any number may read beside it (see `log_file`). Names of
+people stand in a table of their own, so that they can be forgotten while the counts that beliefs
+are made of stay.
 """
 
 from __future__ import annotations
 
-import fcntl
 import json
-import os
 import sqlite3
 import uuid
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
-from io import FileIO
-from itertools import count
 from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple, Self
 
-from tangy_profiles.errors import StoreBusy, StoreError, TangyError
+from tangy_profiles.errors import StoreError, TangyError
+from tangy_profiles.log_file import FILE, LogFile
 from tangy_profiles.reading import plain
 
-FILE = "tangy.db"
 LONGEST_NAME = 40  # characters
-ALWAYS_CHECKED = 16_000_000  # bytes: 13 ms of quick_check
 WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up a checkpoint
-
-# No index on uuid: it costs a third of the appending speed for what only a merge asks.
-MIGRATIONS: tuple[str, ...] = (
-    """
-    CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
-    CREATE TABLE name (person TEXT PRIMARY KEY, name TEXT NOT NULL);
-    CREATE TABLE event (
-        seq INTEGER PRIMARY KEY, uuid TEXT NOT NULL, robot TEXT NOT NULL, at TEXT NOT NULL,
-        kind TEXT NOT NULL, person TEXT, strategy TEXT, complied INTEGER, body TEXT NOT NULL
-    );
-    CREATE INDEX event_kind ON event (kind);
-    CREATE INDEX event_response ON event (person, strategy, complied) WHERE complied IS NOT NULL;
-    CREATE TRIGGER unchanged BEFORE UPDATE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
-    CREATE TRIGGER undeleted BEFORE DELETE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
-    """,
-)
-"""MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
 
 _READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event"
 _ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
@@ -72,26 +51,6 @@ class Event(NamedTuple):
     body: dict[str, Any]
 
 
-def _hold(path: Path) -> tuple[FileIO, str]:
-    """Become the folder's one writer; return the lock file and what the last writer left in it.
-
-    The kernel drops the lock with the process. Removing the file would race with the next one.
-    """
-    file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT, 0o600), "r+")
-    left = file.read(200).decode(errors="replace")
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        file.close()
-        who = f"process {left}" if left.isdecimal() else "another process"
-        where = f"{who} is writing to {plain(str(path.parent))}"
-        raise StoreBusy(f"{where}; close it, or choose another folder with --data.") from None
-    os.fchmod(file.fileno(), 0o600)
-    file.truncate(0)
-    os.pwrite(file.fileno(), str(os.getpid()).encode(), 0)
-    return file, left
-
-
 class Store:
     """The log of one data folder; threads may share it (see `transaction`).
 
@@ -102,14 +61,12 @@ class Store:
         """Prepare a store that is not open yet; use `Store.open`."""
         self.folder = folder
         self.writable = writable
-        self.notices: list[str] = []
-        self._path = folder / FILE
         self._now = now
         self._lock = RLock()
-        self._hold: FileIO | None = None
-        self._db: sqlite3.Connection | None = None
+        self._file = LogFile(folder, writable, now)
+        self.notices = self._file.notices
         self._robot = ""
-        self._closed = self._damaged = self._within = self._spoilt = False
+        self._closed = self._within = self._spoilt = False
 
     @classmethod
     def open(
@@ -126,10 +83,10 @@ class Store:
         """
         store = cls(folder.absolute(), write, now or (lambda: datetime.now(UTC)))
         try:
-            with store._in_words():
-                store._begin() if write else store._reading()
+            with store._file.in_words():
+                store._begin() if write else store._file.reading()
         except BaseException:
-            store._damaged = True  # so that closing does not vouch for it
+            store._file.damaged = True  # so that closing does not vouch for it
             store.close()
             raise
         return store
@@ -188,9 +145,9 @@ class Store:
             finally:
                 if outermost:
                     self._within = self._spoilt = False
-                    if self._db is not None:
+                    if self._file.db is not None:
                         with suppress(sqlite3.Error):
-                            self._db.rollback()  # after a commit: nothing
+                            self._file.db.rollback()  # after a commit: nothing
 
     def events(self, *kinds: str, after: int = 0) -> Iterator[Event]:
         """Yield the events of these kinds (of all, if none is named) with seq > `after`, by seq.
@@ -259,20 +216,8 @@ class Store:
     def close(self) -> None:
         """Close the log and let another writer in; may be repeated."""
         with self._lock:
-            db, hold, self._db, self._hold = self._db, self._hold, None, None
             self._closed = True
-            if db is not None:
-                with suppress(sqlite3.Error):
-                    db.rollback()
-                    if hold is not None:  # only the writer checkpoints
-                        db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchall()
-                db.close()
-            if hold is not None:
-                if not self._damaged:
-                    with suppress(OSError):
-                        hold.truncate(0)
-                        os.pwrite(hold.fileno(), self._mark().encode(), 0)
-                hold.close()
+            self._file.close()
 
     def __enter__(self) -> Self:
         return self
@@ -281,162 +226,32 @@ class Store:
         self.close()
 
     def _begin(self) -> None:
-        """Become the writer of the folder: make it, hold it, check it, bring it up to date."""
-        if not self.folder.exists():
-            self.folder.mkdir(parents=True)
-            self.folder.chmod(0o700)  # whatever the umask
-        self._hold, left = _hold(self.folder / "tangy.lock")
-        if not self._sound(left):
-            self._set_aside()
-        self._path.touch(0o600)
-        # By path: closing a descriptor of ours would drop SQLite's own locks on the file. SQLite
-        # gives -wal and -shm the mode of the log.
-        self._path.chmod(0o600)
-        db = self._db = self._connect()
-        # secure_delete: a name that was replaced or forgotten must not stay on a free page.
-        for setting in ("journal_mode=WAL", "synchronous=FULL", "secure_delete=ON"):
-            db.execute(f"PRAGMA {setting}").fetchall()
-        self._migrate(db)
+        """Become the writer, and learn which robot's folder this is."""
+        db = self._file.begin()
         db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (str(uuid.uuid4()),))
         self._robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
 
-    def _reading(self) -> sqlite3.Connection | None:
-        """Return the reader's connection, made as soon as there is a log to read."""
-        if self._db is None and self._size():
-            with closing(self._connect()) as db:
-                ready = self._version(db) > 0  # 0: its writer is just making it
-            if ready:
-                self._db = self._connect()
-                self._db.execute("PRAGMA query_only=ON")
-        return self._db
-
-    def _connect(self) -> sqlite3.Connection:
-        # mode=rw never creates a file; a URI holds whatever characters a folder may have.
-        uri = self._path.as_uri() + "?mode=rw"
-        return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
-
-    def _size(self, end: str = "") -> int:
-        """Return the bytes of the log, or of its tail ("-wal"); 0 where there is none."""
-        with suppress(FileNotFoundError):
-            return (self.folder / (FILE + end)).stat().st_size
-        return 0
-
-    def _mark(self) -> str:
-        """Describe the log as it lies on the disk, to know it again."""
-        return f"closed {self._size()} {self._path.stat().st_mtime_ns}"
-
-    def _sound(self, left: str) -> bool:
-        """Say whether the log is whole, and refuse that of a newer Tangy before touching it.
-
-        quick_check reads the whole file: 115 ms for 500,000 small events (113 MB), 325 ms where
-        their bodies have 600 bytes (421 MB), and that with the file in memory. A large log is
-        therefore believed when it is, to the nanosecond, the file that the last clean close
-        left; after a crash, a power cut, a copy or a restore it is not, and is read through.
-        """
-        if not self._size():
-            return not self._size("-wal")  # SQLite would delete a tail without a log
-        same = not self._size("-wal") and left == self._mark()
-        with closing(self._connect()) as db:
-            try:
-                self._version(db)
-                known = same and self._size() > ALWAYS_CHECKED
-                return known or db.execute("PRAGMA quick_check(1)").fetchall() == [("ok",)]
-            except sqlite3.DatabaseError as error:
-                if not _tells_damage(error):
-                    raise
-                return False
-
-    def _set_aside(self) -> None:
-        """Rename a damaged log, its tail first: SQLite would replay a tail into a new log."""
-        aside = self._unused("damaged")
-        for end in ("-wal", "-shm", ""):
-            with suppress(FileNotFoundError):
-                (self.folder / (FILE + end)).rename(self.folder / (aside.name + end))
-        notice = f"The log was damaged: it is kept as {aside}, and a new one was begun."
-        self.notices.append(plain(notice))
-
-    def _migrate(self, db: sqlite3.Connection) -> None:
-        """Bring the log to this version, all steps or none, after copying it as it was."""
-        old, new = self._version(db), len(MIGRATIONS)
-        if old == new:
-            return
-        copy = self._unused(f"version-{old}")
-        steps = "".join(MIGRATIONS[old:])
-        try:
-            if db.execute("SELECT 1 FROM sqlite_master").fetchone():
-                copy.touch(0o600)
-                with closing(sqlite3.connect(copy)) as target:
-                    db.backup(target)
-            db.executescript(f"BEGIN IMMEDIATE; {steps} PRAGMA user_version = {new}; COMMIT;")
-        except sqlite3.Error as error:
-            db.rollback()
-            copy.unlink(missing_ok=True)  # of a log that is still as it was
-            problem = f"is unchanged: it cannot be brought from version {old} to {new}"
-            raise self._wrong(f"{problem} ({error})") from None
-
-    def _version(self, db: sqlite3.Connection) -> int:
-        """Return the version of the log, if it is one that can be used."""
-        version: int = db.execute("PRAGMA user_version").fetchone()[0]
-        known = len(MIGRATIONS)
-        if version > known or (0 < version < known and not self.writable):
-            whose = "a newer Tangy; update this one" if version > known else "an older Tangy"
-            problem = f"was written (as version {version}; this is {known}) by {whose}"
-            raise self._wrong(f"{problem}, or choose another folder with --data")
-        return version
-
-    def _unused(self, what: str) -> Path:
-        """Name a file beside the log that does not exist yet, after the time."""
-        at = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%SZ")
-        paths = (self.folder / f"{FILE}.{what}-{at}{f'.{n}' if n else ''}" for n in count())
-        return next(path for path in paths if not path.exists())
-
     def _rows(self, sql: str, *values: object) -> list[Any]:
         """Return all rows of a query; none where there is no log yet."""
-        with self._lock, self._in_words():
+        with self._lock, self._file.in_words():
             if self._closed:
-                raise self._wrong("is closed")
-            db = self._db if self.writable else self._reading()
+                raise self._file.wrong("is closed")
+            db = self._file.db if self.writable else self._file.reading()
             return [] if db is None else db.execute(sql, values).fetchall()
 
     def _write(self, sql: str, values: tuple[object, ...] = ()) -> int:
         """Run one statement of the writer and return the seq it made."""
-        if self._db is None or not self.writable:
-            raise self._wrong("is closed" if self._closed else "is open for reading only")
+        db = self._file.db
+        if db is None or not self.writable:
+            raise self._file.wrong("is closed" if self._closed else "is open for reading only")
         if self._spoilt:  # SQLite may have rolled back already, and would commit this one alone
-            raise self._wrong("a part of this could not be kept, so none of it was")
-        with self._in_words():
-            return self._db.execute(sql, values).lastrowid or 0
+            raise self._file.wrong("a part of this could not be kept, so none of it was")
+        with self._file.in_words():
+            return db.execute(sql, values).lastrowid or 0
 
     def _event(self, row: tuple[Any, ...]) -> Event:
         try:
             complied = None if row[7] is None else bool(row[7])
             return Event._make((*row[:7], complied, json.loads(row[8])))
         except ValueError:
-            raise self._wrong(f"event {row[0]} cannot be read") from None
-
-    @contextmanager
-    def _in_words(self) -> Iterator[None]:
-        """Turn what SQLite or the file system refuse into one sentence."""
-        try:
-            yield
-        except sqlite3.ProgrammingError:
-            raise
-        except sqlite3.Error as error:
-            problem = f"cannot be used ({error}); choose another folder with --data"
-            if _tells_damage(error):
-                self._damaged = True
-                problem = "is damaged; start Tangy again: it is set aside, and a new one begun"
-            if "is full" in str(error):
-                problem = "could not be added to, for the disk is full; make room and try again"
-            raise self._wrong(problem) from None
-        except OSError as error:
-            reason = f"cannot be the data folder ({error.strerror}); choose another with --data"
-            raise StoreError(f"{plain(str(self.folder))}: {reason}.") from None
-
-    def _wrong(self, problem: str) -> StoreError:
-        return StoreError(plain(f"{self._path}: {problem}."))
-
-
-def _tells_damage(error: sqlite3.Error) -> bool:
-    name = getattr(error, "sqlite_errorname", "")
-    return str(name).startswith(("SQLITE_CORRUPT", "SQLITE_NOTADB"))
+            raise self._file.wrong(f"event {row[0]} cannot be read") from None

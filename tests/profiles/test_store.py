@@ -19,6 +19,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tangy_profiles import log_file
 from tangy_profiles import store as store_module
 from tangy_profiles.errors import StoreBusy, StoreError, TangyError
 from tangy_profiles.store import Event, Store
@@ -454,7 +455,7 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
     tmp_path: Path, large: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if large:
-        monkeypatch.setattr(store_module, "ALWAYS_CHECKED", 1000)
+        monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
     for round_ in (1, 2):  # at the same second: the first one aside is not overwritten
         fill(tmp_path)
         damaged = scribble(log_of(tmp_path))
@@ -495,7 +496,7 @@ def test_a_tail_whose_log_is_gone_is_set_aside(tmp_path: Path) -> None:
 def test_damage_met_while_reading_is_said_and_mended_by_the_next_start(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store_module, "ALWAYS_CHECKED", 1000)
+    monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
     fill(tmp_path)
     times = log_of(tmp_path).stat()
     scribble(log_of(tmp_path))
@@ -541,8 +542,8 @@ def test_an_older_log_is_copied_and_brought_up_to_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill(tmp_path, 3)
-    later = (*store_module.MIGRATIONS, "CREATE TABLE shelf (x); INSERT INTO shelf VALUES (7);")
-    monkeypatch.setattr(store_module, "MIGRATIONS", later)
+    later = (*log_file.MIGRATIONS, "CREATE TABLE shelf (x); INSERT INTO shelf VALUES (7);")
+    monkeypatch.setattr(log_file, "MIGRATIONS", later)
     with pytest.raises(StoreError, match="older"):
         Store.open(tmp_path, write=False)
     with Store.open(tmp_path, now=lambda: NOON) as store:
@@ -573,8 +574,8 @@ def test_a_step_that_fails_leaves_the_log_as_it_was(
 ) -> None:
     fill(tmp_path, 3)
     with monkeypatch.context() as patch:
-        broken = (*store_module.MIGRATIONS, "CREATE TABLE shelf (x); CREATE TABLE event (x);")
-        patch.setattr(store_module, "MIGRATIONS", broken)
+        broken = (*log_file.MIGRATIONS, "CREATE TABLE shelf (x); CREATE TABLE event (x);")
+        patch.setattr(log_file, "MIGRATIONS", broken)
         with pytest.raises(StoreError, match="version 1 to 2"):
             Store.open(tmp_path)
     with Store.open(tmp_path) as store:
