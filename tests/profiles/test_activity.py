@@ -113,7 +113,7 @@ def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
         ('checker = "unread"', 'checker = "unraed"', ("user_states[occluded].checker", "'unread'")),
         ('closes = "always"', 'closes = "allways"', ("closes = 'allways'", "'always'?")),
         ('needs = ["bingo"]', 'needs = ["bongo"]', ("needs", "'bongo'", "'bingo'?")),
-        ('when = "beside requester"', 'when = "beside"', ("stages[help].when", "'beside requester'?")),
+        ('when = "beside requester"', 'when = "beside"', ("stages[help].when", "requester'?")),
         ('since = "joke"', 'since = "yoke"', ("stages[socialize].since", "'joke'?")),
         ('since = "joke"', 'since = "call number"', ("since", "another behaviour")),
         ('plain_strategy = "neutral"', 'plain_strategy = "natural"', ("'neutral'?",)),

@@ -1,0 +1,200 @@
+"""Demonstrations and policies are what the log says, and a policy that differs says so."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_tui.learning.library import (
+    BEGUN,
+    FINISHED,
+    POLICY,
+    STEP,
+    UNDONE,
+    Change,
+    NoPolicy,
+    changes,
+    keep_policy,
+    load_policy,
+    read_demonstrations,
+)
+from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+
+Demonstrate = Callable[[str, int, int], Demonstration]
+FEW = ForestSettings(trees=5)
+
+
+def log(store: Store, shown: Demonstration) -> None:
+    """Log a demonstration as a teaching session does."""
+    store.append(
+        BEGUN,
+        {
+            "demonstration": shown.id,
+            "activity": shown.activity,
+            "teacher": shown.teacher,
+            "seed": shown.seed,
+            "people": list(shown.people),
+        },
+    )
+    for step in shown.steps:
+        store.append(STEP, {"demonstration": shown.id, **step.to_json()})
+    if shown.finished:
+        store.append(FINISHED, {"demonstration": shown.id})
+
+
+@pytest.fixture
+def shown(store: Store, demonstrate: Demonstrate) -> list[Demonstration]:
+    """Two demonstrations that are in the log."""
+    given = [replace(demonstrate("bingo", seed, 4), teacher=f"Ada {seed}") for seed in (1, 2)]
+    with store.transaction():
+        for one in given:
+            log(store, one)
+    return given
+
+
+def learnt(activity: Activity, shown: list[Demonstration], store: Store) -> Policy:
+    policy = learn_policy(activity, shown, settings=FEW)
+    keep_policy(store, policy)
+    return policy
+
+
+def with_kept(store: Store, change: Mapping[str, Any]) -> None:
+    """Log the last policy once more, as if it had come out differently."""
+    kept = store.last(POLICY)
+    assert kept is not None
+    store.append(POLICY, {**kept.body, **change})
+
+
+# ------------------------------------------------------------------------------ demonstrations
+
+
+def test_demonstrations_come_back_as_they_were_given(
+    store: Store, shown: list[Demonstration]
+) -> None:
+    assert read_demonstrations(store, "bingo") == shown
+    assert read_demonstrations(store, "lanterns") == []
+
+
+def test_demonstrations_that_interleave_are_kept_apart(
+    store: Store, demonstrate: Demonstrate
+) -> None:
+    one, other = demonstrate("bingo", 1, 4), demonstrate("bingo", 2, 4)
+    log(store, replace(one, steps=one.steps[:3], finished=False))
+    log(store, other)
+    store.append(STEP, {"demonstration": one.id, **one.steps[3].to_json()})
+    found = read_demonstrations(store, "bingo")
+    assert found == [replace(one, steps=one.steps[:4], finished=False), other]
+
+
+def test_an_undone_step_is_gone_and_its_demonstration_no_longer_finished(
+    store: Store, shown: list[Demonstration]
+) -> None:
+    store.append(UNDONE, {"demonstration": shown[0].id, "step": len(shown[0].steps)})
+    assert read_demonstrations(store, "bingo")[0] == shown[0].without_last()
+
+
+def test_steps_of_unknown_demonstrations_are_passed_over(
+    store: Store, shown: list[Demonstration]
+) -> None:
+    for kind in (STEP, UNDONE, FINISHED):
+        store.append(kind, {"demonstration": "nobody's", **shown[0].steps[0].to_json()})
+    assert read_demonstrations(store, "bingo") == shown
+
+
+# ------------------------------------------------------------------------------------- policies
+
+
+def test_without_a_policy_a_person_is_told_how_to_get_one(store: Store, activity: Activity) -> None:
+    with pytest.raises(NoPolicy, match=r"not learnt Bingo yet.*`tangy teach`.*`tangy learn`"):
+        load_policy(store, activity)
+
+
+def test_a_kept_policy_comes_back_the_same(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    policy = learnt(activity, shown, store)
+    again, notices = load_policy(store, activity)
+    assert notices == []
+    assert again == policy
+
+
+def test_the_last_policy_of_each_activity_counts(
+    store: Store,
+    activity: Activity,
+    lanterns: Activity,
+    shown: list[Demonstration],
+    demonstrate: Demonstrate,
+) -> None:
+    learnt(activity, shown, store)
+    last = learnt(activity, shown[:1], store)
+    made_up = demonstrate("lanterns", 1, 4)
+    log(store, made_up)
+    other = learnt(lanterns, [made_up], store)
+    assert load_policy(store, activity)[0] == last
+    assert load_policy(store, lanterns)[0] == other
+
+
+def test_later_demonstrations_do_not_change_a_kept_policy(
+    store: Store, activity: Activity, shown: list[Demonstration], demonstrate: Demonstrate
+) -> None:
+    policy = learnt(activity, shown, store)
+    log(store, demonstrate("bingo", 3, 4))
+    assert load_policy(store, activity) == (policy, [])
+
+
+def test_a_policy_whose_demonstrations_are_gone_is_refused(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    learnt(activity, shown, store)
+    with_kept(store, {"demonstrations": ["gone", *[d.id for d in shown]]})
+    with pytest.raises(NoPolicy, match="1 demonstrations that are not in this data folder"):
+        load_policy(store, activity)
+
+
+def test_another_version_that_votes_alike_is_said(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    policy = learnt(activity, shown, store)
+    versions = {**policy.versions, "scikit-learn": "0.1"}
+    with_kept(store, {"digest": "other", "versions": versions})
+    _, notices = load_policy(store, activity)
+    assert f"scikit-learn 0.1 -> {policy.versions['scikit-learn']}" in notices[0]
+    assert notices[1] == "It decides the same everywhere; only the votes differ."
+    assert "tangy learn" in notices[-1]
+
+
+def test_a_decision_that_changed_is_said_row_by_row(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    policy = learnt(activity, shown, store)
+    rows = [list(row) for row in policy.to_json()["rows"]]
+    where, was = Situation(*rows[0][:3]), rows[0][3]
+    rows[0][3] = "juggle"
+    with_kept(store, {"digest": "other", "rows": rows})
+    _, notices = load_policy(store, activity)
+    assert "its demonstrations have changed since" in notices[0]
+    assert f"{' / '.join(where)}: was juggle, is now {was}." in notices
+
+
+def test_a_step_undone_after_learning_is_said(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    learnt(activity, shown, store)
+    store.append(UNDONE, {"demonstration": shown[0].id, "step": len(shown[0].steps)})
+    _, notices = load_policy(store, activity)
+    assert "its demonstrations have changed since" in notices[0]
+
+
+def test_policies_are_compared_row_by_row(activity: Activity, shown: list[Demonstration]) -> None:
+    policy = learn_policy(activity, shown, settings=FEW)
+    rows = policy.to_json()["rows"]
+    assert changes(rows, policy) == []
+    gone = ["nowhere", "AR", "odd", "joke", 1.0]
+    assert changes([gone], policy) == [Change(Situation("nowhere", "AR", "odd"), "joke", "nothing")]

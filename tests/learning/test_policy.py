@@ -1,0 +1,248 @@
+"""The forest: exact after any covering demonstration, the same everywhere, honest about doubt."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from math import isclose
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_tui.learning.policy import (
+    EXACT,
+    PAPER,
+    SURE,
+    ForestSettings,
+    NothingToLearnFrom,
+    NotOfThisActivity,
+    Policy,
+    all_situations,
+    learn_policy,
+    training_rows,
+)
+from tangy_tui.learning.reachable import joint_states
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+FEW = ForestSettings(trees=5)
+"""For promises that do not depend on how many trees there are."""
+
+
+def showing(*rows: tuple[Situation, str], id: str = "made") -> Demonstration:
+    """A demonstration of just these situations and behaviours."""
+    steps = []
+    for situation, behaviour in rows:
+        state = ActivityState(0, situation, FRONT, None, ())
+        steps.append(Step(behaviour, None, state, state))
+    return Demonstration(id, "bingo", "test", 0, (), tuple(steps), True)
+
+
+def everything(activity: Activity, *without: Situation) -> list[tuple[Situation, str]]:
+    return [row for row in activity.expected.items() if row[0] not in without]
+
+
+# ------------------------------------------------------------------------------- exactness
+
+
+@pytest.mark.parametrize("first", range(0, 100, 10))
+def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
+    first: int, activity: Activity, cover: Cover
+) -> None:
+    for seed in range(first, first + 10):
+        shown = cover("bingo", seed, 1 + seed % 8)
+        policy = learn_policy(activity, shown, settings=replace(EXACT, seed=seed))
+        assert policy.exact(activity)
+        for situation in activity.situations:
+            decision = policy.decide(situation)
+            assert (decision.behaviour, decision.share) == (activity.expected[situation], 1.0)
+            assert decision.sure
+
+
+@pytest.mark.parametrize("first", range(0, 20, 10))
+def test_the_papers_bagging_is_exact_too_with_lower_votes(
+    first: int, activity: Activity, cover: Cover
+) -> None:
+    for seed in range(first, first + 10):
+        shown = cover("bingo", seed, 1 + seed % 8)
+        policy = learn_policy(activity, shown, settings=replace(PAPER, seed=seed))
+        assert policy.exact(activity)
+        assert 0.4 < min(policy.decide(s).share for s in activity.situations) < 1
+
+
+@pytest.mark.parametrize("users", range(1, 9))
+def test_every_reachable_joint_state_is_decided_as_expected(
+    users: int, activity: Activity, cover: Cover
+) -> None:
+    policy = learn_policy(activity, cover("bingo", users, users), settings=FEW)
+    for state in joint_states(activity, [f"user{n}" for n in range(users)]):
+        wanted = activity.expected[state.situation]
+        assert policy.decide(state.situation).behaviour == wanted
+
+
+def test_it_is_exact_when_one_behaviour_was_shown_a_hundred_times_and_another_once(
+    activity: Activity,
+) -> None:
+    often = Situation("facilitate", "ANR", "occluded")
+    rows = everything(activity) + [(often, "call number")] * 99
+    for settings in (EXACT, PAPER):
+        assert learn_policy(activity, [showing(*rows)], settings=settings).exact(activity)
+
+
+def test_a_made_up_activity_is_learnt_exactly_by_the_same_code(
+    lanterns: Activity, cover: Cover
+) -> None:
+    policy = learn_policy(lanterns, cover("lanterns", 1, 5))
+    assert policy.exact(lanterns)
+    assert {policy.decide(s).behaviour for s in lanterns.situations} == set(lanterns.behaviours)
+
+
+# --------------------------------------------------------------------------- the same again
+
+
+def test_it_depends_on_what_was_shown_and_on_nothing_else(activity: Activity) -> None:
+    rows = everything(activity)
+    one = learn_policy(activity, [showing(*rows)], settings=FEW)
+    parts = [showing(*rows[:4], id="a"), showing(*rows[4:], id="b")]
+    other = learn_policy(activity, parts, settings=FEW, name="other")
+    assert other.table == one.table
+    assert other.digest == one.digest
+    assert (other.name, other.demonstrations) == ("other", ("a", "b"))
+
+
+def test_the_digest_changes_with_rows_settings_and_seed(activity: Activity) -> None:
+    rows = everything(activity)
+    learnt = [
+        learn_policy(activity, [showing(*rows)], settings=FEW),
+        learn_policy(activity, [showing(*reversed(rows))], settings=FEW),
+        learn_policy(activity, [showing(*rows, rows[0])], settings=FEW),
+        learn_policy(activity, [showing(*rows)], settings=replace(FEW, seed=1)),
+        learn_policy(activity, [showing(*rows)], settings=replace(FEW, trees=6)),
+        learn_policy(activity, [showing(*rows)], settings=replace(FEW, bootstrap=True)),
+    ]
+    assert len({policy.digest for policy in learnt}) == len(learnt)
+
+
+def test_another_process_learns_the_same_bit_for_bit(
+    activity: Activity, demonstrate: Callable[[str, int, int], Demonstration]
+) -> None:
+    shown = demonstrate("bingo", 5, 4)
+    code = (
+        "import sys, json\n"
+        "from tangy_profiles.activity import load_activity\n"
+        "from tangy_profiles.demonstration import Demonstration, Step\n"
+        "from tangy_tui.learning.policy import PAPER, learn_policy\n"
+        "steps = tuple(map(Step.from_json, json.load(sys.stdin)))\n"
+        "shown = Demonstration('x', 'bingo', 'test', 0, (), steps)\n"
+        "print(learn_policy(load_activity('bingo'), [shown], settings=PAPER).digest)\n"
+    )
+    told = json.dumps([step.to_json() for step in shown.steps])
+    done = subprocess.run(  # noqa: S603 - this Python
+        [sys.executable, "-c", code],
+        input=told, capture_output=True, text=True, check=True,
+        env={**os.environ, "PYTHONHASHSEED": "12345"},
+    )  # fmt: skip
+    assert done.stdout.strip() == learn_policy(activity, [shown], settings=PAPER).digest
+
+
+@pytest.mark.parametrize("seed", [-1, 2**32, 10**30])
+def test_any_whole_number_is_a_seed(seed: int, activity: Activity) -> None:
+    settings = replace(FEW, seed=seed)
+    policy = learn_policy(activity, [showing(*everything(activity))], settings=settings)
+    assert policy.exact(activity)
+
+
+# --------------------------------------------------------------------------------- the table
+
+
+@pytest.fixture(scope="module")
+def covered(activity: Activity, cover: Cover) -> Policy:
+    return learn_policy(activity, cover("bingo", 1, 4), settings=FEW)
+
+
+def test_there_is_a_decision_for_every_combination(activity: Activity, covered: Policy) -> None:
+    assert list(covered.table) == list(all_situations(activity))
+    assert len(covered.table) == 6 * 2 * 5
+    assert set(activity.situations) < set(covered.table)
+
+
+def test_votes_are_shares_most_first_and_the_first_is_done(covered: Policy) -> None:
+    for decision in covered.table.values():
+        shares = [share for _, share in decision.votes]
+        assert shares == sorted(shares, reverse=True)
+        assert isclose(sum(shares), 1, abs_tol=1e-6)
+        assert all(share > 0 for share in shares)
+        assert (decision.behaviour, decision.share) == decision.votes[0]
+
+
+def test_it_says_how_often_each_situation_was_shown(
+    activity: Activity, cover: Cover, covered: Policy
+) -> None:
+    rows = training_rows(cover("bingo", 1, 4))
+    counts = Counter(situation for situation, _ in rows)
+    assert {s: d.seen for s, d in covered.table.items() if d.seen} == counts
+
+
+def test_what_was_shown_is_sure_and_what_never_was_is_not(activity: Activity) -> None:
+    for missing in activity.situations:
+        shown = [showing(*everything(activity, missing))]
+        policy = learn_policy(activity, shown, settings=FEW)
+        unsure = {s for s in activity.situations if not policy.decide(s).sure}
+        assert unsure == {missing}
+        assert set(policy.errors(activity)) <= {missing}
+        if policy.decide(missing).behaviour != activity.expected[missing]:
+            assert not policy.exact(activity)
+
+
+@pytest.mark.parametrize(("right", "wrong", "sure"), [(9, 1, True), (2, 1, False), (2, 2, False)])
+def test_what_teachers_disagree_about_is_not_sure(
+    right: int, wrong: int, sure: bool, activity: Activity
+) -> None:
+    where = Situation("help", "AR", "missing numbers")
+    rows = [
+        *everything(activity, where),
+        *[(where, "mark numbers")] * right,
+        *[(where, "remove markers")] * wrong,
+    ]
+    decision = learn_policy(activity, [showing(*rows)], settings=FEW).decide(where)
+    assert dict(decision.votes)["mark numbers"] == pytest.approx(right / (right + wrong))
+    assert decision.sure == sure == (decision.share >= SURE)
+
+
+def test_what_is_kept_of_a_policy_is_plain_json(covered: Policy) -> None:
+    kept = covered.to_json()
+    assert json.loads(json.dumps(kept)) == kept
+    assert kept["digest"] == covered.digest
+    assert kept["forest"] == {"trees": 5, "bootstrap": False, "min_samples_leaf": 1, "seed": 0}
+    assert {"python", "numpy", "scikit-learn"} == set(kept["versions"])
+    assert len(kept["rows"]) == 11
+
+
+# ---------------------------------------------------------------------------------- refusals
+
+
+def test_from_nothing_nothing_is_learnt(activity: Activity) -> None:
+    for shown in ([], [showing()]):
+        with pytest.raises(NothingToLearnFrom, match="demonstrate a game first"):
+            learn_policy(activity, shown)
+
+
+def test_demonstrations_of_the_activity_as_it_was_are_refused_by_name(
+    activity: Activity, lanterns: Activity
+) -> None:
+    rows = everything(activity)
+    with pytest.raises(NotOfThisActivity, match="Lanterns has changed since"):
+        learn_policy(lanterns, [showing(*rows)])
+    with pytest.raises(NotOfThisActivity, match="start / ANR / occluded -> sing"):
+        learn_policy(activity, [showing(*rows, (rows[0][0], "sing"))])
+
+
+def test_a_situation_of_another_activity_is_no_key(covered: Policy) -> None:
+    with pytest.raises(KeyError):
+        covered.decide(Situation("arriving", "ANR", "hidden"))

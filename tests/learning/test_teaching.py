@@ -1,0 +1,251 @@
+"""A teaching session: whatever is said in it, the log and the session agree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import pytest
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import load_people
+from tangy_profiles.store import Store
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.learning.demonstrating import (
+    Asked,
+    Begun,
+    Executed,
+    Finished,
+    Next,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    StepUndone,
+    Teaching,
+    Undo,
+)
+from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.world import World
+
+BINGO = load_activity("bingo")
+YES, NO = Reply(yes=True), Reply(yes=False)
+
+
+def session(
+    store: Store, *, teacher: str = "Ada", seed: int = 1, users: int = 4, activity: Activity = BINGO
+) -> Teaching:
+    def world(seed: int, people: Sequence[str]) -> World:
+        return SimulatedWorld(activity, people, seed=seed, users=load_users().teaching())
+
+    return Teaching(activity, load_people(users), store, world, teacher=teacher, seed=seed)
+
+
+def begun(store: Store, *, seed: int = 1, users: int = 4) -> Teaching:
+    teaching = session(store, seed=seed, users=users)
+    teaching.begin()
+    return teaching
+
+
+def teach(teaching: Teaching, *phrases: str) -> list[Executed]:
+    """Say each phrase, confirm it, and return what was executed."""
+    done = []
+    for phrase in phrases:
+        assert isinstance(teaching.apply(Say(phrase))[0], Asked)
+        done += [e for e in teaching.apply(YES) if isinstance(e, Executed)]
+    return done
+
+
+def whole_game(teaching: Teaching) -> Demonstration:
+    list(ScriptedTeacher(teaching).demonstrate())
+    return teaching.demonstration
+
+
+def logged(store: Store) -> list[Demonstration]:
+    return read_demonstrations(store, "bingo")
+
+
+# --------------------------------------------------------------------------- saying and asking
+
+
+def test_nothing_happens_before_the_question_is_answered_with_yes(store: Store) -> None:
+    teaching = begun(store)
+    before = teaching.world.observe()
+    asked = teaching.apply(Say("greet everyone"))
+    assert asked == [Asked("greeting", "greet everyone", "greet everyone", 1.0, (), None)]
+    assert teaching.question == asked[0]
+    assert teaching.world.observe() == before
+    assert logged(store) == []
+    executed = teaching.apply(YES)[0]
+    assert isinstance(executed, Executed)
+    assert (executed.number, executed.step.behaviour) == (1, "greeting")
+    assert executed.step == Step("greeting", None, before, teaching.world.observe())
+    assert "I am Tangy" in executed.speech
+    assert teaching.question is None
+
+
+def test_no_gives_the_words_back_and_does_nothing(store: Store) -> None:
+    teaching = begun(store)
+    teaching.apply(Say("tell a joke"))
+    assert teaching.apply(NO) == [Rejected("tell a joke")]
+    assert teaching.demonstration.steps == ()
+    assert isinstance(teaching.apply(YES)[0], Refused), "the question is gone"
+
+
+def test_words_that_mean_nothing_are_given_back_and_drop_the_question(store: Store) -> None:
+    teaching = begun(store)
+    teaching.apply(Say("tell a joke"))
+    said = teaching.apply(Say("qwertz"))[0]
+    assert isinstance(said, NotUnderstood)
+    assert said.heard == "qwertz"
+    assert teaching.question is None
+
+
+def test_what_was_heard_badly_offers_alternatives_that_are_asked_about_in_turn(
+    store: Store,
+) -> None:
+    teaching = begun(store)
+    asked = teaching.apply(Say("go to the front", confidence=0.5))[0]
+    assert isinstance(asked, Asked)
+    assert asked.confidence == 0.5
+    assert 1 <= len(asked.alternatives) <= 3
+    again = teaching.apply(Reply(yes=False, alternative=1))[0]
+    if isinstance(again, Asked):
+        assert again.behaviour == asked.alternatives[0]
+        assert asked.behaviour in again.alternatives
+    refused = teaching.apply(Say("tell a joke", confidence=0.5))
+    assert isinstance(teaching.apply(Reply(yes=False, alternative=9))[0], Refused)
+    assert teaching.question == refused[0], "a wrong number leaves the question open"
+
+
+def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> None:
+    teaching = begun(store)
+    for phrase in ("encourage", "remove markers", "go to user", "celebrate"):
+        refused = teaching.apply(Say(phrase))[0]
+        assert isinstance(refused, Refused)
+        assert "Nobody asks for help" in refused.reason
+    assert teaching.question is None
+
+
+def test_the_robot_can_be_sent_to_a_person_who_takes_part_by_number_or_name(store: Store) -> None:
+    teaching = begun(store)
+    for phrase in ("go to user 2", "go to user two"):
+        asked = teaching.apply(Say(phrase))[0]
+        assert isinstance(asked, Asked)
+        assert (asked.target, asked.question) == ("user2", "go to the user (User 2)")
+    teaching.apply(YES)
+    assert teaching.world.observe().place == "user2"
+    assert not isinstance(teaching.apply(Say("go to user 7"))[0], Asked)
+
+
+def test_after_the_game_only_the_next_one_or_undo_is_possible(store: Store) -> None:
+    teaching = begun(store)
+    assert isinstance(teaching.apply(Next())[0], Refused)
+    demonstration = whole_game(teaching)
+    assert demonstration.finished
+    assert demonstration.steps[-1].behaviour == "valediction"
+    assert isinstance(teaching.apply(Say("tell a joke"))[0], Refused)
+    following = teaching.apply(Next())[0]
+    assert isinstance(following, Begun)
+    assert following.demonstration.seed == demonstration.seed + 1
+    assert logged(store) == [demonstration], "a game without a step is not in the log"
+
+
+def test_the_last_step_of_a_finished_game_can_be_undone_and_the_game_goes_on(store: Store) -> None:
+    teaching = begun(store)
+    demonstration = whole_game(teaching)
+    undone = teaching.apply(Undo())[0]
+    assert undone == StepUndone(len(demonstration.steps), demonstration.steps[-1])
+    assert not teaching.demonstration.finished
+    assert logged(store) == [teaching.demonstration]
+    events = [*teaching.apply(Say("goodbye")), *teaching.apply(YES)]
+    assert [type(e) for e in events] == [Asked, Executed, Finished]
+    assert teaching.demonstration == demonstration
+    assert logged(store) == [demonstration]
+
+
+# ------------------------------------------------------------------------------ leave, resume
+
+
+def test_an_unfinished_demonstration_is_taken_up_where_it_was_left(store: Store) -> None:
+    first = begun(store)
+    teach(first, "greet everyone", *["next number"] * 6)
+    second = session(store, seed=9)
+    event = second.begin()[0]
+    assert event == Begun(first.demonstration, resumed=True)
+    assert second.demonstration == first.demonstration
+    assert second.world.observe() == first.world.observe()
+    assert second.world.scene() == first.world.scene()
+    assert teach(first, "next number")[0].outcome == teach(second, "next number")[0].outcome
+
+
+def test_a_new_demonstration_leaves_the_unfinished_one_as_it_is(store: Store) -> None:
+    teach(begun(store), "greet everyone")
+    second = session(store, seed=2)
+    assert second.begin(resume=False)[0] == Begun(second.demonstration, resumed=False)
+    teach(second, "greet everyone")
+    assert [len(d.steps) for d in logged(store)] == [1, 1]
+
+
+def test_teachers_do_not_take_up_each_others_demonstrations(store: Store) -> None:
+    teach(begun(store), "greet everyone")
+    event = session(store, teacher="Bo", seed=2).begin()[0]
+    assert isinstance(event, Begun)
+    assert not event.resumed
+
+
+def test_a_demonstration_goes_on_with_the_people_it_was_begun_with(store: Store) -> None:
+    teach(begun(store), "greet everyone")
+    with_eight = begun(store, users=8, seed=5)
+    assert len(with_eight.people) == 4
+    assert not isinstance(with_eight.apply(Say("go to user 7"))[0], Asked)
+    assert isinstance(with_eight.apply(Say("go to user 3"))[0], Asked)
+
+
+def test_what_another_simulator_made_is_kept_but_not_gone_on_with(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = begun(store)
+    teach(first, "greet everyone", "next number")
+    behaviours = dict(BINGO.behaviours)
+    del behaviours["call number"]
+    monkeypatch.setitem(BINGO.__dict__, "behaviours", behaviours)
+    refused, new = session(store, seed=2).begin()
+    assert isinstance(refused, Refused)
+    assert "another simulator" in refused.reason
+    assert isinstance(new, Begun)
+    assert logged(store) == [first.demonstration]
+
+
+# ------------------------------------------------------------------------ the scripted teacher
+
+
+@pytest.mark.parametrize("users", [1, 4, 8])
+def test_the_scripted_teacher_demonstrates_what_is_expected(users: int, store: Store) -> None:
+    teaching = begun(store, users=users)
+    demonstration = whole_game(teaching)
+    assert demonstration.finished
+    for step in demonstration.steps:
+        assert step.behaviour == BINGO.expected[step.state.situation]
+    assert logged(store) == [demonstration]
+
+
+def test_the_scripted_teacher_teaches_a_made_up_activity_too(
+    lanterns: Activity, store: Store
+) -> None:
+    teaching = session(store, activity=lanterns)
+    teaching.begin()
+    demonstration = whole_game(teaching)
+    assert demonstration.steps[-1].behaviour == "wave off"
+    assert read_demonstrations(store, "lanterns") == [demonstration]
+    assert logged(store) == []
+
+
+def test_the_scripted_teacher_needs_to_know_what_is_expected(store: Store) -> None:
+    with pytest.raises(TangyError, match=r"does not say what is expected"):
+        ScriptedTeacher(session(store, activity=replace(BINGO, expected={})))
