@@ -49,7 +49,7 @@ class TangyApp(App[None]):
     """
 
     TITLE = "Tangy"
-    CSS_PATH = "tangy.tcss"
+    CSS_PATH = Path(__file__).with_name("tangy.tcss")
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+x", "stop", "STOP the robot", priority=True, id="app.stop"),
         Binding("ctrl+c,ctrl+q", "quit", "Leave Tangy", priority=True, id="app.quit"),
@@ -143,10 +143,12 @@ class TangyApp(App[None]):
         self.leave()
 
     def action_help(self) -> None:
-        """Show the help for where the user is."""
+        """Show the help for where the user is, or close it."""
         from tangy_tui.ui.screens.help import HelpScreen, help_for
 
-        if not isinstance(self.screen, HelpScreen):
+        if isinstance(self.screen, HelpScreen):
+            self.screen.action_close()
+        else:
             self.push_screen(HelpScreen(help_for(self.screen)))
 
     def action_command(self) -> None:

@@ -15,6 +15,9 @@ from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import draw
 from tangy_tui.ui.widgets.wrapping import wrap
 
+LOW_OR_TALL = [(0, "-low"), (22, "-tall")]
+"""The class that a dialog has from so many lines on."""
+
 ResultT = TypeVar("ResultT")
 
 
@@ -98,14 +101,16 @@ class Dialog(ModalScreen[ResultT]):
         width: 64;
         max-width: 96%;
         height: auto;
-        max-height: 96%;
+        max-height: 100%;
         border: round $accent;
         border-title-color: $accent;
         border-title-style: bold;
         background: $surface;
         padding: 1 2;
     }
+    Dialog.-low > .box { padding: 0 2; }
     """
+    VERTICAL_BREAKPOINTS = LOW_OR_TALL
     HELP: ClassVar[str] = ""
 
     def __init__(self, no: ResultT, *, id: str | None = None) -> None:

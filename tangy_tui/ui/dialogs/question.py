@@ -18,6 +18,7 @@ from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.rows import shorten
 
 MOST_ALTERNATIVES = 3
+LONGEST_HEARD = 100  # characters: two lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ class QuestionDialog(Dialog[Answer]):
         """
         super().__init__(NO, id=id)
         self._behaviour = clean(behaviour)
-        self._heard = shorten(clean(heard), 160)
+        self._heard = shorten(clean(heard), LONGEST_HEARD)
         self._confidence = confidence
         self._alternatives = tuple(clean(a) for a in alternatives[:MOST_ALTERNATIVES])
         self._numbers = ("1", "2", "3")[: len(self._alternatives)]

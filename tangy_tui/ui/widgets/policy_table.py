@@ -221,7 +221,7 @@ class PolicyTable(ScrollView, can_focus=True):
 
 
 def _worth(columns: int) -> int:
-    """Give a note no room rather than too little to be read."""
+    """Give a note no room rather than too little to be read; a mark then stands for it."""
     return columns if columns >= 8 else 0
 
 
@@ -238,4 +238,6 @@ def _decision(row: PolicyRow, behaviour: int, votes: int, note: int) -> tuple[Sp
     ]
     if note:
         spans += [("  ", "text"), (fit(row.note, note), "warn")]
+    elif row.note:
+        spans.append((" !", "warn"))
     return tuple(spans)

@@ -78,7 +78,7 @@ class StatusLine(Widget):
             parts.append((f"step {status.step}", "text"))
         if status.note:
             parts.append((clean(status.note), "dim"))
-        room = width - len(STOP) - 2
+        room = width - len(STOP) - 1
         row: list[Span] = []
         used = 0
         for n, (text, name) in enumerate(parts):

@@ -16,6 +16,7 @@ from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Rows, shorten
 
 ARROW = "->"
+SITUATION_FROM = 18  # columns that a situation keeps beside a long behaviour
 
 
 class Transcript(ScrollView, can_focus=True):
@@ -115,9 +116,7 @@ class Transcript(ScrollView, can_focus=True):
         if not self._steps:
             return
         last = len(self._steps) - 1
-        at = last if self._chosen is None else self._chosen + by
-        if self._chosen is None and by < -1:
-            at = max(0, last + by)
+        at = last + 1 + by if self._chosen is None else self._chosen + by
         self._chosen = None if at > last else max(0, at)
         self._mark()
 
@@ -155,7 +154,7 @@ class Transcript(ScrollView, can_focus=True):
         if not arrow:
             return ((label, "dim"), (shorten(step, room), "text"))
         tail = f" {ARROW} {behaviour}"
-        situation = shorten(situation, max(8, room - len(tail)))
+        situation = shorten(situation, max(SITUATION_FROM, room - len(tail)))
         tail = shorten(behaviour, room - len(situation) - len(ARROW) - 2)
         return ((label, "dim"), (situation, "text"), (f" {ARROW} ", "dim"), (tail, "strong"))
 

@@ -1,0 +1,179 @@
+"""What the tests of screens share: reading the screen, typing at a known moment, sample people.
+
+    async def test_something(run: Run) -> None:
+        async with run(HomeScreen()) as pilot:
+            pilot.type(*"call number", "enter")
+            await pilot.pause()
+            assert "Did you say" in pilot.text()
+
+`run(screen)` starts Tangy with a screen and gives the pilot; its clock stands still at 0, so that
+dialogs take keys at once (keys are stamped by the real clock) and a robot walks only when told.
+Types are for the type checker only (`if TYPE_CHECKING: from tests.pilot.conftest import Run`):
+at run time a module called conftest may be any folder's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from dataclasses import dataclass, field
+from time import monotonic
+from typing import Any
+
+import pytest
+from syrupy.assertion import SnapshotAssertion
+from syrupy.extensions.image import SVGImageSnapshotExtension
+from textual import events
+from textual.app import App
+from textual.keys import _character_to_key
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.room import Room, load_room
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import FRONT
+from tangy_tui.ui.app import TangyApp
+from tangy_tui.ui.terminal import TerminalKind
+
+SMALL = (80, 24)
+LARGE = (160, 45)
+
+
+def screen_lines(app: App[Any]) -> list[str]:
+    """Return what can be read on the screen, line by line, without spaces at the ends."""
+    strips = app.screen._compositor.render_strips()
+    return ["".join(segment.text for segment in strip).rstrip() for strip in strips]
+
+
+def screen_text(app: App[Any]) -> str:
+    """Return what can be read on the screen."""
+    return "\n".join(screen_lines(app))
+
+
+def type_at_once(app: App[Any], *keys: str, at: float | None = None) -> None:
+    """Type keys in one go, as one write to the terminal would; `at` says when (default: now)."""
+    for key in keys:
+        name = key if len(key) > 1 else _character_to_key(key)
+        event = events.Key(name, key if len(key) == 1 else None)
+        event.set_sender(app)
+        event.time = monotonic() if at is None else at
+        app.post_message(event)
+
+
+class TangyPilot(Pilot[None]):
+    """A pilot that can also read the screen, and type several keys in one go."""
+
+    def text(self) -> str:
+        """Return what can be read on the screen."""
+        return screen_text(self.app)
+
+    def lines(self) -> list[str]:
+        """Return what can be read on the screen, line by line."""
+        return screen_lines(self.app)
+
+    def type(self, *keys: str, at: float | None = None) -> None:
+        """Type keys in one go; they are there after the next `pause`."""
+        type_at_once(self.app, *keys, at=at)
+
+
+class StillClock:
+    """A clock that goes on only when it is told to."""
+
+    def __init__(self, now: float = 0.0) -> None:
+        self.now = now
+
+    def __call__(self) -> float:
+        """Return the time."""
+        return self.now
+
+    def advance(self, seconds: float) -> None:
+        """Let time pass."""
+        self.now += seconds
+
+
+@dataclass
+class Sample:
+    """People, a room, a scene and beliefs to try the widgets with."""
+
+    room: Room = field(default_factory=load_room)
+    people: tuple[Person, ...] = field(default_factory=lambda: load_people(4))
+
+    @staticmethod
+    def of(people: int) -> Sample:
+        """Return a sample with so many people."""
+        return Sample(people=load_people(people))
+
+    def scene(self, place: str = FRONT, asking: tuple[str, ...] = ("user2",)) -> Scene:
+        """Return a scene in which somebody asks for help."""
+        words = ("marks B-7", "asks for help", "watches", "moves the card")
+        doing = {p.id: words[n % 4] for n, p in enumerate(self.people)}
+        return Scene(place, asking, doing, (7, 22, 31), None)
+
+    def beliefs(self) -> dict[str, Beliefs]:
+        """Return beliefs of all sorts: unknown, vague, sure."""
+        counts = ((7, 2), (1, 3), (0, 0), (40, 60))
+        strategies = ("neutral", "praise", "suggestion", "scarcity")
+        return {
+            person.id: {
+                strategy: Beta(1.0 + counts[(n + k) % 4][0], 1.0 + counts[(n + k) % 4][1])
+                for k, strategy in enumerate(strategies)
+            }
+            for n, person in enumerate(self.people)
+        }
+
+    def names(self) -> dict[str, str]:
+        """Return the names by id."""
+        return {person.id: person.name for person in self.people}
+
+
+Run = Callable[..., AbstractAsyncContextManager[TangyPilot]]
+
+
+@pytest.fixture
+def run() -> Run:
+    """Start Tangy with a screen: `async with run(Screen(), size=(80, 24)) as pilot`."""
+
+    @asynccontextmanager
+    async def start(
+        screen: Screen[Any] | None = None,
+        size: tuple[int, int] = SMALL,
+        *,
+        kind: TerminalKind | None = None,
+        clock: Callable[[], float] | None = None,
+        app: TangyApp | None = None,
+        notifications: bool = False,
+    ) -> AsyncIterator[TangyPilot]:
+        if app is None:
+            first = None if screen is None else lambda: screen
+            app = TangyApp(first, kind=kind, clock=clock or StillClock())
+        async with app.run_test(size=size, notifications=notifications):
+            pilot = TangyPilot(app)
+            await pilot.pause()
+            yield pilot
+
+    return start
+
+
+@pytest.fixture
+def clock() -> StillClock:
+    """A clock that stands still until it is advanced."""
+    return StillClock()
+
+
+@pytest.fixture
+def sample() -> Sample:
+    """People, a room, a scene and beliefs."""
+    return Sample()
+
+
+@pytest.fixture
+def picture(snapshot: SnapshotAssertion) -> Callable[[App[Any]], None]:
+    """Compare the screen with its SVG picture, which is also there to be looked at."""
+    pictures = snapshot.use_extension(SVGImageSnapshotExtension)
+
+    def compare(app: App[Any]) -> None:
+        assert app.export_screenshot(title="Tangy", simplify=True) == pictures
+
+    return compare

@@ -1,0 +1,164 @@
+"""The command bar: completion, history, and that nothing typed lands where it should not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual.app import ComposeResult
+from textual.widgets import Label
+
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.widgets.command_bar import LONGEST, CommandBar, CommandInput
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+
+PHRASES = ("call number", "call a number", "call the next number", "celebrate", "greet everyone")
+
+
+class Bar(TangyScreen[None]):
+    """A command bar and what it was given."""
+
+    AUTO_FOCUS = "#command-input"
+    BINDINGS = [("u", "undo", "Undo"), ("escape", "back", "Back")]  # noqa: RUF012 - as Textual has it
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.given: list[str] = []
+        self.undone = 0
+        self.left = 0
+
+    def compose(self) -> ComposeResult:
+        yield Label("room")
+        yield CommandBar(lambda typed: tuple(p for p in PHRASES if p.startswith(typed.lower())))
+
+    def on_command_bar_given(self, event: CommandBar.Given) -> None:
+        self.given.append(event.text)
+
+    def action_undo(self) -> None:
+        self.undone += 1
+
+    def action_back(self) -> None:
+        self.left += 1
+
+
+def bar_of(pilot: TangyPilot) -> CommandBar:
+    return pilot.app.screen.query_one(CommandBar)
+
+
+async def test_a_command_is_given_without_spaces_around_it(run: Run) -> None:
+    screen = Bar()
+    async with run(screen) as pilot:
+        pilot.type(*"  call number ", "enter")
+        await pilot.pause()
+        assert screen.given == ["call number"]
+        assert bar_of(pilot).text == ""
+        bar_of(pilot).ready()
+        pilot.type(*"   ", "enter")
+        await pilot.pause()
+        assert screen.given == ["call number"]
+
+
+async def test_it_is_closed_until_it_is_said_what_became_of_the_command(run: Run) -> None:
+    screen = Bar()
+    async with run(screen) as pilot:
+        pilot.type(*"call number", "enter", *"yu", "enter", "escape")
+        await pilot.pause()
+        assert bar_of(pilot).closed
+        assert (screen.given, screen.undone, screen.left) == (["call number"], 0, 0)
+        assert bar_of(pilot).text == ""
+        bar_of(pilot).restore("call number")
+        await pilot.press("s")
+        assert bar_of(pilot).text == "call numbers"
+
+
+async def test_it_opens_by_itself_when_nobody_says_anything(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        pilot.type(*"call number", "enter")
+        await pilot.pause()
+        timer = bar_of(pilot)._reopen
+        assert timer is not None
+        bar_of(pilot).ready()  # what the timer calls
+        await pilot.press("g")
+        assert bar_of(pilot).text == "g"
+
+
+async def test_keys_that_come_in_one_piece_keep_their_order(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        pilot.type(*"ab", "backspace", *"cd", "left", "x", "home", "y", "end", "z")
+        await pilot.pause()
+        assert bar_of(pilot).text == "yacxdz"
+
+
+async def test_matches_are_listed_and_the_first_is_completed(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("c", "a")
+        await pilot.pause()
+        text = pilot.text()
+        assert "call number   call a number   call the next number" in text
+        assert "celebrate" not in text
+        await pilot.press("tab")
+        assert bar_of(pilot).text == "call number"
+        await pilot.press("ctrl+u", "g", "r")
+        await pilot.pause()
+        await pilot.press("right")
+        assert bar_of(pilot).text == "greet everyone"
+
+
+async def test_tab_goes_on_when_there_is_nothing_to_complete(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("x", "tab")
+        assert bar_of(pilot).text == "x"
+
+
+async def test_history_by_up_and_down_keeps_what_was_being_typed(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        for text in ("one", "two", "two"):
+            pilot.type(*text, "enter")
+            await pilot.pause()
+            bar_of(pilot).ready()
+        pilot.type(*"thr", "up")
+        await pilot.pause()
+        assert bar_of(pilot).text == "two"
+        await pilot.press("up", "up")
+        assert bar_of(pilot).text == "one"
+        await pilot.press("down", "down", "down")
+        assert bar_of(pilot).text == "thr"
+
+
+async def test_escape_makes_single_letters_keys_again_and_colon_returns(run: Run) -> None:
+    screen = Bar()
+    async with run(screen) as pilot:
+        await pilot.press("a", "escape", "u")
+        assert screen.undone == 1
+        assert screen.left == 0
+        await pilot.press("escape")
+        assert screen.left == 1
+        await pilot.press("colon", "b")
+        assert bar_of(pilot).text == "ab"
+        await pilot.press("colon")
+        assert bar_of(pilot).text == "ab:"
+
+
+async def test_question_mark_is_help_in_an_empty_bar_only(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("question_mark")
+        await pilot.pause()
+        assert len(pilot.app.screen_stack) == 2
+        assert "arrow completes" in pilot.text()
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("a", "question_mark")
+        assert bar_of(pilot).text == "a?"
+
+
+async def test_a_command_has_a_greatest_length(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        bar_of(pilot).restore("x" * 500)
+        assert len(bar_of(pilot).text) == LONGEST
+
+
+async def test_its_cursor_does_not_blink(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        assert not pilot.app.screen.query_one(CommandInput).cursor_blink

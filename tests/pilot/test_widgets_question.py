@@ -1,0 +1,232 @@
+"""The question that verifies a command: only a y that was typed after it was seen says yes."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import pytest
+from textual import events
+from textual.app import ComposeResult
+
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
+from tangy_tui.ui.widgets.command_bar import CommandBar
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, StillClock, TangyPilot
+
+SMALL = (80, 24)
+LARGE = (160, 45)
+
+
+class Asking(TangyScreen[None]):
+    """A command bar that verifies what it is given."""
+
+    AUTO_FOCUS = "#command-input"
+
+    def __init__(self, alternatives: tuple[str, ...] = ("tell a joke", "go to the user")) -> None:
+        super().__init__()
+        self.answers: list[Answer | None] = []
+        self.given: list[str] = []
+        self.alternatives = alternatives
+        self.deleted = 0
+
+    def compose(self) -> ComposeResult:
+        yield CommandBar()
+
+    def on_key(self, event: events.Key) -> None:
+        """Count keys that should have gone to the bar or to the question."""
+        self.deleted += 1
+
+    def on_command_bar_given(self, event: CommandBar.Given) -> None:
+        text = event.text
+        self.given.append(text)
+
+        def answered(answer: Answer | None) -> None:
+            self.answers.append(answer)
+            if answer is None or not answer.yes:
+                event.bar.restore(text)
+
+        self.app.push_screen(
+            QuestionDialog(
+                "call number", heard=text, confidence=0.83, alternatives=self.alternatives
+            ),
+            answered,
+        )
+
+
+def bar_of(pilot: TangyPilot) -> CommandBar:
+    return pilot.app.screen_stack[0].query_one(CommandBar)
+
+
+async def ask(pilot: TangyPilot, text: str = "call number") -> None:
+    pilot.type(*text, "enter")
+    await pilot.pause()
+    await pilot.pause()
+    assert isinstance(pilot.app.screen, QuestionDialog)
+
+
+@pytest.mark.parametrize(
+    ("key", "answer", "left"),
+    [
+        ("y", Answer(True), ""),
+        ("Y", Answer(True), ""),
+        ("n", Answer(False), "call number"),
+        ("N", Answer(False), "call number"),
+        ("escape", Answer(False), "call number"),
+        ("1", Answer(False, 0), "call number"),
+        ("2", Answer(False, 1), "call number"),
+    ],
+)
+async def test_keys_that_answer(run: Run, key: str, answer: Answer, left: str) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        await pilot.press(key)
+        await pilot.pause()
+        assert screen.answers == [answer]
+        assert bar_of(pilot).text == left
+        assert pilot.app.screen is screen
+
+
+@pytest.mark.parametrize(
+    "key", ["enter", "space", "3", "4", "0", "tab", "up", "x", "ctrl+y", "j", "f5", "backspace"]
+)
+async def test_keys_that_do_nothing(run: Run, key: str) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        await pilot.press(key)
+        await pilot.pause()
+        assert screen.answers == []
+        assert isinstance(pilot.app.screen, QuestionDialog)
+
+
+async def test_a_y_in_the_same_write_as_enter_is_swallowed(run: Run) -> None:
+    screen = Asking()
+    async with run(screen, clock=monotonic) as pilot:
+        pilot.type(*"greet everyone", "enter", "y", "y", "enter")
+        await pilot.pause()
+        await pilot.pause()
+        assert screen.given == ["greet everyone"]
+        assert screen.answers == []
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert bar_of(pilot).text == ""
+        assert screen.deleted == 0
+
+
+async def test_keys_of_the_first_moment_do_not_answer_and_later_ones_do(
+    run: Run, clock: StillClock
+) -> None:
+    screen = Asking()
+    clock.now = monotonic() + 1000
+    async with run(screen, clock=clock) as pilot:
+        await ask(pilot)
+        for key in ("y", "n", "escape", "1"):
+            pilot.type(key, at=clock.now + 0.19)
+            await pilot.pause()
+        assert screen.answers == []
+        pilot.type("y", at=clock.now + 0.21)
+        await pilot.pause()
+        assert screen.answers == [Answer(True)]
+
+
+async def test_only_the_first_answer_counts(run: Run) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        pilot.type("y", "y", "n")
+        await pilot.pause()
+        assert screen.answers == [Answer(True)]
+        assert pilot.app.screen is screen
+
+
+async def test_the_text_of_a_no_can_be_changed_and_given_again(run: Run) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        await pilot.press("n")
+        await pilot.pause()
+        await pilot.press("s", "enter")
+        await pilot.pause()
+        assert screen.given == ["call number", "call numbers"]
+
+
+async def test_stop_works_inside_the_question_and_answers_no(run: Run) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert screen.answers == [Answer(False)]
+        assert pilot.app.screen is screen
+
+
+async def test_the_question_names_behaviour_words_confidence_and_alternatives(run: Run) -> None:
+    async with run(Asking(("one", "two", "three", "four"))) as pilot:
+        await ask(pilot, "cal numbr")
+        text = pilot.text()
+        assert "Did you say: call number?" in text
+        assert "cal numbr" in text
+        assert "0.83" in text
+        assert "3  three" in text
+        assert "four" not in text
+
+
+@pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
+async def test_it_fits_with_all_that_it_can_say(run: Run, size: tuple[int, int]) -> None:
+    async with run(size=size) as pilot:
+        dialog = QuestionDialog(
+            "ask to move the card closer",
+            heard="please " * 30,
+            confidence=0.5,
+            alternatives=("go to the user with the longest name of all of them here", "b", "c"),
+        )
+        await pilot.app.push_screen(dialog)
+        await pilot.pause()
+        box = dialog.query_one(".box")
+        assert box.region.bottom <= size[1]
+        lines = pilot.text().splitlines()
+        last = next(n for n, line in enumerate(lines) if "3  c" in line)
+        assert last < box.region.bottom - 1
+
+
+async def test_confirm_takes_y_and_n_only(run: Run) -> None:
+    for key, result in (("y", True), ("n", False), ("escape", False)):
+        answers: list[bool | None] = []
+        async with run() as pilot:
+            await pilot.app.push_screen(ConfirmDialog("Forget User 2?"), answers.append)
+            await pilot.press("enter", "space", "x")
+            assert answers == []
+            await pilot.press(key)
+            await pilot.pause()
+            assert answers == [result]
+
+
+async def test_confirm_and_message_drop_keys_that_were_typed_before_they_were_seen(
+    run: Run, clock: StillClock
+) -> None:
+    clock.now = monotonic() + 1000
+    async with run(clock=clock) as pilot:
+        for dialog in (ConfirmDialog("Sure?"), MessageDialog("Read this.")):
+            await pilot.app.push_screen(dialog)
+            await pilot.press("y", "enter", "escape")
+            await pilot.pause()
+            assert pilot.app.screen is dialog
+            pilot.app.pop_screen()
+            await pilot.pause()
+
+
+async def test_message_closes_on_enter_and_keeps_its_paragraphs(run: Run) -> None:
+    async with run() as pilot:
+        await pilot.app.push_screen(MessageDialog("First line.\nSecond line.", "Play"))
+        await pilot.pause()
+        lines = pilot.text().splitlines()
+        first = next(n for n, line in enumerate(lines) if "First line." in line)
+        assert "Second line." in lines[first + 1]
+        await pilot.press("enter")
+        await pilot.pause()
+        assert len(pilot.app.screen_stack) == 1

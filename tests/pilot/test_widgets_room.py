@@ -1,0 +1,265 @@
+"""The room: who is where, who asks, what each is doing; and what a walk puts on the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from syrupy.assertion import SnapshotAssertion
+from textual.app import ComposeResult
+from textual.geometry import Region
+
+from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.state import FRONT
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.widgets.room_plan import plan
+from tangy_tui.ui.widgets.room_view import RoomView
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, Sample, StillClock
+
+SMALL = (80, 24)
+LARGE = (160, 45)
+
+
+class RoomScreen(TangyScreen[None]):
+    """A room that fills the screen, and what it tells."""
+
+    def __init__(self, sample: Sample) -> None:
+        super().__init__()
+        self.sample = sample
+        self.room = RoomView(sample.room, sample.people)
+        self.arrived: list[str] = []
+        self.painted: list[Region] = []
+
+    def compose(self) -> ComposeResult:
+        yield self.room
+
+    def on_room_view_arrived(self, event: RoomView.Arrived) -> None:
+        assert event.control is self.room
+        self.arrived.append(event.place)
+
+    def watch_painting(self) -> None:
+        """Note what the room asks to be painted from now on."""
+        refresh = self.room.refresh
+
+        def noted(*regions: Region, **options: Any) -> Any:
+            self.painted += regions
+            return refresh(*regions, **options)
+
+        self.room.refresh = noted  # type: ignore[method-assign]
+
+
+def robot_at(lines: list[str]) -> tuple[int, int]:
+    """Return column and row of the robot's face."""
+    for y, line in enumerate(lines):
+        if "[• •]" in line:
+            return line.index("[• •]"), y
+    raise AssertionError("the robot is not seen")
+
+
+@pytest.mark.parametrize("size", [(60, 18), SMALL, (120, 40), LARGE])
+@pytest.mark.parametrize("people", [1, 2, 3, 4, 5, 6, 7, 8])
+async def test_everybody_is_seen_at_every_size(
+    run: Run, sample: Sample, size: tuple[int, int], people: int
+) -> None:
+    sample = sample.of(people)
+    screen = RoomScreen(sample)
+    async with run(screen, size) as pilot:
+        ids = [p.id for p in sample.people]
+        screen.room.show(sample.scene(asking=tuple(reversed(ids))))
+        await pilot.pause()
+        text = pilot.text()
+        for turn, id in enumerate(reversed(ids), 1):
+            assert f"?{turn}" in text
+            assert sample.names()[id] in text
+        assert "[• •]" in text
+        assert "3 called: 31" in text
+        assert all(len(line) <= size[0] for line in pilot.lines())
+
+
+@pytest.mark.parametrize("width", [20, 56, 158])
+def test_a_plan_never_gives_out_more_rows_than_there_are(width: int) -> None:
+    for height in range(1, 60):
+        for people in (1, 8):
+            rows = plan(width, height, people)
+            assert rows.head_row + 2 + rows.doing == max(height, 7)
+            assert rows.floor >= rows.sprite
+
+
+async def test_what_each_does_stands_under_the_name(run: Run, sample: Sample) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen) as pilot:
+        screen.room.show(sample.scene())
+        await pilot.pause()
+        lines = pilot.lines()
+        names = next(n for n, line in enumerate(lines) if "User 1" in line)
+        middle = lines[names].index("User 2") + 3
+        assert abs(lines[names + 1].index("asks for help") + 6 - middle) <= 1
+        assert abs(lines[names - 1].index("?1") - middle) <= 2
+
+
+async def test_long_names_and_doings_are_cut_with_an_ellipsis(run: Run, sample: Sample) -> None:
+    sample.people = tuple(
+        type(p)(p.id, "Wilhelmina Konstantinopolous von der Vogelweide") for p in sample.people
+    )
+    screen = RoomScreen(sample)
+    async with run(screen) as pilot:
+        doing = dict.fromkeys(sample.names(), "tells a very long story " * 6)
+        screen.room.show(Scene(FRONT, (), doing, (), None))
+        await pilot.pause()
+        text = pilot.text()
+        assert text.count("Wilhelmina Konsta") == 4
+        assert "…" in text
+        assert "Vogelweide" not in text
+
+
+async def test_the_robot_walks_from_where_it_is_seen_and_arrives(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, clock=clock) as pilot:
+        screen.room.show(sample.scene())
+        await pilot.pause()
+        start = robot_at(pilot.lines())
+        screen.room.show(sample.scene("user4"))  # the world is ahead of the picture
+        screen.room.drive("user4", 4.0)
+        await pilot.pause()
+        assert robot_at(pilot.lines()) == start
+        assert "[• •]▸" in pilot.text()
+        seen = [start]
+        for _ in range(4):
+            clock.advance(1.0)
+            screen.room.tick()
+            await pilot.pause()
+            seen.append(robot_at(pilot.lines()))
+        columns = [x for x, _ in seen]
+        rows = [y for _, y in seen]
+        assert columns == sorted(set(columns))
+        assert rows == sorted(rows)
+        assert rows[-1] > rows[0]
+        assert screen.arrived == ["user4"]
+        assert screen.room.going is None
+        assert "▸" not in pilot.text()
+
+
+async def test_pace_makes_it_faster_and_skip_ends_it(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, clock=clock) as pilot:
+        screen.room.pace = 10
+        screen.room.drive("user1", 40.0)
+        clock.advance(4.0)
+        screen.room.tick()
+        await pilot.pause()
+        assert screen.arrived == ["user1"]
+        screen.room.drive(FRONT, 40.0)
+        screen.room.skip()
+        await pilot.pause()
+        assert screen.arrived == ["user1", FRONT]
+        screen.room.drive("user2", 0.0)
+        await pilot.pause()
+        assert screen.arrived[-1] == "user2"
+
+
+async def test_directions(run: Run, sample: Sample, clock: StillClock) -> None:
+    screen = RoomScreen(sample.of(1))
+    async with run(screen, (120, 40), clock=clock) as pilot:
+        for place, mark in (("user1", "▾"), (FRONT, "▴")):
+            screen.room.drive(place, 4.0)
+            await pilot.pause()
+            assert f"[• •]{mark}" in pilot.text()
+            screen.room.skip()
+            await pilot.pause()
+    screen = RoomScreen(sample)
+    async with run(screen, clock=clock) as pilot:
+        screen.room.put("user4")
+        await pilot.pause()
+        screen.room.drive("user1", 4.0)
+        await pilot.pause()
+        assert "◂[• •]" in pilot.text()
+
+
+async def test_a_frame_paints_only_the_cells_of_the_robot(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, (120, 40), clock=clock) as pilot:
+        screen.room.show(sample.scene())
+        await pilot.pause()
+        screen.room.drive("user4", 5.0)
+        await pilot.pause()
+        screen.watch_painting()
+        for _ in range(10):
+            clock.advance(0.1)
+            screen.room.tick()
+            assert len(screen.painted) <= 3
+            assert all(r.height == 1 and r.width <= 12 for r in screen.painted)
+            screen.painted.clear()
+            await pilot.pause()
+
+
+async def test_the_same_scene_again_paints_nothing(run: Run, sample: Sample) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen) as pilot:
+        screen.room.show(sample.scene())
+        await pilot.pause()
+        screen.watch_painting()
+        screen.room.show(sample.scene())
+        assert screen.painted == []
+        screen.room.show(sample.scene(asking=()))
+        assert {r.height for r in screen.painted} == {1}
+        assert len(screen.painted) == 2  # heads and names
+
+
+async def test_a_walk_outlives_a_new_size(run: Run, sample: Sample, clock: StillClock) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, LARGE, clock=clock) as pilot:
+        screen.room.drive("user4", 4.0)
+        for size in ((60, 18), (40, 10), (200, 60), SMALL):
+            await pilot.resize_terminal(*size)
+            clock.advance(0.5)
+            screen.room.tick()
+            await pilot.pause()
+        clock.advance(4.0)
+        screen.room.tick()
+        await pilot.pause()
+        assert screen.arrived == ["user4"]
+        robot_at(pilot.lines())
+
+
+async def test_speech_is_cut_to_the_rows_there_are(run: Run, sample: Sample) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen) as pilot:
+        screen.room.say("The number is B 7. " * 40)
+        await pilot.pause()
+        lines = [line for line in pilot.lines() if "The number" in line]
+        assert 1 <= len(lines) <= 2
+        assert lines[-1].rstrip().endswith("”")
+        screen.room.say("")
+        await pilot.pause()
+        assert "The number" not in pilot.text()
+
+
+async def test_a_person_that_nobody_knows_is_no_reason_to_fail(run: Run, sample: Sample) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen) as pilot:
+        card = CardView("nobody", (1,), 0, 0)
+        screen.room.show(Scene("nobody", ("nobody",), {"nobody": "waves"}, (), card))
+        await pilot.pause()
+        assert "waves" not in pilot.text()
+
+
+@pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
+async def test_as_it_looks(
+    run: Run, sample: Sample, snapshot: SnapshotAssertion, size: tuple[int, int]
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, size) as pilot:
+        card = CardView("user2", tuple(range(1, 26)), 0, 0)
+        scene = sample.scene("user2", ("user2", "user4"))
+        screen.room.show(Scene(scene.place, scene.requests, scene.doing, scene.called, card))
+        screen.room.say("Please take off: B-3.")
+        await pilot.pause()
+        assert pilot.text() == snapshot
