@@ -1,0 +1,79 @@
+"""What happens in a game is in the log before it is told, all of a step or nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+
+import pytest
+
+from tangy_profiles.store import Store
+from tangy_tui.interaction.facilitation import (
+    BEGUN,
+    ENDED,
+    RESPONSE,
+    STEP,
+    Acted,
+    Facilitation,
+    GameEnded,
+    Learnt,
+)
+from tangy_tui.learning.policy import Policy
+from tests.interaction.conftest import acts, play
+
+Make = Callable[..., Facilitation]
+
+
+def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: Store) -> None:
+    facilitation = facilitate(6)
+    facilitation.begin()
+    kinds = {Acted: STEP, Learnt: RESPONSE, GameEnded: ENDED}
+    told: list[str] = [BEGUN]
+    while not facilitation.over:
+        told += [kinds[type(event)] for event in facilitation.step()]
+        assert [event.kind for event in store.events()] == told
+
+
+def test_the_log_tells_the_game_again(facilitate: Make, store: Store, policy: Policy) -> None:
+    events = play(facilitate(7, users=2))
+    begun = store.last(BEGUN)
+    assert begun is not None
+    assert begun.body["policy"] == policy.digest
+    assert (begun.body["seed"], begun.body["people"]) == (7, ["user1", "user2"])
+    for act, kept in zip(acts(events), store.events(STEP), strict=True):
+        assert kept.body["behaviour"] == act.action.behaviour.name
+        assert kept.body["target"] == act.action.target
+        assert kept.body["strategy"] == act.action.strategy
+        assert kept.body["numbers"] == list(act.outcome.numbers)
+        assert kept.body["state"] == act.state.to_json()
+        assert (kept.body["draws"] or {}) == (dict(act.choice.draws) if act.choice else {})
+
+
+def test_beliefs_last_between_games_and_runs_because_the_log_has_the_responses(
+    facilitate: Make, store: Store
+) -> None:
+    first = facilitate(8)
+    play(first, 5)
+    assert store.responses()
+    assert facilitate(9).persuasion.beliefs == first.persuasion.beliefs
+
+
+def test_a_step_that_cannot_be_kept_leaves_nothing_of_it_in_the_log(
+    facilitate: Make, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    facilitation = facilitate(10)
+    facilitation.begin()
+    append = store.append
+
+    def refuse(kind: str, *rest: object, **more: object) -> int:
+        if kind == RESPONSE:
+            raise OSError("full")
+        return append(kind, *rest, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(store, "append", refuse)
+    steps, beliefs = 0, deepcopy(facilitation.persuasion.beliefs)
+    with pytest.raises(OSError, match="full"):
+        while steps < 1000:
+            steps += len(acts(facilitation.step() or facilitation.begin()))
+    assert sum(1 for _ in store.events(STEP)) == steps
+    assert facilitation.persuasion.beliefs == beliefs

@@ -1,0 +1,141 @@
+"""Persuasion: Thompson sampling over Beta posteriors finds what works with whom (Eq. 1, 2)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.beliefs import Beta, probability_best
+from tangy_profiles.state import Response
+from tangy_tui.interaction.persuasion import Persuasion, ThompsonSampling
+
+STRATEGIES = ("neutral", "praise", "suggestion", "scarcity")
+
+
+def response(person: str, strategy: str, complied: bool) -> Response:
+    return Response(person, strategy, True, complied, 5.0)
+
+
+def converse(persuasion: Persuasion, person: str, likes: str, times: int, rng: Random) -> list[str]:
+    """Persuade a person of hidden preference `likes` (.9, others .4); return what was used."""
+    used = []
+    for _ in range(times):
+        strategy = persuasion.choose(person).strategy
+        used.append(strategy)
+        complied = rng.random() < (0.9 if strategy == likes else 0.4)
+        persuasion.update(response(person, strategy, complied))
+    return used
+
+
+def test_everybody_begins_with_beta_one_one() -> None:
+    persuasion = Persuasion(["a", "b"], STRATEGIES, Random(1))
+    assert persuasion.beliefs == {p: dict.fromkeys(STRATEGIES, Beta(1, 1)) for p in ("a", "b")}
+
+
+def test_what_is_known_already_is_added_to_the_beginning() -> None:
+    counts = {("a", "praise"): (3, 1), ("a", "flattery"): (5, 5), ("stranger", "praise"): (9, 0)}
+    persuasion = Persuasion(["a", "b"], STRATEGIES, Random(1), counts=counts)
+    assert persuasion.beliefs["a"]["praise"] == Beta(4, 2)
+    assert persuasion.beliefs["a"]["neutral"] == persuasion.beliefs["b"]["praise"] == Beta(1, 1)
+    assert set(persuasion.beliefs) == {"a", "b"}
+    assert set(persuasion.beliefs["a"]) == set(STRATEGIES)
+
+
+@given(st.lists(st.tuples(st.sampled_from("ab"), st.sampled_from(STRATEGIES), st.booleans())))
+def test_beliefs_are_one_plus_the_counts_whatever_the_order(
+    responses: list[tuple[str, str, bool]],
+) -> None:
+    persuasion = Persuasion("ab", STRATEGIES, Random(1))
+    for person, strategy, complied in responses:
+        returned = persuasion.update(response(person, strategy, complied))
+        assert returned == persuasion.beliefs[person][strategy]
+    counted = Counter(responses)
+    counts = {(p, s): (counted[p, s, True], counted[p, s, False]) for p in "ab" for s in STRATEGIES}
+    again = Persuasion("ab", STRATEGIES, Random(2), counts=counts)
+    assert persuasion.beliefs == again.beliefs
+
+
+def test_one_persons_response_changes_only_that_belief() -> None:
+    persuasion = Persuasion("ab", STRATEGIES, Random(1))
+    persuasion.update(response("a", "praise", True))
+    changed = {(p, s) for p in "ab" for s in STRATEGIES if persuasion.beliefs[p][s] != Beta(1, 1)}
+    assert changed == {("a", "praise")}
+
+
+def test_a_response_that_was_followed_too_late_counts_as_not_complied() -> None:
+    persuasion = Persuasion("a", STRATEGIES, Random(1))
+    assert persuasion.update(Response("a", "praise", True, False, 17.0)) == Beta(1, 2)
+
+
+@given(st.integers())
+def test_the_highest_draw_is_used_and_all_draws_are_told(seed: int) -> None:
+    choice = Persuasion("a", STRATEGIES, Random(seed)).choose("a")
+    assert choice.person == "a"
+    assert tuple(choice.draws) == STRATEGIES
+    assert choice.draws[choice.strategy] == max(choice.draws.values())
+    assert all(0 <= draw <= 1 for draw in choice.draws.values())
+
+
+def test_the_same_seed_chooses_the_same() -> None:
+    one, other = (Persuasion("a", STRATEGIES, Random(9)) for _ in range(2))
+    assert [one.choose("a") for _ in range(20)] == [other.choose("a") for _ in range(20)]
+
+
+def test_a_strategy_is_chosen_as_often_as_it_is_probably_the_best() -> None:
+    counts = {("a", "praise"): (6, 2), ("a", "neutral"): (3, 3), ("a", "scarcity"): (1, 4)}
+    persuasion = Persuasion("a", STRATEGIES, Random(5), counts=counts)
+    chosen = Counter(persuasion.choose("a").strategy for _ in range(6000))
+    for strategy, chance in probability_best(persuasion.beliefs["a"]).items():
+        assert chosen[strategy] / 6000 == pytest.approx(chance, abs=0.025)
+
+
+@pytest.mark.parametrize("likes", STRATEGIES)
+def test_it_learns_which_strategy_a_person_prefers(likes: str) -> None:
+    rng = Random(f"people/{likes}")
+    late: Counter[str] = Counter()
+    for seed in range(20):
+        persuasion = Persuasion("a", STRATEGIES, Random(seed))
+        late.update(converse(persuasion, "a", likes, 300, rng)[-100:])
+    assert late[likes] / late.total() > 0.9
+
+
+def test_it_learns_different_things_of_different_people() -> None:
+    rng = Random(3)
+    persuasion = Persuasion("ab", STRATEGIES, Random(3))
+    for _ in range(20):
+        converse(persuasion, "a", "praise", 10, rng)
+        converse(persuasion, "b", "scarcity", 10, rng)
+    best = {p: probability_best(persuasion.beliefs[p]) for p in "ab"}
+    assert best["a"]["praise"] > 0.9
+    assert best["b"]["scarcity"] > 0.9
+
+
+def test_regret_is_that_of_thompson_sampling() -> None:
+    """Mean regret at T = 60 with .9/.4: Thompson 6.2 (notes/paper-in-numbers.md)."""
+    rng, runs = Random(8), 300
+    lost = 0
+    for seed in range(runs):
+        used = converse(Persuasion("a", STRATEGIES, Random(seed)), "a", "praise", 60, rng)
+        lost += sum(strategy != "praise" for strategy in used)
+    assert lost / runs * 0.5 == pytest.approx(6.2, rel=0.1)
+
+
+def test_another_way_to_choose_can_take_its_place() -> None:
+    class Last:
+        def choose(self, beliefs: Mapping[str, Beta], rng: Random) -> Mapping[str, float]:
+            return {strategy: float(place) for place, strategy in enumerate(beliefs)}
+
+    persuasion = Persuasion("a", STRATEGIES, Random(1), chooser=Last())
+    assert persuasion.choose("a").strategy == "scarcity"
+
+
+def test_thompson_sampling_draws_once_from_each_belief() -> None:
+    beliefs = {"a": Beta(1000, 1), "b": Beta(1, 1000)}
+    draws = ThompsonSampling().choose(beliefs, Random(1))
+    assert draws["a"] > 0.9
+    assert draws["b"] < 0.1
