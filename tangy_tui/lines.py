@@ -180,7 +180,7 @@ def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
         case NotUnderstood(heard, suggestions):
             near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
             return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
-        case Refused(reason):
+        case Refused(reason, _):
             return [reason]
         case Rejected(heard):
             return [f"Not done: {plain(heard)}. Give a new command."]

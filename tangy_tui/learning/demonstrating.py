@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.activity import Action, Activity
+from tangy_profiles.activity import Action, Activity, Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.person import Person
 from tangy_profiles.state import Outcome
@@ -82,9 +82,10 @@ class NotUnderstood:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """Something that cannot be done now, and why."""
+    """Something that cannot be done now, and why; `heard` goes back to the teacher."""
 
     reason: str
+    heard: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,13 +240,10 @@ class Teaching:
         target = command.arguments.get("user") if behaviour.attends else None
         if behaviour.attends and target is None:
             target = self.world.observe().attended
-        if behaviour.attends and target is None:
+        reason = self._obstacle(behaviour, target)
+        if reason is not None:
             self.question = None
-            return [
-                Refused(f"Nobody asks for help: there is no one to {behaviour.question} for.")
-                if behaviour.effect != "go to user"
-                else Refused("Nobody asks for help. Say whom to go to, for example: go to user 1.")
-            ]
+            return [Refused(reason, command.heard)]
         question = behaviour.question
         if target is not None:
             question = f"{question} ({self.name(target)})"
@@ -256,6 +254,18 @@ class Teaching:
             others = (command.behaviour, *others)
         self.question = Asked(name, question, command.heard, command.confidence, others[:3], target)
         return [self.question]
+
+    def _obstacle(self, behaviour: Behaviour, target: str | None) -> str | None:
+        """Return why a behaviour for one person cannot be done now, or None."""
+        if not behaviour.attends:
+            return None
+        goes = behaviour.effect == "go to user"
+        if target is None:
+            way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
+            return f"Nobody asks for help.{way}"
+        if not goes and self.world.observe().place != target:
+            return f"Tangy is not with {self.name(target)} yet: it has to go there first."
+        return None
 
     def _reply(self, yes: bool, alternative: int | None) -> list[TeachingEvent]:
         question, self.question = self.question, None

@@ -32,7 +32,7 @@ from tangy_tui.learning.demonstrating import (
 from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
+from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import WIDE, panel
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -170,8 +170,10 @@ class TeachScreen(TangyScreen[bool]):
                 case Rejected(heard):
                     self._log.write("Not done. Give a new command.", "dim")
                     bar.restore(heard)
-                case Refused(reason):
+                case Refused(reason, heard):
                     self._log.write(reason, "warn")
+                    if heard:
+                        bar.restore(heard)
                 case Executed():
                     self._show_step(event)
                 case StepUndone(number, step):
@@ -191,20 +193,20 @@ class TeachScreen(TangyScreen[bool]):
         self._free.clear()
         if self._ears is not None:
             self._ears.shut()
-        behaviours = self._teaching.activity.behaviours
-        self.app.push_screen(
-            QuestionDialog(
-                asked.question,
-                heard=asked.heard,
-                confidence=asked.confidence,
-                alternatives=[behaviours[name].question for name in asked.alternatives],
-            ),
-            self._answered,
-        )
+        self.run_worker(self._verify(asked), name="question")
 
-    def _answered(self, answer: Answer | None) -> None:
-        if answer is None:
-            answer = Answer(False)
+    async def _verify(self, asked: Asked) -> None:
+        """Put the question, and give its answer to the session when its dialog has gone."""
+        behaviours = self._teaching.activity.behaviours
+        dialog = QuestionDialog(
+            asked.question,
+            heard=asked.heard,
+            confidence=asked.confidence,
+            alternatives=[behaviours[name].question for name in asked.alternatives],
+        )
+        answer = await self.app.push_screen_wait(dialog)
+        while dialog.is_attached:  # the next question may follow at once, under the same id
+            await asyncio.sleep(0)
         if self._ears is not None:
             self._ears.open()
         chosen = None if answer.alternative is None else answer.alternative + 1

@@ -1,0 +1,211 @@
+"""The teaching screen, walked with keys as a teacher would."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from tangy_tui.house import House
+from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+def program(house: House, *, seed: int = 1, scripted: float | None = None) -> Program:
+    """Make the program with the teaching screen open."""
+
+    async def start(started: Program) -> None:
+        teaching = house.teaching("ann", seed)
+        await started.push_screen(TeachScreen(house, teaching, scripted=scripted))
+
+    return Program(house, start, clock=StillClock())
+
+
+async def say(pilot: Pilot[None], words: str, answer: str = "y") -> None:
+    """Type a command, and answer its question."""
+    await pilot.press(*words, "enter")
+    await pilot.pause()
+    assert isinstance(pilot.app.screen, QuestionDialog)
+    await pilot.press(answer)
+    await pilot.pause()
+
+
+def steps(house: House) -> list[str]:
+    """Return the behaviours that the log has of the last demonstration."""
+    return [s.behaviour for s in read_demonstrations(house.store, house.activity.name)[-1].steps]
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE])
+async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        await say(pilot, "greet everyone")
+        shown = screen_text(pilot.app)
+        assert "1 start · nobody asks -> greeting" in shown
+        assert "Hello, everybody" in shown
+        assert "stage FACILITATE" in shown
+        assert steps(house) == ["greeting"]
+
+
+async def test_a_rejected_command_changes_nothing_and_comes_back(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await say(pilot, "call a number", "n")
+        assert pilot.app.screen.query_one(CommandBar).text == "call a number"
+        assert pilot.app.screen.query_one(Transcript).count == 0
+        assert not read_demonstrations(house.store, house.activity.name)
+
+
+async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press(*"greet evryone", "enter")
+        await pilot.pause()
+        first = pilot.app.screen
+        assert isinstance(first, QuestionDialog)
+        assert first.behaviour == "greet everyone"
+        await pilot.press("1")
+        await pilot.pause()
+        second = pilot.app.screen
+        assert isinstance(second, QuestionDialog)
+        assert second.behaviour != first.behaviour
+        await pilot.press("n")
+        await pilot.pause()
+        assert not read_demonstrations(house.store, house.activity.name)
+
+
+async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press(*"flurb", "enter")
+        await pilot.pause()
+        assert "I do not know what 'flurb' means" in screen_text(pilot.app)
+        assert pilot.app.screen.query_one(CommandBar).text == "flurb"
+
+
+async def test_undo_takes_the_last_step_back(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await say(pilot, "greet everyone")
+        await say(pilot, "call number")
+        await pilot.press("escape", "u")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(Transcript).count == 1
+        assert steps(house) == ["greeting"]
+        await pilot.press("ctrl+z")
+        await pilot.pause()
+        assert steps(house) == []
+
+
+async def test_letters_are_keys_only_outside_of_the_command_line(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press("u")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(CommandBar).text == "u"
+        assert "no step to undo" not in screen_text(pilot.app)
+
+
+async def test_going_where_nobody_asks_is_refused_with_a_way_out(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press(*"go to user", "enter")
+        await pilot.pause()
+        assert "go to user 1" in screen_text(pilot.app)
+        await say(pilot, " 3")  # what was typed is still there
+        assert house.store.last("demonstration step") is not None
+        assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())
+
+
+async def test_leaving_and_coming_back_finds_the_steps(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await say(pilot, "greet everyone")
+        await pilot.press("escape", "escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+    async with run(app=program(house)) as pilot:
+        assert "1 start · nobody asks -> greeting" in screen_text(pilot.app)
+        assert "Going on where you left" in " ".join(pilot.app.screen.query_one(LogView).sentences)
+
+
+async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, TeachScreen)
+        teacher = ScriptedTeacher(screen._teaching)
+        while not screen._teaching.demonstration.finished:
+            screen._tell(list(screen._teaching.apply(teacher.command())))
+            await pilot.pause()
+            if isinstance(pilot.app.screen, QuestionDialog):
+                await pilot.press("y")
+                await pilot.pause()
+        assert "The game is over" in screen_text(pilot.app)
+        await pilot.press("escape", "d")
+        await pilot.pause()
+        assert screen.query_one(Transcript).count == 0
+        finished = read_demonstrations(house.store, house.activity.name)
+        assert [d.finished for d in finished] == [True]
+
+
+async def test_stop_works_while_a_question_is_open(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press(*"greet everyone", "enter")
+        await pilot.pause()
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert "STOP" in " ".join(pilot.app.screen.query_one(LogView).sentences)
+        assert not read_demonstrations(house.store, house.activity.name)
+
+
+async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> None:
+    with_markup = House(tmp_path / "data")
+    with_markup.store.rename("user1", "[/][@click=app.quit]x")
+    with_markup.close()
+    house = House(tmp_path / "data")
+    try:
+        async with run(app=program(house), size=LARGE) as pilot:
+            await say(pilot, "go to user 1")
+            assert "[/]" in screen_text(pilot.app)
+    finally:
+        house.close()
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_it_looks_in_mid_game(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, TeachScreen)
+        teacher = ScriptedTeacher(screen._teaching)
+        for _ in range(2 * 13):
+            screen._tell(list(screen._teaching.apply(teacher.command())))
+            await pilot.pause()
+            if isinstance(pilot.app.screen, QuestionDialog):
+                await pilot.press("y")
+                await pilot.pause()
+        await pilot.press(*"go to usr", "enter")
+        await pilot.pause()
+        picture(pilot.app)
