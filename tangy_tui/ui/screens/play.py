@@ -93,6 +93,7 @@ class PlayScreen(TangyScreen[Tally]):
         self._nudge = asyncio.Event()
         self._skipping = False
         self._single = False
+        self._stopped = False
         self._status = Status(mode="play")
 
     def compose(self) -> ComposeResult:
@@ -129,16 +130,19 @@ class PlayScreen(TangyScreen[Tally]):
     # ---------------------------------------------------------------------------------- keys
 
     def action_pause(self) -> None:
-        """Pause, or go on."""
+        """Pause, or go on; after a STOP this is what lets the robot move again."""
         if self._going.is_set():
             self._going.clear()
         else:
+            self._stopped = False
             self._going.set()
         self._nudge.set()
         self._show_status()
 
     def action_one_step(self) -> None:
         """Do one step and pause."""
+        if self._refused():
+            return
         self._single = True
         self._going.set()
         self._nudge.set()
@@ -152,6 +156,8 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_skip(self) -> None:
         """Play the rest of the game at once."""
+        if self._refused():
+            return
         self._skipping = True
         self._going.set()
         self._nudge.set()
@@ -176,10 +182,18 @@ class PlayScreen(TangyScreen[Tally]):
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
         self._skipping = False
+        self._stopped = True
         self._going.clear()
         self._nudge.set()
+        self.query_one(RoomView).skip()
         self.query_one(LogView).write("STOP. Press p to go on.", "bad")
-        self._show_status(robot="STOPPED", alarm=True)
+        self._show_status()
+
+    def _refused(self) -> bool:
+        """Say, after a STOP, that it has to be lifted first."""
+        if self._stopped:
+            self.query_one(LogView).write("Tangy was stopped: press p to go on first.", "warn")
+        return self._stopped
 
     # ---------------------------------------------------------------------------------- game
 
@@ -267,17 +281,17 @@ class PlayScreen(TangyScreen[Tally]):
         names: Mapping[str, str] = self._house.names
         self.query_one(Posteriors).show(self._facilitation.persuasion.beliefs, names, highlight)
 
-    def _show_status(self, robot: str = "OK", alarm: bool = False) -> None:
+    def _show_status(self) -> None:
         paused = not self._going.is_set() and not self._facilitation.over
         status = self._status
         self.query_one(StatusLine).show(
             Status(
                 mode="play",
-                robot=robot,
+                robot="STOPPED" if self._stopped else "OK",
                 stage="over" if self._facilitation.over else status.stage,
                 game=status.game,
                 step=status.step,
                 note="paused" if paused else f"x{self._speed:g}",
-                alarm=alarm,
+                alarm=self._stopped,
             )
         )

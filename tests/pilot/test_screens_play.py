@@ -1,0 +1,251 @@
+"""Playing, policy, people, home and the demo: walked with keys, at both sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.story import learn
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.program import Program, effects_of
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.people import PeopleScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.policy import PolicyScreen, policy_rows
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def policy(house: House) -> Policy:
+    """A policy learnt from three scripted demonstrations."""
+    teaching = house.teaching(SCRIPTED, 1)
+    teacher = ScriptedTeacher(teaching)
+    teaching.begin()
+    for number in range(3):
+        if number:
+            teaching.apply(teacher.command())
+        for _ in teacher.demonstrate():
+            pass
+    return learn(house)
+
+
+def playing(house: House, policy: Policy, *, speed: float = 1, games: int = 1) -> Program:
+    """Make the program with the playing screen open; at speed 1 only keys move the game."""
+
+    async def start(started: Program) -> None:
+        facilitation = house.facilitation(policy, 5)
+        await started.push_screen(PlayScreen(house, facilitation, games=games, speed=speed))
+
+    return Program(house, start, clock=StillClock())
+
+
+async def pause_at_once(pilot: Pilot[None]) -> PlayScreen:
+    """Pause the game and return its screen."""
+    await pilot.press("p")
+    await pilot.pause()
+    screen = pilot.app.screen
+    assert isinstance(screen, PlayScreen)
+    return screen
+
+
+async def test_one_step_is_one_step(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy), size=LARGE) as pilot:
+        screen = await pause_at_once(pilot)
+        before = screen.query_one(Transcript).count
+        for more in (1, 2, 3):
+            await pilot.press("n")
+            await pilot.pause()
+            assert screen.query_one(Transcript).count == before + more
+        assert screen.query_one(StatusLine).status.note == "paused"
+
+
+async def test_the_policy_row_in_use_is_marked(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy), size=LARGE) as pilot:
+        screen = await pause_at_once(pilot)
+        for _ in range(3):
+            await pilot.press("n")
+            await pilot.pause()
+        table = screen.query_one(PolicyTable)
+        assert table._now is not None
+        assert table.rows[table._now].behaviour == "call number"
+
+
+async def test_skipping_plays_the_game_to_its_end(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = await pause_at_once(pilot)
+        await pilot.press("e")
+        await pilot.app.workers.wait_for_complete(
+            [w for w in pilot.app.workers if w.name == "game"]
+        )
+        await pilot.pause()
+        assert "The game is over" in screen.query_one(LogView).sentences[-1]
+        assert screen.query_one(StatusLine).status.stage == "over"
+        assert house.store.last("game ended") is not None
+        await pilot.press("g")
+        await pilot.pause()
+        assert screen.query_one(StatusLine).status.game == 2
+
+
+async def test_speed_goes_from_life_to_a_thousand_times(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = pilot.app.screen
+        await pilot.press("p", "p")
+        for _ in range(12):
+            await pilot.press("plus")
+        await pilot.press("p")
+        await pilot.press("p")
+        await pilot.pause()
+        assert screen.query_one(StatusLine).status.note == "x1000"
+        for _ in range(12):
+            await pilot.press("minus")
+        await pilot.pause()
+        assert screen.query_one(StatusLine).status.note == "x1"
+
+
+async def test_stop_stops_and_only_a_person_lets_it_go_on(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = pilot.app.screen
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        count = screen.query_one(Transcript).count
+        assert screen.query_one(StatusLine).status.alarm
+        assert "STOPPED" in screen_text(pilot.app)
+        await pilot.press("plus", "minus")
+        await pilot.pause()
+        assert screen.query_one(Transcript).count == count
+        assert "STOPPED" in screen_text(pilot.app)
+        await pilot.press("n")
+        await pilot.pause()
+        assert screen.query_one(Transcript).count == count
+        await pilot.press("p")
+        await pilot.pause()
+        assert "STOPPED" not in screen_text(pilot.app)
+
+
+async def test_panels_are_chosen_by_number_where_there_is_no_room(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), size=SMALL) as pilot:
+        await pause_at_once(pilot)
+        for key, title in (("2", "Steps"), ("3", "Policy"), ("4", "Posteriors"), ("5", "Log")):
+            await pilot.press(key)
+            await pilot.pause()
+            assert f" {title} " in screen_text(pilot.app)
+
+
+async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
+    run: Run, house: House
+) -> None:
+    teaching = house.teaching("ann", 1)
+    teacher = ScriptedTeacher(teaching)
+    teaching.begin()
+    for _ in range(4):
+        teaching.apply(teacher.command())
+    from tangy_tui.learning.library import read_demonstrations
+    from tangy_tui.learning.policy import learn_policy
+
+    poor = learn_policy(house.activity, read_demonstrations(house.store, house.activity.name))
+    async with run(app=playing(house, poor), size=LARGE) as pilot:
+        screen = await pause_at_once(pilot)
+        await pilot.press("e")
+        await pilot.app.workers.wait_for_complete(
+            [w for w in pilot.app.workers if w.name == "game"]
+        )
+        await pilot.pause()
+        assert "Nobody has shown Tangy" in screen.query_one(LogView).sentences[-1]
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_playing_looks(
+    run: Run,
+    house: House,
+    policy: Policy,
+    size: tuple[int, int],
+    picture: Callable[[App[None]], None],
+) -> None:
+    async with run(app=playing(house, policy), size=size) as pilot:
+        await pause_at_once(pilot)
+        for _ in range(12):
+            await pilot.press("n")
+            await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_the_policy_screen_says_what_was_never_shown(run: Run, house: House) -> None:
+    teaching = house.teaching("ann", 1)
+    teacher = ScriptedTeacher(teaching)
+    teaching.begin()
+    for _ in teacher.demonstrate():
+        pass
+    policy = learn(house)
+    unseen = [row for row in policy_rows(house.activity, policy) if not row.seen]
+    assert unseen, "this game was to leave something out"
+
+    async def start(program: Program) -> None:
+        await program.push_screen(PolicyScreen(house, policy, effects_of(house, policy)))
+
+    async with run(app=Program(house, start, clock=StillClock()), size=LARGE) as pilot:
+        shown = screen_text(pilot.app)
+        assert f"{11 - len(unseen)} of 11 situations were shown" in shown
+        assert "never shown" in shown
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_home_leads_everywhere_and_back(run: Run, house: House, policy: Policy) -> None:
+    ways = {"t": TeachScreen, "o": PolicyScreen, "e": PeopleScreen, "p": PlayScreen}
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        assert "3 demonstrations" in screen_text(pilot.app)
+        for key, kind in ways.items():
+            await pilot.press(key)
+            while not isinstance(pilot.app.screen, kind):
+                await pilot.pause(0.02)
+            if kind is TeachScreen:
+                await pilot.press("escape")  # out of the command line
+            await pilot.press("escape")
+            await pilot.pause()
+            assert isinstance(pilot.app.screen, HomeScreen), key
+
+
+async def test_playing_before_learning_is_answered_with_what_to_do(run: Run, house: House) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("p")
+        while not isinstance(pilot.app.screen, MessageDialog):
+            await pilot.pause(0.02)
+        assert "has not learnt Bingo yet" in screen_text(pilot.app)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_learning_from_home_shows_the_policy(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("l")
+        while not isinstance(pilot.app.screen, PolicyScreen):
+            await pilot.pause(0.02)
+        assert "Learnt from 3 demonstrations" in screen_text(pilot.app)
