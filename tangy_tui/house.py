@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 from random import Random
+from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import TangyError
@@ -14,15 +15,14 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.store import Store
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
-from tangy_tui.interaction import facilitation
-from tangy_tui.interaction.facilitation import Facilitation
-from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.learning import library
-from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.policy import Policy
-from tangy_tui.world import World
+
+# The engine is imported when it is first asked for: the first screen needs none of it.
+if TYPE_CHECKING:
+    from tangy_tui.interaction.facilitation import Facilitation
+    from tangy_tui.interaction.persuasion import Persuasion
+    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.policy import Policy
+    from tangy_tui.world import World
 
 
 def data_folder(chosen: Path | None) -> Path:
@@ -96,6 +96,9 @@ class House:
         Without a seed the games count on from the demonstrations there are, so that no two are
         alike and each can be had again.
         """
+        from tangy_tui.learning import library
+        from tangy_tui.learning.demonstrating import Teaching
+
         if seed is None:
             seed = 1 + len(library.read_demonstrations(self.store, self.activity.name))
         return Teaching(
@@ -104,14 +107,20 @@ class House:
 
     def teaching_world(self, seed: int, people: Sequence[str]) -> World:
         """Make the simulated world of a demonstration, in which people ask more often."""
+        from tangy_sim.users import load_users
+        from tangy_sim.world import SimulatedWorld
+
         return SimulatedWorld(self.activity, people, seed=seed, users=load_users().teaching())
 
     def facilitation(self, policy: Policy, seed: int | None) -> Facilitation:
         """Make a run of simulated games with a policy and with what is believed of the people."""
+        from tangy_sim.world import SimulatedWorld
+        from tangy_tui.interaction import facilitation
+
         if seed is None:
             seed = 1 + sum(1 for _ in self.store.events(facilitation.BEGUN))
         ids = [person.id for person in self.people]
-        return Facilitation(
+        return facilitation.Facilitation(
             SimulatedWorld(self.activity, ids, seed=seed),
             policy,
             self.persuasion(Random(f"{seed}/persuasion")),
@@ -122,6 +131,8 @@ class House:
 
     def persuasion(self, rng: Random) -> Persuasion:
         """Make the persuasion of everybody present from the responses in the log."""
+        from tangy_tui.interaction.persuasion import Persuasion
+
         return Persuasion(
             [person.id for person in self.people],
             tuple(self.activity.strategies),

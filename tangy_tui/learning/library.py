@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+
+if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
+    from tangy_tui.learning.policy import Policy
 
 BEGUN = "demonstration begun"
 STEP = "demonstration step"
@@ -94,6 +96,8 @@ def load_policy(store: Store, activity: Activity) -> tuple[Policy, list[str]]:
     Raises:
         NoPolicy: none has been learnt, or its demonstrations are gone.
     """
+    from tangy_tui.learning.policy import ForestSettings, learn_policy
+
     kept = need_policy(store, activity)
     shown = {d.id: d for d in read_demonstrations(store, activity.name)}
     missing = [id for id in kept["demonstrations"] if id not in shown]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Coroutine, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from textual.screen import Screen
 from textual.worker import Worker, WorkerFailed
@@ -13,17 +13,17 @@ from textual.worker import Worker, WorkerFailed
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library
-from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.ears import Ears
-from tangy_tui.learning.effects import Effects, learn_effects
-from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.ui.app import TangyApp, run_app
-from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 from tangy_tui.wording import counted
+
+if TYPE_CHECKING:
+    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.ears import Ears
+    from tangy_tui.learning.effects import Effects
+    from tangy_tui.learning.policy import Policy
 
 T = TypeVar("T")
 
@@ -147,8 +147,13 @@ class Program(TangyApp):
             return None
         policy, notices = loaded
         if notices:
-            await self.push_screen_wait(MessageDialog("\n".join(notices), title="Policy"))
+            await self._tell("\n".join(notices), title="Policy")
         return policy
+
+    async def _tell(self, text: str, title: str) -> None:
+        from tangy_tui.ui.dialogs.message import MessageDialog
+
+        await self.push_screen_wait(MessageDialog(text, title=title))
 
     async def _in_thread(self, what: str, work: Callable[[], T]) -> T | None:
         """Do slow work beside the screen; None if it failed for a reason that was shown."""
@@ -160,7 +165,7 @@ class Program(TangyApp):
             if not isinstance(failed.error, TangyError):
                 raise
             self.clear_notifications()
-            await self.push_screen_wait(MessageDialog(str(failed.error), title="Not yet"))
+            await self._tell(str(failed.error), title="Not yet")
             return None
         finally:
             self.clear_notifications()
@@ -180,6 +185,7 @@ class Program(TangyApp):
 
     async def tell_story(self, seed: int) -> None:
         """Three demonstrations by a scripted teacher, learning, one game, what is believed."""
+        from tangy_tui.learning.scripted_teacher import SCRIPTED
         from tangy_tui.story import learn
         from tangy_tui.ui.screens.people import PeopleScreen
         from tangy_tui.ui.screens.play import PlayScreen
@@ -206,6 +212,8 @@ class Program(TangyApp):
 
 def effects_of(house: House, policy: Policy) -> Effects:
     """Learn the effects from the demonstrations that a policy rests on."""
+    from tangy_tui.learning.effects import learn_effects
+
     shown = library.read_demonstrations(house.store, house.activity.name)
     return learn_effects(house.activity, [d for d in shown if d.id in policy.demonstrations])
 
@@ -232,6 +240,7 @@ def run_teaching(
     """
 
     async def start(program: Program) -> None:
+        from tangy_tui.learning.scripted_teacher import SCRIPTED
         from tangy_tui.ui.screens.teach import TeachScreen
 
         pace = speed if teaching.teacher == SCRIPTED else None

@@ -205,7 +205,7 @@ class TeachScreen(TangyScreen[bool]):
             alternatives=[behaviours[name].question for name in asked.alternatives],
         )
         answer = await self.app.push_screen_wait(dialog)
-        while dialog.is_attached:  # the next question may follow at once, under the same id
+        while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
         if self._ears is not None:
             self._ears.open()
