@@ -1,0 +1,117 @@
+"""The floors hold, nothing heavy is imported early, and no word of an activity stands in code."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from importlinter.api import read_configuration
+from importlinter.application.use_cases import SUCCESS, lint_imports
+
+from tangy_profiles.activity import Activity
+
+ROOT = Path(__file__).parent.parent.parent
+ENGINE = [
+    *sorted((ROOT / "profiles").rglob("*.py")),
+    *sorted((ROOT / "sim").rglob("*.py")),
+    *sorted((ROOT / "tangy_tui" / "learning").glob("*.py")),
+    *sorted((ROOT / "tangy_tui" / "interaction").glob("*.py")),
+    ROOT / "tangy_tui" / "world.py",
+    ROOT / "tangy_tui" / "wording.py",
+    ROOT / "tangy_tui" / "lines.py",
+]
+HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}
+
+
+def test_the_floors_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    assert lint_imports(config_filename="pyproject.toml", cache_dir=None) == SUCCESS
+
+
+def test_the_contracts_are_those_of_the_house() -> None:
+    contracts = read_configuration(str(ROOT / "pyproject.toml"))["contracts_options"]
+    floors = next(c for c in contracts if c["type"] == "layers" and "containers" not in c)
+    assert floors["layers"] == ["tangy_tui", "tangy_sim | tangy_hw", "tangy_profiles"]
+    barred = {
+        module: set(c["source_modules"])
+        for c in contracts
+        if c["type"] == "forbidden"
+        for module in c["forbidden_modules"]
+    }
+    engine = {"tangy_profiles", "tangy_sim", "tangy_hw", "tangy_tui.learning"}
+    assert engine | {"tangy_tui.interaction"} <= barred["textual"] & barred["rich"]
+
+
+@pytest.mark.parametrize("module", ["tangy_tui", "tangy_tui.cli", "tangy_tui.house"])
+def test_importing_loads_nothing_heavy(module: str) -> None:
+    code = f"import json, sys, {module}; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(  # noqa: S603 - our own interpreter
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    loaded = {name.partition(".")[0] for name in json.loads(done.stdout)}
+    assert "tangy_tui" in loaded
+    assert not loaded & HEAVY
+    if module == "tangy_tui":
+        assert not loaded & {"textual", "rich", "typer"}
+
+
+def test_the_engine_runs_without_a_screen() -> None:
+    code = (
+        "import json, sys\n"
+        "import tangy_tui.learning.demonstrating, tangy_tui.learning.policy\n"
+        "import tangy_tui.interaction.facilitation, tangy_tui.lines, tangy_sim.world\n"
+        "print(json.dumps(sorted(sys.modules)))\n"
+    )
+    done = subprocess.run(  # noqa: S603 - our own interpreter
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    loaded = {name.partition(".")[0] for name in json.loads(done.stdout)}
+    assert not loaded & {"textual", "rich", "typer", *HEAVY}
+
+
+def words_in_code(path: Path) -> Iterator[str]:
+    """Yield the texts and names in a module, but not its docstrings and comments."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    told = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told:
+            yield node.value
+        elif isinstance(node, ast.Name):
+            yield node.id
+        elif isinstance(node, ast.Attribute):
+            yield node.attr
+
+
+def test_no_word_of_an_activity_stands_in_the_code_of_the_engine(activity: Activity) -> None:
+    words = {
+        activity.name,
+        *(set(activity.behaviours) - {"encourage"}),
+        *(state.name for state in activity.user_states),
+        *(stage for stage in activity.stages if stage not in ("start", "end", "help")),
+        *activity.strategies,
+        "user1",
+    }
+    found = {
+        (path.name, word)
+        for path in ENGINE
+        for text in words_in_code(path)
+        for word in words
+        if re.search(rf"\b{word}\b", text.lower())
+    }
+    # The simulated people have a rate of that name, whatever an unread card is called.
+    assert found <= {("users.py", "occluded"), ("world.py", "occluded")}
+
+
+def test_every_package_is_marked_as_typed() -> None:
+    for package in ("tangy_tui", "sim/tangy_sim", "hw/tangy_hw", "profiles/tangy_profiles"):
+        assert (ROOT / package / "py.typed").exists(), package

@@ -1,0 +1,106 @@
+"""The command line as a process of its own: odd terminals, odd locales, pipes that close."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TANGY = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
+
+
+def tangy(
+    *arguments: str, home: Path, typed: str | bytes = "", **environment: str
+) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(  # noqa: S603 - our own interpreter
+        [*TANGY, *arguments],
+        input=typed.encode() if isinstance(typed, str) else typed,
+        capture_output=True,
+        timeout=60,
+        check=False,
+        env={
+            **{k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))},
+            "HOME": str(home),
+            "XDG_DATA_HOME": str(home),
+            **environment,
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"LANG": "C", "TERM": "dumb"},
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "TERM": "xterm"},
+        {"LANG": "C.UTF-8", "TERM": "dumb", "NO_COLOR": "1"},
+        {"PYTHONIOENCODING": "latin-1"},
+    ],
+)
+def test_a_session_by_lines_runs_in_any_terminal_and_locale(
+    environment: dict[str, str], tmp_path: Path
+) -> None:
+    taught = tangy(
+        "teach", "--plain", home=tmp_path, typed="greet everyone\ny\nñandú\n", **environment
+    )
+    assert (taught.returncode, taught.stderr) == (0, b"")
+    assert b"1. start" in taught.stdout
+    assert b"Left after 1 steps" in taught.stdout
+
+
+def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> None:
+    done = tangy("teach", "--plain", home=tmp_path, typed=b"\xff\xfe\x80\x1b[2J\nquit\n")
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"I do not know what" in done.stdout
+    assert b"\x1b" not in done.stdout
+
+
+def test_without_a_terminal_the_program_says_what_it_can_do(tmp_path: Path) -> None:
+    done = tangy(home=tmp_path)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.startswith(b"Usage: ")
+
+
+def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) -> None:
+    done = tangy("demo", "--json", home=tmp_path, TERM="dumb", LANG="C")
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert json.loads(done.stdout)["games"] == 1
+    assert not list(tmp_path.rglob("tangy.db")), "a demonstration leaves nothing behind"
+
+
+def test_whoever_has_read_enough_is_no_error(tmp_path: Path) -> None:
+    with subprocess.Popen(  # noqa: S603 - our own interpreter
+        [*TANGY, "demo", "--plain", "--data", str(tmp_path / "data")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as told:
+        assert told.stdout is not None
+        assert told.stderr is not None
+        assert told.stdout.readline().startswith(b"1. A teacher demonstrates")
+        told.stdout.close()
+        assert told.stderr.read() == b""
+        assert told.wait(60) == 1
+
+
+def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) -> None:
+    data = ["--data", str(tmp_path / "data")]
+    with subprocess.Popen(  # noqa: S603 - our own interpreter
+        [*TANGY, "teach", "--plain", *data], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as taught:
+        assert taught.stdin is not None
+        assert taught.stdout is not None
+        taught.stdin.write(b"greet everyone\ny\n")
+        taught.stdin.flush()
+        while b"Tangy says" not in taught.stdout.readline():
+            pass
+        busy = tangy("teach", "--plain", *data, home=tmp_path)
+        assert busy.returncode == 2
+        assert f"process {taught.pid} is writing to".encode() in busy.stderr
+        taught.kill()
+        taught.wait(60)
+    again = tangy("teach", "--plain", *data, home=tmp_path)
+    assert again.returncode == 0
+    assert b"demonstration of 1 steps" in again.stdout

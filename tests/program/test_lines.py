@@ -1,0 +1,167 @@
+"""The program by lines: everything is said in a line that a screen reader can read."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.learning.policy import ForestSettings, learn_policy
+from tangy_tui.lines import TeachingLines, belief_lines, play_by_lines
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+
+
+def told(house: House, *lines: str, teacher: str = "Ada", resume: bool = True) -> list[str]:
+    """Hold a session in which these lines are typed; return what was said."""
+    typed = iter(lines)
+    said: list[str] = []
+    session = TeachingLines(house.teaching(teacher, 1), lambda: next(typed, None), said.append)
+    asyncio.run(session.run(resume=resume))
+    return said
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(house: House) -> None:
+    said = told(house)
+    assert said[0].startswith("Teaching Bingo. Commands: ")
+    assert said[1] == "A new demonstration by Ada (game 1)."
+    assert said[2] == ("Now: start · nobody asks. Tangy is at the front. Nobody asks for help.")
+    assert len(said) == 3, "looking in leaves nothing to go on from"
+
+
+def test_the_question_names_the_behaviour_and_only_y_executes_it(house: House) -> None:
+    said = told(house, "greet everyone", "", "yes", "ok", "Y")
+    question = "Did you say: greet everyone? Type Y to execute it or N for a new command."
+    assert said[3] == question
+    assert said[4:6] == ["Please answer Y to execute it, or N to give a new command."] * 2
+    assert said[6] == "1. start · nobody asks -> greeting"
+    assert said[7].startswith("   Tangy says: Hello")
+
+
+def test_n_gives_the_words_back(house: House) -> None:
+    for no in ("n", "N"):
+        said = told(house, "greet everyone", no)
+        assert "Not done: greet everyone. Give a new command." in said
+        assert not any(line.startswith("1. ") for line in said)
+
+
+def test_alternatives_are_chosen_by_number_and_asked_about_again(house: House) -> None:
+    said = told(house, "tell everyone goodbye", "9", "1", "1")
+    asked = [line.partition("?")[0] for line in said if line.startswith("Did you say: ")]
+    goodbye, joke = "Did you say: say goodbye", "Did you say: tell a joke"
+    assert asked == [goodbye, joke, goodbye], "nothing is executed unasked"
+    assert said[4].startswith("  heard 'tell everyone goodbye', ")
+    assert said[4].endswith("% sure")
+    assert said[5:8] == [
+        "  1 instead: tell a joke", "  2 instead: greet everyone", "There is no choice 9.",
+    ]  # fmt: skip
+    assert said[10] == "  1 instead: say goodbye"
+
+
+def test_undo_where_help_and_quit_are_understood(house: House) -> None:
+    typed = ("undo", "greet everyone", "y", "where", "help", "undo", "quit", "tell a joke")
+    said = told(house, *typed)
+    assert "There is no step to undo." in said
+    assert "Step 1 is undone: greeting." in said
+    assert said.count("Now: facilitate · nobody asks. Tangy is at the front. "
+                      "Nobody asks for help.") == 2  # fmt: skip
+    for behaviour in house.activity.behaviours.values():
+        assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
+    assert not any("joke?" in line for line in said), "after quit nothing is read"
+
+
+def test_a_session_that_is_left_is_gone_on_with(house: House) -> None:
+    said = told(house, "greet everyone", "y", "next number", "y", "quit")
+    assert said[-1].startswith("Left after 2 steps. They are kept")
+    assert told(house)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
+    assert told(house, resume=False)[1].startswith("A new demonstration by Ada")
+
+
+def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(house: House) -> None:
+    said = told(house, "qwertz \x1b[2J")
+    assert said[3].startswith("I do not know what ")
+    assert said[3].isprintable()
+    near = told(house, "sing and call")
+    assert any("Did you mean" in line or "Did you say" in line for line in near[3:])
+
+
+def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(house: House) -> None:
+    teaching = house.teaching("Ada", 1)
+    said: list[str] = []
+    answers: list[str] = []
+
+    def read() -> str | None:
+        if answers:
+            return answers.pop()
+        if teaching.demonstration.finished:
+            answers.extend(["quit", "where", "next", "tell a joke"])
+            return answers.pop()
+        if teaching.question is not None:
+            return "y"
+        expected = house.activity.expected[teaching.world.observe().situation]
+        return house.activity.behaviours[expected].phrases[0]
+
+    asyncio.run(TeachingLines(teaching, read, said.append).run())
+    over = next(line for line in said if line.startswith("The game is over; "))
+    assert "steps were demonstrated. Type next for another" in over
+    after = said[said.index(over) + 1 :]
+    assert after[0].startswith("This game is over.")
+    assert after[1] == "A new demonstration by Ada (game 2)."
+    assert not any(line.startswith("Left after") for line in after)
+
+
+@given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))
+def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> None:
+    with TemporaryDirectory() as folder:
+        house = House(Path(folder))
+        with house.store.transaction():
+            said = told(house, *lines)
+        house.close()
+    assert all(line.isprintable() for line in said)
+
+
+def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, cover: Cover) -> None:
+    policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
+    facilitation = house.facilitation(policy, 3)
+    said: list[str] = []
+    play_by_lines(facilitation, 3, house.name, said.append)
+    assert said[0] == "Game 1 begins."
+    assert said[1] == "1. start · nobody asks -> greeting, 100% of the votes"
+    assert sum(line.startswith("The game is over after ") for line in said) == 3
+    learnt = [line for line in said if " complied (" in line or " followed, but late (" in line]
+    assert learnt
+    assert all("best so far: " in line for line in learnt)
+    assert said[-4:] == belief_lines(facilitation, house.name)
+    assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
+    assert all(line.isprintable() for line in said)
+
+
+def test_a_stopped_game_says_why(house: House, cover: Cover) -> None:
+    shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
+    policy = learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
+    said: list[str] = []
+    play_by_lines(house.facilitation(policy, 3), 1, house.name, said.append)
+    stopped = next(line for line in said if line.startswith("The game stopped after "))
+    assert "Nobody has shown Tangy what to do here yet: end / AR / occluded." in stopped
+
+
+def test_what_was_said_is_in_the_log(house: House) -> None:
+    told(house, "greet everyone", "y")
+    house.close()
+    with Store.open(house.store.folder, write=False) as store:
+        assert [e.kind for e in store.events()] == ["demonstration begun", "demonstration step"]
