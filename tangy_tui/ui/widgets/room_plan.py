@@ -157,6 +157,8 @@ class Line:
         for cell, ink in zip(self._cells, self._inks, strict=True):
             if spans and (cell == " " or spans[-1][1] == ink):
                 spans[-1] = (spans[-1][0] + cell, spans[-1][1])
+            elif len(spans) == 1 and spans[0][0].isspace():
+                spans[0] = (spans[0][0] + cell, ink)
             else:
                 spans.append((cell, ink))
         return tuple(spans)

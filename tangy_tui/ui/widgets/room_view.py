@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import ClassVar
 
+from rich.cells import cell_len
 from textual import events
 from textual.geometry import Region
 from textual.message import Message
@@ -303,23 +304,29 @@ class RoomView(Widget):
 
     def _draw_wall(self, lines: list[Line], grid: Grid) -> None:
         plan = self._plan
-        lines[0].put(0, "━" * plan.width, "floor")
+        lines[0].put(1, "━" * (plan.width - 2), "floor")
         front = grid.column(self._room.front.x)
         lines[0].put(max(0, front - 3), " Front ", "dim")
-        called = self._scene.called
-        if not called:
+        if self._scene.called:
+            self._draw_called(lines, self._scene.called, plan.width - front - 7)
+
+    def _draw_called(self, lines: list[Line], called: Sequence[int], beside: int) -> None:
+        """Write the numbers called: on a line of their own, or the newest beside the front."""
+        plan = self._plan
+        head, newest = f" {len(called)} called: ", clean(self._label(called[-1]))
+        width = cell_len(head + newest)
+        if plan.board:
+            before = "  ".join(clean(self._label(n)) for n in reversed(called[-12:-1]))
+            rest = shorten(f"  {before}", plan.width - 4 - width)
+            row, start = plan.board_row, (plan.width - width - cell_len(rest)) // 2
+        elif width < beside:
+            rest = " "
+            row, start = 0, plan.width - width - 2
+        else:
             return
-        head, newest = f"{len(called)} called: ", self._label(called[-1])
-        before = "  ".join(self._label(n) for n in reversed(called[-12:-1]))
-        row = plan.board_row if plan.board else 0
-        room = plan.width - 2 if plan.board else plan.width - front - 6
-        text = f" {head}{newest}"
-        rest = shorten(f"  {before}", room - len(text) - 1) if plan.board else ""
-        start = (plan.width - len(text) - len(rest)) // 2 if plan.board else plan.width - len(text)
-        if len(text) <= room:
-            lines[row].put(start, f" {head}", "dim")
-            lines[row].put(start + 1 + len(head), newest, "strong")
-            lines[row].put(start + len(text), rest, "dim")
+        lines[row].put(start, head, "dim")
+        lines[row].put(start + len(head), newest, "strong")
+        lines[row].put(start + width, rest, "dim")
 
     def _speech_lines(self) -> list[str]:
         if not self._speech or not self._plan.speech:
