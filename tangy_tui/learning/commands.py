@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -117,7 +117,7 @@ class Phrasebook:
             }
         )
         self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
-        self._joined = _of_one_meaning(self._phrases.values(), lambda p: "".join(p.bare))
+        self._joined = _of_one_meaning(self._phrases.values(), lambda p: _run_together(p.bare))
         self._weights = self._word_weights()
 
     def understand(self, text: str) -> Command | None:
@@ -134,13 +134,8 @@ class Phrasebook:
         if any(word in REFUSALS and word not in self._weights for word in words):
             return None
         mended, trust = self._mend(words)
-        found = self._exact(mended) or self._joined.get("".join(_bare(words)))
-        confidence = min(trust, MENDED)
-        if found is None:
-            found = self._point(mended)
-            confidence = trust * self._keyword_confidence(mended, found)
-        if found is None:
-            found, confidence = self._nearest(mended, trust)
+        found, confidence = self._find(words, mended)
+        confidence *= trust
         if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(words, found):
             return None
         return self._command(found, confidence, heard, mended)
@@ -235,14 +230,23 @@ class Phrasebook:
             mended.append(word)
         return tuple(mended), trust
 
-    def _keyword_confidence(self, words: Words, found: _Phrase | None) -> float:
-        """Grade keywords by how like a phrase of the behaviour the whole text is."""
-        likeness = [
-            like for like, p in self._ranking(words) if found and p.behaviour == found.behaviour
-        ]
-        return KEYWORDS_AT_LEAST + (KEYWORDS_AT_BEST - KEYWORDS_AT_LEAST) * max(
-            likeness, default=0.0
-        )
+    def _find(self, words: Words, mended: Words) -> tuple[_Phrase | None, float]:
+        """Return what words mean that are no phrase as they stand, and how sure that is."""
+        mistyped = self._exact(mended) or self._joined.get(_run_together(_bare(words)))
+        if mistyped is not None:
+            return mistyped, 1.0 if mended != words else MENDED
+        ranked = self._ranking(mended)
+        pointed = self._point(mended)
+        if pointed is not None:
+            like = max(
+                (share for share, p in ranked if p.behaviour == pointed.behaviour), default=0.0
+            )
+            return pointed, KEYWORDS_AT_LEAST + (KEYWORDS_AT_BEST - KEYWORDS_AT_LEAST) * like
+        if not ranked:
+            return None, 0.0
+        likeness, best = ranked[0]
+        lead = likeness - (ranked[1][0] if len(ranked) > 1 else 0.0)
+        return best, NEAREST_AT_BEST * likeness * (0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD))
 
     def _point(self, words: Words) -> _Phrase | None:
         """Return the keywords that were heard, if they all mean the same."""
@@ -258,21 +262,9 @@ class Phrasebook:
         """Refuse to go to anybody when a number was said that is not that person's."""
         if found.behaviour not in self._to_people:
             return True
-        said = {word for word in words if word.isdigit()}
-        return said <= {word for form in self._forms_of(found.user) for word in form}
-
-    def _forms_of(self, user: str | None) -> Iterator[Words]:
-        yield from ((number,) for number, id in self._numbers.items() if id == user)
-        yield from (name for name, id in self._names.items() if id == user)
-
-    def _nearest(self, words: Words, trust: float) -> tuple[_Phrase | None, float]:
-        ranked = self._ranking(words)
-        if not ranked:
-            return None, 0.0
-        likeness, best = ranked[0]
-        lead = likeness - (ranked[1][0] if len(ranked) > 1 else 0.0)
-        clear = 0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD)
-        return best, trust * NEAREST_AT_BEST * likeness * clear
+        own = {number for number, id in self._numbers.items() if id == found.user}
+        own |= {word for name, id in self._names.items() if id == found.user for word in name}
+        return own.issuperset(word for word in words if word.isdigit())
 
     def _command(self, found: _Phrase, confidence: float, heard: str, words: Words) -> Command:
         others = [
@@ -380,6 +372,10 @@ def _spoken(words: Words) -> str:
         NUMBERS[int(word)] if word.isdigit() and int(word) < len(NUMBERS) else word
         for word in words
     )
+
+
+def _run_together(words: Words) -> str:
+    return _spoken(words).replace(" ", "")
 
 
 def _bare(words: Words) -> Words:
