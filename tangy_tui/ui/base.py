@@ -113,8 +113,8 @@ class Dialog(ModalScreen[ResultT]):
     VERTICAL_BREAKPOINTS = LOW_OR_TALL
     HELP: ClassVar[str] = ""
 
-    def __init__(self, no: ResultT, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self, no: ResultT) -> None:
+        super().__init__()  # no id: the next dialog may come before this one is gone
         self._no = no
         self._answered = False
 

@@ -134,6 +134,29 @@ async def test_keys_of_the_first_moment_do_not_answer_and_later_ones_do(
         assert screen.answers == [Answer(True)]
 
 
+async def test_keys_behind_a_number_neither_answer_the_next_question_nor_land_in_the_bar(
+    run: Run,
+) -> None:
+    class AskingAgain(Asking):
+        def on_command_bar_given(self, event: CommandBar.Given) -> None:
+            def answered(answer: Answer | None) -> None:
+                self.answers.append(answer)
+                self.app.push_screen(QuestionDialog("tell a joke", clock=monotonic))
+
+            self.app.push_screen(QuestionDialog("x", alternatives=("tell a joke",)), answered)
+
+    screen = AskingAgain()
+    async with run(screen) as pilot:
+        await ask(pilot)
+        pilot.type("1", "y", "y")
+        await pilot.pause()
+        await pilot.pause()
+        assert screen.answers == [Answer(False, 0)]
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert pilot.app.screen.behaviour == "tell a joke"
+        assert bar_of(pilot).text == ""
+
+
 async def test_only_the_first_answer_counts(run: Run) -> None:
     screen = Asking()
     async with run(screen) as pilot:

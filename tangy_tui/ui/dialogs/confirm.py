@@ -32,9 +32,8 @@ class ConfirmDialog(Dialog[bool]):
         yes: str = "yes",
         no: str = "no",
         clock: Clock | None = None,
-        id: str = "confirm",
     ) -> None:
-        super().__init__(False, id=id)
+        super().__init__(False)
         self._question = clean(question)
         self._detail = clean(detail)
         self._words = (clean(yes), clean(no))
@@ -48,7 +47,7 @@ class ConfirmDialog(Dialog[bool]):
             parts += ["\n\n", self._detail]
         yes, no = self._words
         parts += ["\n\n", ("Y", "$warning bold"), f"  {yes}\n", ("N", "$success bold"), f"  {no}"]
-        yield Static(Content.assemble(*parts), classes="box")
+        yield Static(Content.assemble(*parts), id="confirm", classes="box")
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""

@@ -29,9 +29,8 @@ class MessageDialog(Dialog[None]):
         title: str = "Tangy",
         *,
         clock: Clock | None = None,
-        id: str = "message",
     ) -> None:
-        super().__init__(None, id=id)
+        super().__init__(None)
         self._text = "\n".join(clean(line) for line in text.split("\n"))
         self._title = clean(title)
         self._clock = clock
@@ -43,6 +42,7 @@ class MessageDialog(Dialog[None]):
             Content.assemble(
                 self._text, "\n\n", ("Enter", "$primary bold"), ("  go on", "$ink-dim")
             ),
+            id="message",
             classes="box",
         )
         box.border_title = Content(self._title)

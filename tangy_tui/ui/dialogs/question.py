@@ -62,7 +62,6 @@ class QuestionDialog(Dialog[Answer]):
         confidence: float | None = None,
         alternatives: Sequence[str] = (),
         clock: Clock | None = None,
-        id: str = "question",
     ) -> None:
         """Make the question.
 
@@ -73,7 +72,7 @@ class QuestionDialog(Dialog[Answer]):
             alternatives: other behaviours it may have been; the first three are offered.
             clock: seconds, on the scale of `time.monotonic` (default: the app's).
         """
-        super().__init__(NO, id=id)
+        super().__init__(NO)
         self._behaviour = clean(behaviour)
         self._heard = shorten(clean(heard), LONGEST_HEARD)
         self._confidence = confidence
@@ -89,7 +88,7 @@ class QuestionDialog(Dialog[Answer]):
 
     def compose(self) -> ComposeResult:
         """Lay out question, keys, and what it rests on."""
-        box = Static(self._content(), classes="box")
+        box = Static(self._content(), id="question", classes="box")
         box.border_title = "Question"
         yield box
 

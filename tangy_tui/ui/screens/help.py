@@ -65,13 +65,13 @@ class HelpScreen(Dialog[None]):
         Binding("escape,q,enter,question_mark,f1", "close", "Close", show=False),
     ]
 
-    def __init__(self, help: Help, *, id: str = "help") -> None:
-        super().__init__(None, id=id)
+    def __init__(self, help: Help) -> None:
+        super().__init__(None)
         self._help = help
 
     def compose(self) -> ComposeResult:
         """Lay out paragraphs and keys."""
-        box = VerticalScroll(Static(self._content()), classes="box")
+        box = VerticalScroll(Static(self._content()), id="help", classes="box")
         box.border_title = Content(f"Help: {self._help.title}")
         box.border_subtitle = "esc closes"
         yield box

@@ -28,6 +28,9 @@ Complete = Callable[[str], tuple[str, ...]]
 CLOSED_SECONDS = 2.0
 """How long the bar stays closed after a command if nobody says what became of it."""
 
+ANSWERED_SECONDS = 0.2
+"""The same after a dialog has closed: the answer may bring up the next question."""
+
 MOST_HISTORY = 200
 LONGEST = 200
 
@@ -203,8 +206,8 @@ class CommandBar(Vertical):
     `Given` carries a command. From that moment the bar is closed and swallows keys, so that what
     is typed ahead neither answers a question that is about to come nor lands in the next command.
     It opens again when the screen says what became of the command: `ready()` (done, or refused in
-    words elsewhere) or `restore(text)` (not understood, or answered with no), when a dialog above
-    it has closed, or by itself after two seconds.
+    words elsewhere) or `restore(text)` (not understood, or answered with no), or by itself: soon
+    after a dialog above it has closed, or two seconds after a command that brought up none.
     """
 
     DEFAULT_CSS = """
@@ -274,9 +277,7 @@ class CommandBar(Vertical):
 
     def ready(self) -> None:
         """Open the bar for the next command."""
-        if self._reopen is not None:
-            self._reopen.stop()
-            self._reopen = None
+        self._stop_waiting()
         if self._input.closed:
             self._input.closed = False
             self._prompt.update("> ")
@@ -299,5 +300,12 @@ class CommandBar(Vertical):
         self.app.screen_change_signal.subscribe(self, self._screen_changed)
 
     def _screen_changed(self, screen: Screen[object]) -> None:
-        if screen is self.screen:
-            self.ready()
+        """Stay closed under a dialog for as long as it takes, and open soon after it."""
+        self._stop_waiting()
+        if screen is self.screen and self._input.closed:
+            self._reopen = self.set_timer(ANSWERED_SECONDS, self.ready)
+
+    def _stop_waiting(self) -> None:
+        if self._reopen is not None:
+            self._reopen.stop()
+            self._reopen = None

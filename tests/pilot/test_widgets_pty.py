@@ -1,0 +1,180 @@
+"""The frame in a real pty: keys typed ahead, silence while idle, and every way out."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+from collections.abc import Iterator
+from time import monotonic
+
+import pyte
+import pytest
+
+PATIENCE = 20.0  # s
+SILENCE = 0.5  # s without output that count as idle, and more than a question's first moment
+
+
+class Window:
+    """The gallery in a terminal of its own, read by a terminal in memory."""
+
+    def __init__(self, columns: int, lines: int, *options: str) -> None:
+        self.terminal, child = pty.openpty()
+        self.before = termios.tcgetattr(child)
+        self.screen = pyte.Screen(columns, lines)
+        self.stream = pyte.ByteStream(self.screen)
+        self.resize(columns, lines)
+        self.process = subprocess.Popen(  # noqa: S603 - our own program
+            [sys.executable, "-m", "tangy_tui.ui.gallery", *options],
+            stdin=child,
+            stdout=child,
+            stderr=child,
+            env={**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8"},
+            start_new_session=True,
+        )
+        self.child = child
+
+    def text(self) -> str:
+        """Return what stands in the window."""
+        return "\n".join(self.screen.display)
+
+    def read(self, seconds: float) -> bytes:
+        """Take what is written within so many seconds, at most one piece of it."""
+        if not select.select([self.terminal], [], [], seconds)[0]:
+            return b""
+        try:
+            piece = os.read(self.terminal, 1 << 16)
+        except OSError:
+            return b""
+        # pyte takes the kitty protocol's private sequences for text
+        self.stream.feed(piece.replace(b"\x1b[>25u", b"").replace(b"\x1b[<u", b""))
+        return piece
+
+    def until(self, word: str) -> None:
+        """Wait until a word stands in the window."""
+        begun = monotonic()
+        while word not in self.text():
+            assert monotonic() - begun < PATIENCE, f"no {word!r} in:\n{self.text()}"
+            self.read(0.2)
+
+    def settle(self) -> None:
+        """Wait until nothing is written any more."""
+        begun = monotonic()
+        while self.read(SILENCE):
+            assert monotonic() - begun < PATIENCE, "it never falls silent"
+
+    def type(self, keys: str) -> None:
+        """Type keys in a single write."""
+        os.write(self.terminal, keys.encode())
+
+    def resize(self, columns: int, lines: int) -> None:
+        """Give the window another size."""
+        fcntl.ioctl(self.terminal, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
+        self.screen.resize(lines, columns)
+
+    def status(self) -> int:
+        """Wait for the end of the program."""
+        begun = monotonic()
+        while self.process.poll() is None:
+            assert monotonic() - begun < PATIENCE, "it does not end"
+            self.read(0.05)
+        return self.process.returncode
+
+    def close(self) -> None:
+        """End what is left."""
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        for end in (self.terminal, self.child):
+            if end >= 0:
+                os.close(end)
+
+
+@pytest.fixture
+def window() -> Iterator[Window]:
+    """A window of 80 x 24 with the gallery in it."""
+    opened = Window(80, 24)
+    opened.until("type a command")
+    opened.settle()
+    yield opened
+    opened.close()
+
+
+def test_a_y_in_the_same_write_does_not_answer_and_a_later_one_does(window: Window) -> None:
+    window.type("call number\ry")
+    window.until("Did you say: call number?")
+    window.settle()
+    assert "Did you say" in window.text()
+    assert "15 facilitate" not in window.text()
+    window.type("y")
+    window.until("15 facilitate")
+    assert "> y" not in window.text()
+
+
+def test_it_is_silent_while_nothing_happens(window: Window) -> None:
+    assert window.read(1.5) == b""
+    window.type("c")
+    window.settle()
+    assert window.read(1.5) == b""  # the cursor in the command bar does not blink
+    window.type("\r")
+    window.until("Did you say")
+    window.settle()
+    assert window.read(1.5) == b""
+
+
+def test_ctrl_c_leaves_the_terminal_as_it_was(window: Window) -> None:
+    window.type("\x03")
+    assert window.status() == 0
+    assert termios.tcgetattr(window.child) == window.before
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["TERM", "HUP"]
+)
+def test_signals_leave_the_terminal_as_it_was(window: Window, number: int, code: int) -> None:
+    os.kill(window.process.pid, number)
+    assert window.status() == code
+    assert termios.tcgetattr(window.child) == window.before
+
+
+def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
+    os.close(window.child)
+    os.close(window.terminal)
+    window.child = window.terminal = -1
+    os.kill(window.process.pid, signal.SIGHUP)  # as the kernel does for a controlling terminal
+    assert window.process.wait(PATIENCE) == 129
+
+
+def test_a_small_window_says_so_and_loses_nothing(window: Window) -> None:
+    window.type("call num")
+    window.settle()
+    window.resize(40, 10)
+    os.kill(window.process.pid, signal.SIGWINCH)
+    window.until("Make it larger")
+    window.resize(80, 24)
+    os.kill(window.process.pid, signal.SIGWINCH)
+    window.until("> call num")
+
+
+def test_ascii_writes_only_ascii() -> None:
+    window = Window(100, 30, "--ascii")
+    try:
+        written = b""
+        while "type a command" not in window.text():
+            piece = window.read(PATIENCE)
+            assert piece
+            written += piece
+        window.type("\x1bg")
+        while piece := window.read(SILENCE):
+            written += piece
+            if len(written) > 200_000:
+                break
+        assert written.isascii()
+    finally:
+        window.close()
