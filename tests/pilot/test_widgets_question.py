@@ -137,13 +137,23 @@ async def test_keys_of_the_first_moment_do_not_answer_and_later_ones_do(
 async def test_keys_behind_a_number_neither_answer_the_next_question_nor_land_in_the_bar(
     run: Run,
 ) -> None:
-    class AskingAgain(Asking):
+    class AskingAgain(TangyScreen[None]):
+        AUTO_FOCUS = "#command-input"
+
+        def __init__(self) -> None:
+            super().__init__()
+            self.answers: list[Answer | None] = []
+
+        def compose(self) -> ComposeResult:
+            yield CommandBar()
+
         def on_command_bar_given(self, event: CommandBar.Given) -> None:
             def answered(answer: Answer | None) -> None:
                 self.answers.append(answer)
                 self.app.push_screen(QuestionDialog("tell a joke", clock=monotonic))
 
-            self.app.push_screen(QuestionDialog("x", alternatives=("tell a joke",)), answered)
+            dialog = QuestionDialog("call number", alternatives=("tell a joke",))
+            self.app.push_screen(dialog, answered)
 
     screen = AskingAgain()
     async with run(screen) as pilot:
