@@ -19,6 +19,7 @@ from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
+from tangy_tui.wording import counted, situation_words
 
 T = TypeVar("T")
 
@@ -37,15 +38,13 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects) -> None:
     console = Console(highlight=False)
     exact = "as expected everywhere" if policy.exact(activity) else "not as expected everywhere"
     table = _table(
-        f"Policy {policy.name} ({len(policy.demonstrations)} demonstrations, {exact})",
-        "stage", "request", "how the person is doing", "behaviour", "votes", "shown",
+        f"Policy {policy.name} ({counted(len(policy.demonstrations), 'demonstration')}, {exact})",
+        "situation", "behaviour", "votes", "shown",
     )  # fmt: skip
     for situation in activity.situations:
         decision = policy.decide(situation)
         table.add_row(
-            situation.stage,
-            situation.request,
-            activity.state_label(situation.user_state),
+            situation_words(activity, situation),
             Text(decision.behaviour, style="" if decision.sure else "bold red"),
             f"{decision.share:.2f}",
             str(decision.seen) if decision.seen else Text("never", style="bold red"),
@@ -68,16 +67,22 @@ def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> N
     """Print the rows of Table II for the games that were played, and the beliefs after them."""
     console = Console(highlight=False)
     table = _table(
-        f"{tally.games} games, {tally.steps} behaviours",
-        "stage", "request", "how the person is doing", "behaviour", "instances", "success",
+        f"{counted(tally.games, 'game')}, {counted(tally.steps, 'behaviour')}",
+        "situation", "behaviour", "instances", "success",
     )  # fmt: skip
     for row in tally.rows(house.activity.situations):
-        table.add_row(*row.situation, row.behaviour, str(row.instances), f"{row.success:.1%}")
+        table.add_row(
+            situation_words(house.activity, row.situation),
+            row.behaviour,
+            str(row.instances),
+            f"{row.success:.1%}",
+        )
     console.print(table)
     console.print(_people_table(house, beliefs))
     reasons = sorted(set(tally.stopped))
     for reason in reasons:
-        console.print(Text(f"{tally.stopped.count(reason)} games stopped: {reason}"))
+        stopped = counted(tally.stopped.count(reason), "game")
+        console.print(Text(f"{stopped} stopped: {reason}"))
 
 
 def print_people(house: House) -> None:
