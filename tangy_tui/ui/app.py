@@ -6,7 +6,8 @@ Widget ids that scripts and testers may rely on:
     #room        the room with robot and people
     #transcript  the numbered steps of a demonstration or a game
     #command     the command bar (its line to type in is #command-input)
-    #question    the dialog that verifies a command
+    #question    the question that verifies a command
+    #confirm, #message, #help    the other dialogs
     #posteriors  what is believed of each person
     #policy      the policy table
     #log         what happened, in sentences
@@ -28,7 +29,7 @@ from textual.binding import Binding, BindingType
 from textual.css.query import NoMatches
 from textual.screen import Screen
 
-from tangy_tui.ui.clean_output import CleanOutput
+from tangy_tui.ui.clean_output import CleanOutput, clean
 from tangy_tui.ui.fresh_keys import Clock
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import TerminalKind
@@ -58,6 +59,7 @@ class TangyApp(App[None]):
         Binding("question_mark", "help", "Help", key_display="?", id="app.help"),
         Binding("colon", "command", "Type a command", key_display=":", id="app.command"),
         Binding("escape", "back", "Back", id="app.back"),
+        Binding("plus", "zoom", "Enlarge the panel", key_display="+", id="app.zoom"),
         Binding("s", "picture", "Save a picture of the screen", id="app.picture"),
         Binding("m", "mouse", "Mouse on or off", id="app.mouse"),
     ]
@@ -161,6 +163,14 @@ class TangyApp(App[None]):
         if len(self.screen_stack) > 1:
             self.pop_screen()
 
+    def action_zoom(self) -> None:
+        """Let the panel that has the keys fill the screen, or give it its place back."""
+        screen, panel = self.screen, self.screen.focused
+        if screen.maximized is not None:
+            screen.minimize()
+        elif panel is not None and panel.allow_maximize:
+            screen.maximize(panel)
+
     def action_picture(self) -> None:
         """Save the screen as an SVG picture and say where."""
         folder = self._pictures or Path.cwd()
@@ -195,7 +205,7 @@ class TangyApp(App[None]):
 
     def say(self, sentence: str, *, bad: bool = False) -> None:
         """Show a sentence for a few seconds."""
-        self.notify(sentence, severity="error" if bad else "information", markup=False)
+        self.notify(clean(sentence), severity="error" if bad else "information", markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List what the command palette offers: the keys of the screen, and the program's own."""

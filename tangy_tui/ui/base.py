@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, TypeVar
 
 from textual import events
+from textual.binding import Binding, BindingType
 from textual.screen import ModalScreen, Screen
 from textual.strip import Strip
 from textual.widget import Widget
@@ -111,6 +112,9 @@ class Dialog(ModalScreen[ResultT]):
     Dialog.-low > .box { padding: 0 2; }
     """
     VERTICAL_BREAKPOINTS = LOW_OR_TALL
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("question_mark", "app.help", "Help", show=False),
+    ]
     HELP: ClassVar[str] = ""
 
     def __init__(self, no: ResultT) -> None:

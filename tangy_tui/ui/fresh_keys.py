@@ -35,6 +35,8 @@ class FreshKeys:
         if self._from is None:
             self._from = clock() + SETTLE_SECONDS
 
-    def fresh(self, event: events.Key) -> bool:
-        """Say whether a key may answer."""
+    def take(self, event: events.Key) -> bool:
+        """Keep a key from going further, unless it asks for help; say whether it may answer."""
+        if event.key != "question_mark":
+            event.stop()
         return self._from is not None and event.time >= self._from

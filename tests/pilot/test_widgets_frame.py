@@ -309,6 +309,26 @@ async def test_the_mouse_can_be_given_back_to_the_terminal(run: Run) -> None:
         assert app_of(pilot).mouse
 
 
+def test_the_driver_still_has_what_switches_the_mouse() -> None:
+    """Textual keeps this private: it tells us when a release changes it."""
+    from textual.drivers.linux_driver import LinuxDriver
+
+    assert callable(LinuxDriver._enable_mouse_support)
+    assert callable(LinuxDriver._disable_mouse_support)
+
+
+async def test_plus_enlarges_the_panel_that_has_the_keys(run: Run) -> None:
+    screen = GalleryScreen()
+    async with run(screen, LARGE) as pilot:
+        screen.transcript.focus()
+        await pilot.press("plus")
+        await pilot.pause()
+        assert screen.maximized is screen.transcript
+        await pilot.press("escape")
+        await pilot.pause()
+        assert screen.maximized is None
+
+
 async def test_the_palette_offers_the_keys_of_the_screen_and_does_not_blink(run: Run) -> None:
     screen = Plain()
     async with run(screen) as pilot:

@@ -145,6 +145,15 @@ def test_signals_leave_the_terminal_as_it_was(window: Window, number: int, code:
     assert termios.tcgetattr(window.child) == window.before
 
 
+def test_the_mouse_can_be_switched_off_and_on(window: Window) -> None:
+    for keys, expected in (("\x1b", b""), ("m", b"\x1b[?1000l"), ("m", b"\x1b[?1000h")):
+        window.type(keys)
+        written = b""
+        while piece := window.read(SILENCE):
+            written += piece
+        assert expected in written
+
+
 def test_a_terminal_that_goes_away_ends_it(window: Window) -> None:
     os.close(window.child)
     os.close(window.terminal)

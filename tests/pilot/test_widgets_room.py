@@ -242,6 +242,33 @@ async def test_speech_is_cut_to_the_rows_there_are(run: Run, sample: Sample) -> 
         assert "The number" not in pilot.text()
 
 
+async def test_the_card_is_drawn_where_there_is_room_once_the_robot_is_there(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    marked, called = 0b0011, 0b0101  # right, wrong, missed, neither
+    card = CardView("user4", (11, 22, 33, 44), marked, called)
+    async with run(screen, (120, 40), clock=clock) as pilot:
+        scene = sample.scene("user4")
+        screen.room.drive("user4", 4.0)
+        screen.room.show(Scene(scene.place, scene.requests, scene.doing, (), card))
+        await pilot.pause()
+        assert "The card of" not in pilot.text()
+        screen.room.skip()
+        await pilot.pause()
+        text = pilot.text()
+        assert "The card of User 4" in text
+        assert " [11] !22!" in text
+        assert " ?33?  44" in text
+        await pilot.resize_terminal(80, 24)
+        await pilot.pause()
+        assert "The card of" in pilot.text()
+        await pilot.resize_terminal(60, 18)
+        screen.room.show(Scene(scene.place, (), {}, (), CardView("user4", tuple(range(25)), 0, 0)))
+        await pilot.pause()
+        assert "[• •]" in pilot.text()
+
+
 async def test_a_person_that_nobody_knows_is_no_reason_to_fail(run: Run, sample: Sample) -> None:
     screen = RoomScreen(sample)
     async with run(screen) as pilot:

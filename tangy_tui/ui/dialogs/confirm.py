@@ -55,8 +55,7 @@ class ConfirmDialog(Dialog[bool]):
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, n or esc."""
-        event.stop()
-        if not self._keys.fresh(event):
+        if not self._keys.take(event):
             return
         if event.key in ("y", "Y"):
             self.answer(True)

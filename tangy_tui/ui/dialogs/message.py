@@ -7,6 +7,7 @@ from typing import ClassVar
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
@@ -21,6 +22,9 @@ class MessageDialog(Dialog[None]):
     """Shows a text, one paragraph for each line, until Enter, space or esc."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "nothing", "Close")]
+    DEFAULT_CSS = """
+    MessageDialog Static { width: 100%; height: auto; }
+    """
     HELP = "Read, and press Enter to go on."
 
     def __init__(
@@ -38,24 +42,19 @@ class MessageDialog(Dialog[None]):
 
     def compose(self) -> ComposeResult:
         """Lay out the text and the key."""
-        box = Static(
-            Content.assemble(
-                self._text, "\n\n", ("Enter", "$primary bold"), ("  go on", "$ink-dim")
-            ),
-            id="message",
-            classes="box",
-        )
+        box = VerticalScroll(Static(Content(self._text)), id="message", classes="box")
         box.border_title = Content(self._title)
+        box.border_subtitle = "enter goes on"
         yield box
 
     def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
+        """Let the arrows scroll, and take note of the moment from which keys count."""
+        self.query_one(VerticalScroll).focus()
         self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 
     def on_key(self, event: events.Key) -> None:
-        """Close on Enter, space or esc."""
-        event.stop()
-        if event.key in CLOSING_KEYS and self._keys.fresh(event):
+        """Close on Enter, space or esc; the arrows scroll."""
+        if event.key in CLOSING_KEYS and self._keys.take(event):
             self.answer(None)
 
     def action_nothing(self) -> None:

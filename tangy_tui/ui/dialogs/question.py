@@ -98,8 +98,7 @@ class QuestionDialog(Dialog[Answer]):
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, n, esc or a number, if the question was on the screen by then."""
-        event.stop()
-        if not self._keys.fresh(event):
+        if not self._keys.take(event):
             return
         if event.key in ("y", "Y"):
             self.answer(Answer(True))

@@ -6,6 +6,7 @@ from collections import deque
 from typing import ClassVar, Literal
 
 from textual import events
+from textual.binding import Binding, BindingType
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
@@ -27,6 +28,10 @@ class LogView(ScrollView, can_focus=True):
     DEFAULT_CSS = """
     LogView { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("k", "scroll_up", "Up", show=False),
+        Binding("j", "scroll_down", "Down", show=False),
+    ]
     HELP = "What happened and what Tangy said, the newest at the end. Up and down scroll."
 
     def __init__(

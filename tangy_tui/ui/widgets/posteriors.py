@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from rich.cells import cell_len
 from textual import events
+from textual.binding import Binding, BindingType
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
@@ -46,6 +47,10 @@ class Posteriors(ScrollView, can_focus=True):
     DEFAULT_CSS = """
     Posteriors { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
     """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("k", "scroll_up", "Up", show=False),
+        Binding("j", "scroll_down", "Down", show=False),
+    ]
     HELP = (
         "What Tangy believes of each person: how probable it is that they do what they are asked "
         "for, with each way of asking. The curve runs from 0 (left) to 1 (right); 7/9 means done "

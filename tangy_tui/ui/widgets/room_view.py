@@ -19,13 +19,14 @@ from textual.widget import Widget
 
 from tangy_profiles.person import Person
 from tangy_profiles.room import Point, Room
-from tangy_profiles.scene import Scene
+from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.fresh_keys import Clock, clock_of
 from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
-from tangy_tui.ui.widgets.rows import draw, shorten
+from tangy_tui.ui.widgets.rows import Row, draw, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
 FRAME_SECONDS = 0.1
@@ -95,9 +96,7 @@ class RoomView(Widget):
         self._scene = EMPTY
         self._speech = ""
         self._at = room.stand(FRONT, self._ids)
-        self._seen = self._at
-        self._from = self._at
-        self._to = self._at
+        self._seen = self._from = self._to = self._at
         self._going: str | None = None
         self._share = 0.0
         self._seconds = 0.0
@@ -221,6 +220,8 @@ class RoomView(Widget):
         self._halt()
         self._at = self._to
         self._move_sprite(turned=True)
+        if self._scene.card is not None:
+            self._draw_again()
         if place is not None:
             self.post_message(self.Arrived(self, place))
 
@@ -298,6 +299,8 @@ class RoomView(Widget):
             for x in range(FLOOR_DOTS // 2, plan.width, FLOOR_DOTS):
                 lines[y].put(x, "·", "floor")
         self._draw_table(lines, grid)
+        if scene.card is not None and self._going is None:
+            self._draw_card(lines, scene.card)
         for person, centre, slot in zip(self._people, grid.centres, grid.slots, strict=False):
             self._draw_person(lines, person, scene, centre, slot)
         return lines[: plan.height]
@@ -351,6 +354,24 @@ class RoomView(Widget):
         for person, centre in zip(self._people, grid.centres, strict=False):
             read = card is not None and card.person == person.id
             lines[row + plan.table // 2].put(centre - 1, "[▦]", "robot" if read else "table")
+
+    def _draw_card(self, lines: list[Line], card: CardView) -> None:
+        """Draw the card that the robot reads on the floor beside it, where there is room."""
+        plan, rows = self._plan, card_lines(card)
+        name = next((clean(p.name) for p in self._people if p.id == card.person), card.person)
+        title: Row = ((shorten(f"The card of {name}", 30), "strong"),)
+        rows = [title, *rows, LEGEND]
+        width = max(sum(cell_len(text) for text, _ in row) for row in rows)
+        x = self._sprite_at[0]
+        start = x + SPRITE_WIDTH + 2 if x + SPRITE_WIDTH + 3 + width < plan.width else x - width - 2
+        if start < 1 or len(rows) >= plan.floor:
+            return
+        for y, row in enumerate(rows, plan.table_row - len(rows)):
+            lines[y].put(start - 1, " " * (width + 2), "text")
+            column = start
+            for text, ink in row:
+                lines[y].put(column, text, ink)
+                column += cell_len(text)
 
     def _draw_person(
         self, lines: list[Line], person: Person, scene: Scene, centre: int, slot: tuple[int, int]

@@ -16,7 +16,7 @@ from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Rows, shorten
 
 ARROW = "->"
-SITUATION_FROM = 18  # columns that a situation keeps beside a long behaviour
+SITUATION_FROM = 13  # columns that a situation keeps beside a long behaviour
 
 
 class Transcript(ScrollView, can_focus=True):
