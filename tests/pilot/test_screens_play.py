@@ -113,13 +113,13 @@ async def test_speed_goes_from_life_to_a_thousand_times(
         screen = pilot.app.screen
         await pilot.press("p", "p")
         for _ in range(12):
-            await pilot.press("plus")
+            await pilot.press("full_stop")
         await pilot.press("p")
         await pilot.press("p")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.note == "x1000"
         for _ in range(12):
-            await pilot.press("minus")
+            await pilot.press("comma")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.note == "x1"
 
@@ -134,7 +134,7 @@ async def test_stop_stops_and_only_a_person_lets_it_go_on(
         count = screen.query_one(Transcript).count
         assert screen.query_one(StatusLine).status.alarm
         assert "STOPPED" in screen_text(pilot.app)
-        await pilot.press("plus", "minus")
+        await pilot.press("greater_than_sign", "less_than_sign")
         await pilot.pause()
         assert screen.query_one(Transcript).count == count
         assert "STOPPED" in screen_text(pilot.app)

@@ -46,15 +46,15 @@ class PlayScreen(TangyScreen[Tally]):
     CSS_PATH = "play.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
     HELP = (
-        "Tangy plays by what it has learnt. p pauses and goes on, n does one step, + and - change "
+        "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
         "the speed, e skips to the end of the game, g begins another. On the right: how sure "
         "Tangy is of its policy, and what it believes about which way of speaking works with whom."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("p", "pause", "Pause or go on"),
         Binding("n", "one_step", "One step"),
-        Binding("plus,equals_sign", "speed(1)", "Faster", key_display="+"),
-        Binding("minus", "speed(-1)", "Slower", key_display="-"),
+        Binding("greater_than_sign,full_stop", "speed(1)", "Faster", key_display=">"),
+        Binding("less_than_sign,comma", "speed(-1)", "Slower", key_display="<"),
         Binding("e", "skip", "Skip to the end of the game"),
         Binding("g", "again", "Another game"),
         Binding("1", "panel('room')", "Room", show=False),
@@ -115,7 +115,7 @@ class PlayScreen(TangyScreen[Tally]):
                 yield panel(PolicyTable())
                 yield panel(Posteriors())
         yield key_line(
-            ("p", "pause"), ("n", "step"), ("+ -", "speed"), ("e", "end"), ("g", "again"),
+            ("p", "pause"), ("n", "step"), ("< >", "speed"), ("e", "end"), ("g", "again"),
             ("1-5", "panels"), ("esc", "back"), ("?", "help"),
         )  # fmt: skip
 
