@@ -127,6 +127,9 @@ def test_the_digest_changes_with_rows_settings_and_seed(activity: Activity) -> N
         learn_policy(activity, [showing(*rows)], settings=replace(FEW, bootstrap=True)),
     ]
     assert len({policy.digest for policy in learnt}) == len(learnt)
+    alike = [learn_policy(activity, [showing(rows[0])], settings=s) for s in (EXACT, FEW)]
+    assert alike[0].table == alike[1].table
+    assert alike[0].digest != alike[1].digest
 
 
 def test_another_process_learns_the_same_bit_for_bit(

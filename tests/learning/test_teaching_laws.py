@@ -138,6 +138,28 @@ def test_undone_and_done_again_leads_to_the_same_state(seed: int, length: int, b
         assert logged(store) == [demonstration] == [teaching.demonstration]
 
 
+def test_however_often_another_choice_is_made_there_are_at_most_three_more(store: Store) -> None:
+    teaching = begun(store)
+    asked = teaching.apply(Say("back funny everyone"))[0]
+    for _ in range(8):
+        assert isinstance(asked, Asked)
+        assert 1 <= len(set(asked.alternatives)) == len(asked.alternatives) <= 3
+        assert asked.behaviour not in asked.alternatives
+        chosen = asked.alternatives[-1]
+        asked = teaching.apply(Reply(yes=False, alternative=len(asked.alternatives)))[0]
+        assert asked == teaching.question
+        assert teaching.question.behaviour == chosen
+    assert teaching.demonstration.steps == ()
+
+
+def test_after_a_resumed_game_comes_one_that_was_not_played_yet(store: Store) -> None:
+    teach(begun(store, seed=7), "greet everyone")
+    resumed = begun(store, seed=2)
+    teach(resumed, "goodbye")
+    resumed.apply(Next())
+    assert resumed.demonstration.seed == 8
+
+
 def test_there_is_nothing_to_undo_before_the_first_step(store: Store) -> None:
     assert isinstance(begun(store).apply(Undo())[0], Refused)
 
