@@ -1,0 +1,85 @@
+"""Simulated people miss, slip, ask and hide their cards as often as the user model says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tangy_profiles.activity import Action, load_activity
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+
+BINGO = load_activity("bingo")
+USERS = load_users()
+IDS = tuple(f"user{n}" for n in range(1, 9))
+
+
+def action(name: str, target: str | None = None) -> Action:
+    return BINGO.action(BINGO.behaviours[name], target, None)
+
+
+def test_a_called_number_is_missed_as_often_as_the_model_says() -> None:
+    world = SimulatedWorld(BINGO, IDS, seed=31, users=replace(USERS, slip=0))
+    called = missed = 0
+    for _ in range(60):
+        world.execute(action("greeting"))
+        for _ in range(75):
+            world.execute(action("call number"))
+        for player in world._players.values():
+            called += player.called.bit_count()
+            missed += (player.called & ~player.marked).bit_count()
+            assert not player.marked & ~player.called
+        world.begin()
+    assert called == 60 * 8 * 25
+    assert missed / called == pytest.approx(0.101, rel=0.08)
+
+
+def test_an_uncalled_number_is_marked_as_often_as_the_model_says() -> None:
+    world = SimulatedWorld(BINGO, IDS, seed=32, users=replace(USERS, miss=0))
+    slips, calls = 0, 20
+    for _ in range(200):
+        for _ in range(calls):
+            before = [player.marked & ~player.called for player in world._players.values()]
+            world.execute(action("call number"))
+            for player, wrong in zip(world._players.values(), before, strict=True):
+                now = player.marked & ~player.called
+                slips += (now & ~wrong).bit_count()
+                assert not player.called & ~player.marked, "marked early is right once it is called"
+        world.begin()
+    assert slips / (200 * calls * 8) == pytest.approx(0.0369, rel=0.08)
+
+
+@pytest.mark.parametrize(("miss", "factor"), [(0.0, 1.0), (1.0, 1.53)])
+def test_help_is_asked_for_as_often_as_the_model_says_and_more_with_an_error(
+    miss: float, factor: float
+) -> None:
+    deck = replace(BINGO.deck, patterns=("four corners",))  # so that hardly anybody wins
+    world = SimulatedWorld(
+        replace(BINGO, deck=deck), IDS, seed=33, users=replace(USERS, miss=miss, slip=0)
+    )
+    asked = waited = 0
+    for _ in range(400):
+        world.execute(action("greeting"))
+        for _ in range(10):  # by when everybody has missed a number, if all are missed
+            world.execute(action("call number"))
+        world.tracker.queue.clear()
+        for _ in range(20):
+            world.execute(action("call number"))
+            full = {p.id for p in world._players.values() if deck.wins(p.marked)}
+            asked += len(set(world.tracker.queue) - full)
+            waited += 8
+            world.tracker.queue.clear()
+        world.begin()
+    assert asked / waited == pytest.approx(0.0071 * factor, rel=0.1)
+
+
+def test_a_card_is_out_of_view_on_arrival_as_often_as_the_model_says() -> None:
+    world = SimulatedWorld(BINGO, IDS, seed=34)
+    world.execute(action("greeting"))
+    hidden, visits = 0, 4000
+    for _ in range(visits):
+        world.tracker.ask("user3")
+        world.execute(action("navigate to user", "user3"))
+        hidden += world.tracker.seen is None
+    assert hidden / visits == pytest.approx(23 / 71, rel=0.08)
