@@ -16,6 +16,7 @@ Widget ids that scripts and testers may rely on:
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -262,6 +263,8 @@ class TangyApp(App[None]):
 
 def run_app(app: TangyApp, *, mouse: bool = True) -> int:
     """Run the program and return its exit status."""
+    for size in ("COLUMNS", "LINES"):  # exported, they hide the size of the window
+        os.environ.pop(size, None)
     app.mouse = mouse
     app.run(mouse=mouse)
     return app.return_code or 0

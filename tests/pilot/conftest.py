@@ -170,12 +170,24 @@ def sample() -> Sample:
 
 
 @pytest.fixture
-def picture(snapshot: SnapshotAssertion) -> Callable[[App[Any]], None]:
+def draw() -> Callable[[App[Any]], str]:
+    """Draw the screen as an SVG that fetches nothing, not even a font."""
+
+    def draw_one(app: App[Any]) -> str:
+        drawn = app.export_screenshot(title="Tangy", simplify=True)
+        return re.sub(r',\s*url\("http[^)]*\) format\("\w+"\)', "", drawn)
+
+    return draw_one
+
+
+@pytest.fixture
+def picture(
+    snapshot: SnapshotAssertion, draw: Callable[[App[Any]], str]
+) -> Callable[[App[Any]], None]:
     """Compare the screen with its SVG picture, which is also there to be looked at."""
     pictures = snapshot.use_extension(SVGImageSnapshotExtension)
 
     def compare(app: App[Any]) -> None:
-        drawn = app.export_screenshot(title="Tangy", simplify=True)
-        assert re.sub(r',\s*url\("http[^)]*\) format\("\w+"\)', "", drawn) == pictures
+        assert draw(app) == pictures
 
     return compare

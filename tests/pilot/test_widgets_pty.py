@@ -30,14 +30,20 @@ class Window:
         self.screen = pyte.Screen(columns, lines)
         self.stream = pyte.ByteStream(self.screen)
         self.resize(columns, lines)
-        # pytest-xdist exports its own size, which would hide that of this window
-        kept = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LINES", "NO_COLOR")}
+        kept = {k: v for k, v in os.environ.items() if k != "NO_COLOR"}
         self.process = subprocess.Popen(  # noqa: S603 - our own program
             [sys.executable, "-m", "tangy_tui.ui.gallery", *options],
             stdin=child,
             stdout=child,
             stderr=child,
-            env={**kept, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8"},
+            # an exported size, as pytest-xdist has it, must not hide that of this window
+            env={
+                **kept,
+                "COLUMNS": "100",
+                "LINES": "30",
+                "TERM": "xterm-256color",
+                "LC_ALL": "C.UTF-8",
+            },
             start_new_session=True,
         )
         self.child = child

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from functools import lru_cache
 from typing import ClassVar, Literal
 
 from textual import events
@@ -72,12 +73,21 @@ class LogView(ScrollView, can_focus=True):
         return self._rows.strip(y)
 
     def _show(self, follow: bool) -> None:
-        if not self.is_attached or self._rows.width <= 4:
+        width = self._rows.width
+        if not self.is_attached or width <= 4:
             return
         rows: list[Row] = []
         for text, kind in self._lines:
-            for n, line in enumerate(wrap(text, self._rows.width - 2)):
-                rows.append(((MARKS[kind] if n == 0 else "  ", kind), (line, kind)))
+            rows += _rows(text, kind, width)
         self._rows.put(rows)
         if follow:
             self._rows.show(len(rows) - 1)
+
+
+@lru_cache(1_024)
+def _rows(text: str, kind: Kind, width: int) -> tuple[Row, ...]:
+    """Write one sentence on as many lines as it needs, the mark before the first."""
+    return tuple(
+        ((MARKS[kind] if n == 0 else "  ", kind), (line, kind))
+        for n, line in enumerate(wrap(text, width - 2))
+    )

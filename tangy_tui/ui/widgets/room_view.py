@@ -106,6 +106,7 @@ class RoomView(Widget):
         self._plan: Plan = plan(1, 1)
         self._grid: Grid | None = None
         self._base: list[Line] = []
+        self._rows: dict[int, Row] = {}
         self._strips: dict[int, Strip] = {}
         self._sprite_at = (0, 0)
 
@@ -198,7 +199,8 @@ class RoomView(Widget):
         """Draw one line, or take it as it was drawn."""
         self._seen = self._at
         if y not in self._strips:
-            self._strips[y] = draw(self, self._row(y).row(), self.size.width)
+            self._rows[y] = self._row(y).row()
+            self._strips[y] = draw(self, self._rows[y], self.size.width)
         return self._strips[y]
 
     def _clock(self) -> float:
@@ -264,9 +266,10 @@ class RoomView(Widget):
         width = self.size.width
         changed: list[Region] = []
         for y in range(self._plan.height):
-            strip = draw(self, self._row(y).row(), width)
-            if self._strips.get(y) != strip:
-                self._strips[y] = strip
+            row = self._row(y).row()
+            if self._rows.get(y) != row:
+                self._rows[y] = row
+                self._strips.pop(y, None)
                 changed.append(Region(0, y, width, 1))
         if changed:
             self.refresh(*changed)

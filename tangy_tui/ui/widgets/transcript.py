@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import deque
+from functools import lru_cache
 from typing import ClassVar
 
+from rich.cells import cell_len
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.message import Message
@@ -143,23 +145,27 @@ class Transcript(ScrollView, can_focus=True):
             return
         first = self._count - len(self._steps) + 1
         digits = max(2, len(str(self._count)))
-        rows = [self._row(first + n, step, digits) for n, step in enumerate(self._steps)]
+        width = self._rows.width
+        rows = [_row(first + n, step, digits, width) for n, step in enumerate(self._steps)]
         self._rows.put(rows or [((self._empty, "dim"),)])
         self._mark()
-
-    def _row(self, number: int, step: str, digits: int) -> Row:
-        situation, arrow, behaviour = step.partition(f" {ARROW} ")
-        label = f"{number:>{digits}} "
-        room = self._rows.width - len(label)
-        if not arrow:
-            return ((label, "dim"), (shorten(step, room), "text"))
-        tail = f" {ARROW} {behaviour}"
-        situation = shorten(situation, max(SITUATION_FROM, room - len(tail)))
-        tail = shorten(behaviour, room - len(situation) - len(ARROW) - 2)
-        return ((label, "dim"), (situation, "text"), (f" {ARROW} ", "dim"), (tail, "strong"))
 
     def _mark(self) -> None:
         if not self._steps:
             return
         self._rows.mark({} if self._chosen is None else {self._chosen: "cursor"})
         self._rows.show(len(self._steps) - 1 if self._chosen is None else self._chosen)
+
+
+@lru_cache(4_096)
+def _row(number: int, step: str, digits: int, width: int) -> Row:
+    """Write one step; where there is little room, the behaviour is cut last."""
+    situation, arrow, behaviour = step.partition(f" {ARROW} ")
+    label = f"{number:>{digits}} "
+    room = width - len(label)
+    if not arrow:
+        return ((label, "dim"), (shorten(step, room), "text"))
+    tail = cell_len(f" {ARROW} {behaviour}")
+    situation = shorten(situation, max(SITUATION_FROM, room - tail))
+    behaviour = shorten(behaviour, room - cell_len(situation) - len(ARROW) - 2)
+    return ((label, "dim"), (situation, "text"), (f" {ARROW} ", "dim"), (behaviour, "strong"))
