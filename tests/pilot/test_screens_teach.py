@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
@@ -192,20 +194,50 @@ async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> No
         house.close()
 
 
+async def mid_game(pilot: Pilot[None], steps: int) -> None:
+    """Demonstrate some steps of a game."""
+    screen = pilot.app.screen
+    assert isinstance(screen, TeachScreen)
+    teacher = ScriptedTeacher(screen._teaching)
+    while len(screen._teaching.demonstration.steps) < steps:
+        screen._tell(list(screen._teaching.apply(teacher.command())))
+        await pilot.pause()
+        if isinstance(pilot.app.screen, QuestionDialog):
+            await pilot.press("y")
+            await pilot.pause()
+    screen.query_one(RoomView).skip()
+
+
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks_in_mid_game(
     run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
     async with run(app=program(house), size=size) as pilot:
-        screen = pilot.app.screen
-        assert isinstance(screen, TeachScreen)
-        teacher = ScriptedTeacher(screen._teaching)
-        for _ in range(2 * 13):
-            screen._tell(list(screen._teaching.apply(teacher.command())))
-            await pilot.pause()
-            if isinstance(pilot.app.screen, QuestionDialog):
-                await pilot.press("y")
-                await pilot.pause()
+        await mid_game(pilot, 14)
+        await pilot.press(*"remov")
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_how_a_question_looks(
+    run: Run, house: House, picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await mid_game(pilot, 11)
         await pilot.press(*"go to usr", "enter")
         await pilot.pause()
         picture(pilot.app)
+
+
+async def test_the_picture_in_the_readme_shows_the_program_as_it_is(
+    run: Run, house: House, draw: Callable[[App[None]], str]
+) -> None:
+    kept = Path(__file__).parent / "pictures" / "teach.svg"
+    async with run(app=program(house), size=(120, 40)) as pilot:
+        await mid_game(pilot, 14)
+        await pilot.press(*"remove mark")
+        await pilot.pause()
+        drawn = draw(pilot.app)
+    if os.environ.get("TANGY_NEW_PICTURES"):
+        kept.write_text(drawn, encoding="utf-8")
+    assert kept.read_text(encoding="utf-8") == drawn, "draw it anew with TANGY_NEW_PICTURES=1"
