@@ -103,6 +103,7 @@ class Grid:
         middles = [round(((a + b) / 2 - self._from) * self._scale) for a, b in pairwise(seats)]
         self.slots = list(zip([0, *middles], [*middles, plan.width], strict=True))
         self.table = (self.column(left), self.column(right))
+        self.front = self.column(room.front.x)
 
     def column(self, x: float) -> int:
         """Return the column of a place."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import ClassVar
 
-from rich.cells import cell_len
 from textual import events
 from textual.geometry import Region
 from textual.message import Message
@@ -19,18 +18,16 @@ from textual.widget import Widget
 
 from tangy_profiles.person import Person
 from tangy_profiles.room import Point, Room
-from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.fresh_keys import Clock, clock_of
 from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
+from tangy_tui.ui.widgets.room_drawing import draw_room
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
-from tangy_tui.ui.widgets.rows import Row, draw, shorten
-from tangy_tui.ui.widgets.wrapping import wrap
+from tangy_tui.ui.widgets.rows import Row, draw
 
 FRAME_SECONDS = 0.1
-FLOOR_DOTS = 8  # columns from one dot to the next
 
 EMPTY = Scene(FRONT, (), {}, (), None)
 
@@ -262,7 +259,15 @@ class RoomView(Widget):
         if self._grid is None:
             return
         self._sprite_at = self._grid.sprite(self._at)
-        self._base = self._lines(self._grid)
+        self._base = draw_room(
+            self._plan,
+            self._grid,
+            self._people,
+            self._scene,
+            speech=self._speech,
+            label=self._label,
+            robot=self._sprite_at[0] if self._going is None else None,
+        )
         width = self.size.width
         changed: list[Region] = []
         for y in range(self._plan.height):
@@ -290,106 +295,3 @@ class RoomView(Widget):
         else:
             line.put(x, self._robot.center(SPRITE_WIDTH), "robot")
         return line
-
-    def _lines(self, grid: Grid) -> list[Line]:
-        """Lay out everything but the robot."""
-        plan, scene = self._plan, self._scene
-        lines = [Line(plan.width) for _ in range(plan.height + 12)]
-        self._draw_wall(lines, grid)
-        for n, text in enumerate(self._speech_lines()):
-            lines[plan.speech_row + n].centre(plan.width // 2, text, "text")
-        for y in range(plan.floor_row + 1, plan.table_row, 2):
-            for x in range(FLOOR_DOTS // 2, plan.width, FLOOR_DOTS):
-                lines[y].put(x, "·", "floor")
-        self._draw_table(lines, grid)
-        if scene.card is not None and self._going is None:
-            self._draw_card(lines, scene.card)
-        for person, centre, slot in zip(self._people, grid.centres, grid.slots, strict=False):
-            self._draw_person(lines, person, scene, centre, slot)
-        return lines[: plan.height]
-
-    def _draw_wall(self, lines: list[Line], grid: Grid) -> None:
-        plan = self._plan
-        lines[0].put(1, "━" * (plan.width - 2), "floor")
-        front = grid.column(self._room.front.x)
-        lines[0].put(max(0, front - 3), " Front ", "dim")
-        if self._scene.called:
-            self._draw_called(lines, self._scene.called, plan.width - front - 7)
-
-    def _draw_called(self, lines: list[Line], called: Sequence[int], beside: int) -> None:
-        """Write the numbers called: on a line of their own, or the newest beside the front."""
-        plan = self._plan
-        head, newest = f" {len(called)} called: ", clean(self._label(called[-1]))
-        width = cell_len(head + newest)
-        if plan.board:
-            before = "  ".join(clean(self._label(n)) for n in reversed(called[-12:-1]))
-            rest = shorten(f"  {before}", plan.width - 4 - width)
-            row, start = plan.board_row, (plan.width - width - cell_len(rest)) // 2
-        elif width < beside:
-            rest = " "
-            row, start = 0, plan.width - width - 2
-        else:
-            return
-        lines[row].put(start, head, "dim")
-        lines[row].put(start + len(head), newest, "strong")
-        lines[row].put(start + width, rest, "dim")
-
-    def _speech_lines(self) -> list[str]:
-        if not self._speech or not self._plan.speech:
-            return []
-        lines = wrap(f"“{self._speech}”", self._plan.width - 2)
-        if len(lines) > self._plan.speech:
-            lines = lines[: self._plan.speech]
-            lines[-1] = shorten(lines[-1] + " …", self._plan.width - 3) + "”"
-        return lines
-
-    def _draw_table(self, lines: list[Line], grid: Grid) -> None:
-        plan = self._plan
-        left, right = grid.table
-        row, inner = plan.table_row, max(0, right - left - 1)
-        if plan.table == 3:
-            lines[row].put(left, "╭" + "─" * inner + "╮", "table")
-            lines[row + 1].put(left, "│" + " " * inner + "│", "table")
-            lines[row + 2].put(left, "╰" + "─" * inner + "╯", "table")
-        else:
-            lines[row].put(left, "╘" + "═" * inner + "╛", "table")
-        card = self._scene.card
-        for person, centre in zip(self._people, grid.centres, strict=False):
-            read = card is not None and card.person == person.id
-            lines[row + plan.table // 2].put(centre - 1, "[▦]", "robot" if read else "table")
-
-    def _draw_card(self, lines: list[Line], card: CardView) -> None:
-        """Draw the card that the robot reads on the floor beside it, where there is room."""
-        plan, rows = self._plan, card_lines(card)
-        name = next((clean(p.name) for p in self._people if p.id == card.person), card.person)
-        title: Row = ((shorten(f"The card of {name}", 30), "strong"),)
-        rows = [title, *rows, LEGEND]
-        width = max(sum(cell_len(text) for text, _ in row) for row in rows)
-        x = self._sprite_at[0]
-        start = x + SPRITE_WIDTH + 2 if x + SPRITE_WIDTH + 3 + width < plan.width else x - width - 2
-        if start < 1 or len(rows) >= plan.floor:
-            return
-        for y, row in enumerate(rows, plan.table_row - len(rows)):
-            lines[y].put(start - 1, " " * (width + 2), "text")
-            column = start
-            for text, ink in row:
-                lines[y].put(column, text, ink)
-                column += cell_len(text)
-
-    def _draw_person(
-        self, lines: list[Line], person: Person, scene: Scene, centre: int, slot: tuple[int, int]
-    ) -> None:
-        row, width = self._plan.head_row, slot[1] - slot[0] - 1
-        asking = person.id in scene.requests
-        if asking:
-            turn = scene.requests.index(person.id) + 1
-            lines[row].put(centre, f"●?{turn}", "warn")
-        else:
-            lines[row].put(centre, "●", "person")
-        name = shorten(clean(person.name), width)
-        lines[row + 1].centre(centre, name, "warn" if asking else "person")
-        doing = wrap(clean(scene.doing.get(person.id, "")), width)
-        if len(doing) > self._plan.doing:
-            doing = [*doing[: self._plan.doing - 1], " ".join(doing[self._plan.doing - 1 :])]
-        for n, text in enumerate(doing):
-            lines[row + 2 + n].centre(centre, shorten(text, width), "dim")
