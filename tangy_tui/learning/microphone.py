@@ -317,13 +317,13 @@ async def _recorded() -> Chunks:
         while chunk := await process.stdout.read(2 * RATE // 10):
             yield chunk
         said = plain((await process.stderr.read(2000)).decode(errors="replace").strip())
-        await process.wait()
         last = said.replace("\N{REPLACEMENT CHARACTER}", " ").strip()[-120:]
         raise SoundError(f"The microphone stopped: {last or 'arecord ended'}.")
     finally:
         if process.returncode is None:
-            process.kill()
-            await process.wait()
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+        await process.communicate()  # wait() alone would wait for what nobody reads any more
 
 
 async def _piped(descriptor: int) -> Chunks:
@@ -465,6 +465,10 @@ def _levels(pcm: bytes) -> list[float]:
 
 
 def _floor_of(pcm: bytes) -> float:
-    """Guess how loud the pauses of a recording are: its quietest tenth, but below its speech."""
+    """Guess how loud the pauses of a recording are: its quietest tenth, but far below its loudest.
+
+    A recording without any loud and quiet in it is all hum: no voice is as even as that.
+    """
     levels = sorted(_levels(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)])) or [0.0]
-    return max(1.0, min(levels[len(levels) // 10], levels[-1] / 10))
+    quiet, loudest = levels[len(levels) // 10], levels[-1]
+    return max(1.0, quiet if quiet > loudest / 3 else min(quiet, loudest / 10))

@@ -35,9 +35,9 @@ DISCOUNT = 0.5  # probability mass that the n-grams leave for sequences no phras
 # Confidence: a logistic over two figures of the best path, fitted by tests/bench/speech.py to the
 # flite voices rms and awb, so that 0.5 parts right commands from other speech and from wrong ones.
 # The figures are those of `Decoder.best_path`.
-SCORE_MIDDLE, SCORE_WEIGHT = -2.94, 3.91
-WORDS_MIDDLE, WORDS_WEIGHT = -18.5, 0.265
-OFFSET = 3.86
+SCORE_MIDDLE, SCORE_WEIGHT = -2.79, 4.77
+WORDS_MIDDLE, WORDS_WEIGHT = -17.9, 0.157
+OFFSET = 5.23
 
 SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
 FRAMES_A_SECOND = 100
