@@ -169,6 +169,15 @@ def test_the_last_step_of_a_finished_game_can_be_undone_and_the_game_goes_on(sto
     assert logged(store) == [demonstration]
 
 
+def test_undoing_drops_the_question_that_was_open(store: Store) -> None:
+    teaching = begun(store)
+    teach(teaching, "greet everyone")
+    teaching.apply(Say("tell a joke"))
+    teaching.apply(Undo())
+    assert teaching.question is None
+    assert isinstance(teaching.apply(YES)[0], Refused)
+
+
 # ------------------------------------------------------------------------------ leave, resume
 
 

@@ -78,6 +78,17 @@ def test_every_number_comes_about_equally_often_and_in_every_row() -> None:
     assert 120 < min(seen.values()) <= max(seen.values()) < 290  # 200 each, SD 14
 
 
+def test_every_number_is_called_at_any_time_equally_often() -> None:
+    rng = Random(8)
+    at: dict[tuple[int, int], int] = {}
+    for _ in range(5000):
+        order = DECK.shuffled(rng.random)
+        for place in (0, 37, 74):
+            at[place, order[place]] = at.get((place, order[place]), 0) + 1
+    assert len(at) == 3 * 75
+    assert 30 < min(at.values()) <= max(at.values()) < 110  # 67 each, SD 8
+
+
 @given(decks())
 def test_lines_are_what_the_patterns_say(deck: Deck) -> None:
     rows, width = deck.rows, len(deck.columns)

@@ -86,6 +86,15 @@ def test_the_same_seed_plays_the_same_games(tangy: Tangy, taught: Path, tmp_path
     assert played[0] == played[1] != played[2]
 
 
+def test_without_a_seed_no_two_runs_are_alike(tangy: Tangy, taught: Path) -> None:
+    for verb in (("play", "--games", 4), ("teach", "--teacher", "scripted")):
+        told = [document(tangy(*verb, "--json", "--data", taught)) for _ in range(2)]
+        said = [json.dumps(one.get("demonstrations") or one["rows"]) for one in told]
+        assert said[0] != said[1]
+    seeds = [demonstration["seed"] for one in told for demonstration in one["demonstrations"]]
+    assert seeds == [4, 5], "games count on from the three demonstrations there are"
+
+
 def test_beliefs_grow_from_game_to_game(tangy: Tangy, taught: Path) -> None:
     trials = []
     for _ in range(2):
@@ -179,7 +188,7 @@ def test_json_is_one_document_and_nothing_else(
     [
         (("learn",), "Learnt 'bingo-3' from 3 demonstrations"),
         (("play",), "The game is over"),
-        (("play", "--headless"), "1 games"),
+        (("play", "--headless"), "1 game, "),
         (("demo", "--plain"), "Teach it yourself"),
         (("people", "list"), "User 4"),
         (("people", "show", "user4"), "User 4 (user4)"),
@@ -202,6 +211,15 @@ def test_every_verb_has_help(verb: str, tangy: Tangy) -> None:
     done = tangy(*verb.split(), "--help")
     assert done.returncode == 0
     assert "Usage: " in done.stdout
+
+
+def test_a_name_that_two_people_have_is_no_way_to_find_one(tangy: Tangy, taught: Path) -> None:
+    for person in ("user1", "user2"):
+        tangy("people", "rename", person, "Rosa", "--data", taught)
+    done = tangy("people", "show", "rosa", "--data", taught)
+    assert done.returncode == 2
+    assert done.stderr == "tangy: More than one person is called 'rosa': use the id.\n"
+    assert tangy("people", "show", "user2", "--data", taught).returncode == 0
 
 
 def test_a_new_name_is_used_everywhere_and_the_id_stays(tangy: Tangy, taught: Path) -> None:

@@ -50,6 +50,32 @@ def test_an_uncalled_number_is_marked_as_often_as_the_model_says() -> None:
     assert slips / (200 * calls * 8) == pytest.approx(0.0369, rel=0.08)
 
 
+def test_a_slip_marks_a_number_that_was_not_called() -> None:
+    world = SimulatedWorld(BINGO, IDS, seed=35, users=replace(USERS, miss=1, slip=1))
+    for _ in range(20):
+        for _ in range(12):
+            before = [player.marked for player in world._players.values()]
+            world.execute(action("call number"))
+            for player, marked in zip(world._players.values(), before, strict=True):
+                new = player.marked & ~marked
+                assert new.bit_count() == 1
+                assert not new & player.called
+        world.begin()
+
+
+def test_nobody_marks_the_free_centre_for_it_is_marked_already() -> None:
+    deck = replace(BINGO.deck, free_centre=True)
+    world = SimulatedWorld(
+        replace(BINGO, deck=deck), IDS, seed=36, users=replace(USERS, miss=0, slip=0)
+    )
+    centres = {player.id: player.numbers[12] for player in world._players.values()}
+    for _ in range(75):
+        (number,) = world.execute(action("call number")).numbers
+        for person, centre in centres.items():
+            if centre == number:
+                assert not world.scene().doing[person].startswith("marks")
+
+
 @pytest.mark.parametrize(("miss", "factor"), [(0.0, 1.0), (1.0, 1.53)])
 def test_help_is_asked_for_as_often_as_the_model_says_and_more_with_an_error(
     miss: float, factor: float

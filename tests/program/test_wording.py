@@ -1,0 +1,78 @@
+"""Situations, steps and cards in words that a newcomer can act on."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Step
+from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
+from tangy_tui.wording import card_words, situation_words, state_words, step_words
+
+NUMBERS = tuple(range(1, 26))
+
+
+def name(person: str) -> str:
+    return {"user1": "Rosa", "user2": "Ken"}.get(person, person)
+
+
+def state(situation: Situation, place: str = FRONT, attended: str | None = None) -> ActivityState:
+    users = (UserState("user1", "occluded", "ANR"), UserState("user2", "occluded", "AR"))
+    return ActivityState(0, situation, place, attended, users)
+
+
+def scene(place: str = FRONT, *requests: str, card: CardView | None = None) -> Scene:
+    return Scene(place, requests, {}, (), card)
+
+
+@pytest.mark.parametrize(
+    ("situation", "words"),
+    [
+        (("start", "ANR", "occluded"), "start · nobody asks"),
+        (("navigate", "AR", "occluded"), "navigate · somebody asks"),
+        (("help", "AR", "occluded"), "help · card not in view"),
+        (("help", "AR", "missing numbers"), "help · missed numbers"),
+        (("end", "AR", "occluded"), "end · somebody asks"),
+    ],
+)
+def test_a_situation_is_its_stage_and_what_matters_there(
+    situation: tuple[str, str, str], words: str, activity: Activity
+) -> None:
+    triple = next(s for s in activity.situations if s == situation)
+    assert situation_words(activity, triple) == words
+
+
+def test_a_step_names_the_behaviour_and_for_whom(activity: Activity) -> None:
+    begun = state(Situation("start", "ANR", "occluded"))
+    asked = state(Situation("navigate", "AR", "occluded"), attended="user2")
+    group = Step("greeting", None, begun, begun)
+    one = Step("navigate to user", "user2", asked, asked)
+    assert step_words(activity, group, name) == "start · nobody asks -> greeting"
+    assert step_words(activity, one, name) == "navigate · somebody asks -> navigate to user (Ken)"
+
+
+def test_the_state_tells_who_asks_first_come_first(activity: Activity) -> None:
+    asked = state(Situation("navigate", "AR", "occluded"), attended="user2")
+    assert state_words(activity, asked, scene(FRONT, "user2", "user1"), name) == (
+        "Tangy is at the front. Asking for help: Ken, then Rosa."
+    )
+    nobody = state(Situation("facilitate", "ANR", "occluded"))
+    assert state_words(activity, nobody, scene(), name) == (
+        "Tangy is at the front. Nobody asks for help."
+    )
+
+
+def test_beside_a_person_the_state_tells_what_the_card_shows(activity: Activity) -> None:
+    beside = state(Situation("help", "AR", "missing numbers"), "user2", "user2")
+    card = CardView("user2", NUMBERS, marked=0b0001, called=0b0110)
+    told = state_words(activity, beside, scene("user2", "user2", card=card), name)
+    assert told.startswith("Tangy is with Ken. Asking for help: Ken. ")
+    assert "A called number is not marked." in told
+    assert told.endswith("Wrong: B-1. Missed: B-2, B-3.")
+
+
+def test_a_correct_card_needs_no_words(activity: Activity) -> None:
+    assert card_words(activity, CardView("user1", NUMBERS, 0b111, 0b111)) == ""
+    assert card_words(activity, CardView("user1", NUMBERS, 0b101, 0b111)) == "Missed: B-2."
+    assert card_words(activity, CardView("user1", NUMBERS, 0b111, 0b011)) == "Wrong: B-3."
