@@ -250,8 +250,12 @@ async def test_the_card_is_drawn_where_there_is_room_once_the_robot_is_there(
     card = CardView("user4", (11, 22, 33, 44), marked, called)
     async with run(screen, (120, 40), clock=clock) as pilot:
         scene = sample.scene("user4")
+        ahead = Scene(scene.place, scene.requests, scene.doing, (), card)
+        screen.room.show(ahead)
         screen.room.drive("user4", 4.0)
-        screen.room.show(Scene(scene.place, scene.requests, scene.doing, (), card))
+        await pilot.pause()
+        assert "The card of" not in pilot.text()
+        screen.room.show(ahead)
         await pilot.pause()
         assert "The card of" not in pilot.text()
         screen.room.skip()

@@ -157,7 +157,10 @@ class RoomView(Widget):
             self._arrive()
             return
         self._turn()
-        self._move_sprite(turned=True)
+        if self._scene.card is None:
+            self._move_sprite(turned=True)
+        else:  # it is read when the robot is there
+            self._draw_again()
         if self._timer is None:
             self._timer = self.set_interval(FRAME_SECONDS, self.tick)
 
