@@ -356,7 +356,7 @@ def _words(text: str) -> Words:
     """Split into lower-case words: accents and punctuation dropped, number words as digits."""
     folded = unicodedata.normalize("NFKD", text[:LONGEST_TEXT]).casefold().replace("\u2019", "'")
     plain = unicodedata.normalize("NFC", _ACCENTS.sub("", folded))
-    return tuple(_digits(word) for word in _WORD.findall(plain))
+    return tuple(_digits(word) for word in _WORD.findall(plain[:LONGEST_TEXT]))
 
 
 def _digits(word: str) -> str:

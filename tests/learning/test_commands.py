@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import replace
-from time import perf_counter
+from time import process_time
 
 import pytest
 from hypothesis import given
@@ -209,10 +209,10 @@ class TestUnderstanding:
             assert command.behaviour == BOOK.phrases[phrase]
 
     def test_a_long_text_takes_no_time(self) -> None:
-        begun = perf_counter()
+        begun = process_time()
         BOOK.understand("zelebrate " * 100_000)
         BOOK.suggestions("\ufdfa" * 100_000)
-        assert perf_counter() - begun < 1
+        assert process_time() - begun < 0.5
 
 
 class TestPeople:
@@ -310,6 +310,7 @@ class TestSpoken:
     def test_people_are_spoken_of_by_number_and_name(self) -> None:
         assert "go to user two" in BOOK.spoken()
         assert {"go to rosa", "go to jose luis", "go to user three"} <= set(NAMED.spoken())
+        assert not {"go to the rosa", "go to the user two"} & set(NAMED.spoken())
 
     def test_every_phrase_of_the_activity_is_spoken(self, activity: Activity) -> None:
         listed = {p for b in activity.behaviours.values() for p in b.phrases}
