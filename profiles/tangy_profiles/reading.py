@@ -38,8 +38,10 @@ def plain(text: str) -> str:
 
 
 def _short(text: str, most: int = 60) -> str:
-    """Cut what somebody made too long for one line."""
-    return text if len(text) <= most else text[: most - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    """Cut the middle out of what somebody made too long for one line."""
+    if len(text) <= most:
+        return text
+    return f"{text[: most // 2]}\N{HORIZONTAL ELLIPSIS}{text[-(most // 2) :]}"
 
 
 class Table:

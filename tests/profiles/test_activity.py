@@ -121,6 +121,7 @@ def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
          ("behaviours[remove markers].speech", "'praise'?")),
         ('"tell a joke",', '"tell a joke", "greet everyone",', ("'greet everyone'", "'greeting'")),
         ('"tell a joke",', '"Tell a joke!",', ("'Tell a joke!'", "lower-case")),
+        ('"tell a joke",', f'"{"A" * 99_999}",', ("phrases = ['AA", "must be lower-case words")),
         ('keywords = ["joke", "funny"]', "keywords = 3", ("keywords = 3", "list of texts")),
         ("patience = 10.0", "patience = nan", ("patience = nan", "0.1 to 600")),
         ("patience = 10.0", "patience = inf", ("patience = inf", "0.1 to 600")),
