@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from tangy_tui.house import House
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.ears import Ears
-    from tangy_tui.learning.policy import Policy
 
 app = typer.Typer(
     add_completion=False,
@@ -95,7 +93,9 @@ def teach(
     from tangy_tui.house import teacher_name
 
     who = plain(teacher or teacher_name())[:40]
-    sound = _keys_from_terminal(script) if mic == "-" else 0
+    from tangy_tui.inputs import keys_from_terminal
+
+    sound = keys_from_terminal(script) if mic == "-" else 0
     with _house(data, activity, users) as house:
         teaching = house.teaching(who, seed)
         ears = _ears(mic, teaching, sound, house)
@@ -129,6 +129,7 @@ def learn(
     from dataclasses import replace
 
     from tangy_profiles.reading import nearest
+    from tangy_tui.documents import policy_document
     from tangy_tui.learning.library import keep_policy, read_demonstrations
     from tangy_tui.learning.policy import FORESTS, learn_policy
     from tangy_tui.wording import counted, situation_words
@@ -150,7 +151,7 @@ def learn(
         if as_json:
             _print_json(
                 {
-                    **_policy_json(house, policy),
+                    **policy_document(house, policy),
                     "steps": sum(len(d.steps) for d in used),
                     "left_out": left_out,
                 }
@@ -179,16 +180,18 @@ def policy(
     as_json: Json = False,
 ) -> None:
     """Show what was learnt: every situation, what Tangy does there, and what follows."""
-    from tangy_tui.learning.library import load_policy
+    from tangy_tui.documents import policy_document
+    from tangy_tui.learning.library import effects_of, load_policy
     from tangy_tui.ui import reports
 
     with _house(data, activity, 4, write=False) as house:
         learnt, notices = load_policy(house.store, house.activity)
         _say_notices(notices)
         if as_json:
-            _print_json(_policy_json(house, learnt))
+            _print_json(policy_document(house, learnt))
         else:
-            reports.print_policy(house.activity, learnt, _effects(house, learnt))
+            effects = effects_of(house.store, house.activity, learnt)
+            reports.print_policy(house.activity, learnt, effects)
 
 
 @app.command()
@@ -278,11 +281,12 @@ def people_list(
     seed: Seed = None, data: Data = None, users: Users = 4, as_json: Json = False
 ) -> None:
     """List the people, with how often each strategy has worked."""
+    from tangy_tui.documents import person_document
     from tangy_tui.ui import reports
 
     with _house(data, "bingo", users, write=False) as house:
         if as_json:
-            _print_json([reports.person_json(house, person) for person in house.people])
+            _print_json([person_document(house, person) for person in house.people])
         else:
             reports.print_people(house)
 
@@ -296,12 +300,13 @@ def people_show(
     as_json: Json = False,
 ) -> None:
     """Show one person: every strategy with counts, mean and P(best)."""
+    from tangy_tui.documents import person_document
     from tangy_tui.ui import reports
 
     with _house(data, "bingo", users, write=False) as house:
         found = house.find_person(person)
         if as_json:
-            _print_json(reports.person_json(house, found))
+            _print_json(person_document(house, found))
         else:
             reports.print_person(house, found)
 
@@ -361,6 +366,7 @@ def _full_screen() -> bool:
 
 
 def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
+    from tangy_tui.documents import demonstration_document
     from tangy_tui.learning.demonstrating import Finished, Next
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 
@@ -382,32 +388,21 @@ def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
                         "shown so far."
                     )
     if as_json:
-        _print_json({"demonstrations": [_demonstration_json(d) for d in done]})
+        _print_json({"demonstrations": [demonstration_document(d) for d in done]})
 
 
 def _teach_by_lines(
     teaching: Teaching, script: Path | None, ears: Ears | None, as_json: bool, *, resume: bool
 ) -> None:
+    from tangy_tui.documents import demonstration_document
+    from tangy_tui.inputs import line_reader
     from tangy_tui.lines import TeachingLines
 
     write: Callable[[str], None] = (lambda _: None) if as_json else _print_line
-    lines = TeachingLines(teaching, _reader(script), write, ears, scripted=script is not None)
+    lines = TeachingLines(teaching, line_reader(script), write, ears, scripted=script is not None)
     asyncio.run(lines.run(resume=resume))
     if as_json:
-        _print_json({"demonstrations": [_demonstration_json(teaching.demonstration)]})
-
-
-def _reader(script: Path | None) -> Callable[[], str | None]:
-    """Return where lines come from: the script, or standard input."""
-    if script is None:
-        return lambda: sys.stdin.readline() or None
-    try:
-        lines = iter(script.read_text(encoding="utf-8").splitlines())
-    except FileNotFoundError:
-        raise TangyError(plain(f"{script}: there is no such file.")) from None
-    except (OSError, UnicodeDecodeError):
-        raise TangyError(plain(f"{script}: cannot be read as text.")) from None
-    return lambda: next(lines, None)
+        _print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
 
 
 def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears | None:
@@ -416,25 +411,6 @@ def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears
     from tangy_tui.learning.ears import Ears
 
     return Ears(mic, teaching.phrasebook, stdin=sound, log=house.store.folder / "speech.log")
-
-
-def _keys_from_terminal(script: Path | None) -> int:
-    """Move the sound on standard input elsewhere, and read keys from the terminal instead.
-
-    Returns:
-        The file descriptor that now has the sound.
-    """
-    sound = os.dup(0)
-    try:
-        keys = os.open("/dev/null" if script is not None else "/dev/tty", os.O_RDWR)
-    except OSError:
-        raise TangyError(
-            "--mic -: the sound comes on standard input, so the answers need a terminal or "
-            "--script FILE."
-        ) from None
-    os.dup2(keys, 0)
-    os.close(keys)
-    return sound
 
 
 def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:
@@ -452,65 +428,6 @@ def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -
         _print_json(tally.to_json(house.activity.situations, beliefs))
     else:
         reports.print_tally(house, tally, beliefs)
-
-
-def _effects(house: House, learnt: Policy) -> Any:
-    from tangy_tui.learning.effects import learn_effects
-    from tangy_tui.learning.library import read_demonstrations
-
-    shown = read_demonstrations(house.store, house.activity.name)
-    return learn_effects(house.activity, [d for d in shown if d.id in learnt.demonstrations])
-
-
-def _policy_json(house: House, learnt: Policy) -> dict[str, Any]:
-    from tangy_tui.learning.reachable import joint_states
-
-    people = [person.id for person in house.people]
-    states = list(joint_states(house.activity, people))
-    right = sum(
-        learnt.decide(s.situation).behaviour == house.activity.expected.get(s.situation)
-        for s in states
-    )
-    return {
-        **learnt.to_json(),
-        "rows": [
-            {
-                "stage": situation.stage,
-                "request": situation.request,
-                "user_state": situation.user_state,
-                "behaviour": decision.behaviour,
-                "share": decision.share,
-                "seen": decision.seen,
-                "votes": dict(decision.votes),
-            }
-            for situation in house.activity.situations
-            for decision in [learnt.decide(situation)]
-        ],
-        "joint_states": {"people": len(people), "reachable": len(states), "as_expected": right},
-        "exact": learnt.exact(house.activity),
-        "effects": {
-            behaviour: {variable: sorted(values) for variable, values in variables.items()}
-            for behaviour, variables in _effects(house, learnt).values.items()
-        },
-    }
-
-
-def _demonstration_json(demonstration: Any) -> dict[str, Any]:
-    return {
-        "id": demonstration.id,
-        "teacher": demonstration.teacher,
-        "seed": demonstration.seed,
-        "finished": demonstration.finished,
-        "steps": len(demonstration.steps),
-        "trajectory": [
-            {
-                "behaviour": step.behaviour,
-                "target": step.target,
-                "situation": list(step.state.situation),
-            }
-            for step in demonstration.steps
-        ],
-    }
 
 
 def _say_notices(notices: list[str]) -> None:

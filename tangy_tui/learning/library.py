@@ -13,6 +13,7 @@ from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
+    from tangy_tui.learning.effects import Effects
     from tangy_tui.learning.policy import Policy
 
 BEGUN = "demonstration begun"
@@ -46,6 +47,14 @@ def read_demonstrations(store: Store, activity: str) -> list[Demonstration]:
         else:
             found[id] = replace(found[id], finished=True)
     return list(found.values())
+
+
+def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
+    """Learn the effects from the demonstrations that a policy rests on."""
+    from tangy_tui.learning.effects import learn_effects
+
+    shown = read_demonstrations(store, activity.name)
+    return learn_effects(activity, [d for d in shown if d.id in policy.demonstrations])
 
 
 @dataclass(frozen=True, slots=True)

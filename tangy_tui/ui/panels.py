@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from textual.widget import Widget
 from textual.widgets import Static
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.ui.widgets.room_view import RoomView
 
 WidgetT = TypeVar("WidgetT", bound=Widget)
 
@@ -32,3 +36,17 @@ def panel(widget: WidgetT, title: str = "") -> WidgetT:
     if title:
         widget.border_title = title
     return widget
+
+
+def room_panel(house: House) -> RoomView:
+    """Make the panel of a house's room, with its people, its robot and its numbers."""
+    from tangy_tui.ui.widgets.room_view import RoomView
+
+    return panel(
+        RoomView(
+            house.room,
+            house.people,
+            robot=house.robot.title,
+            label=house.activity.deck.label,
+        )
+    )

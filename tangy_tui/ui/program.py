@@ -22,7 +22,6 @@ from tangy_tui.wording import counted
 if TYPE_CHECKING:
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.ears import Ears
-    from tangy_tui.learning.effects import Effects
     from tangy_tui.learning.policy import Policy
 
 T = TypeVar("T")
@@ -133,7 +132,9 @@ class Program(TangyApp):
     async def _open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
         from tangy_tui.ui.screens.policy import PolicyScreen
 
-        screen = PolicyScreen(self.house, policy, effects_of(self.house, policy), leave_after)
+        house = self.house
+        effects = library.effects_of(house.store, house.activity, policy)
+        screen = PolicyScreen(house, policy, effects, leave_after)
         await self.push_screen_wait(screen)
 
     async def _load_policy(self) -> Policy | None:
@@ -208,14 +209,6 @@ class Program(TangyApp):
             PlayScreen(house, facilitation, speed=STORY_PLAYING, leave_after=3.0)
         )
         await self.push_screen_wait(PeopleScreen(house, leave_after=None))
-
-
-def effects_of(house: House, policy: Policy) -> Effects:
-    """Learn the effects from the demonstrations that a policy rests on."""
-    from tangy_tui.learning.effects import learn_effects
-
-    shown = library.read_demonstrations(house.store, house.activity.name)
-    return learn_effects(house.activity, [d for d in shown if d.id in policy.demonstrations])
 
 
 def run_program(house: House, *, ascii_only: bool) -> int:

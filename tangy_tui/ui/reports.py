@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from random import Random
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from rich import box
 from rich.console import Console
@@ -103,25 +103,6 @@ def print_person(house: House, person: Person) -> None:
             f"{best[strategy]:.2f}",
         )
     Console(highlight=False).print(table)
-
-
-def person_json(house: House, person: Person) -> dict[str, Any]:
-    """Return one person's posteriors as the command line prints them."""
-    profile = house.persuasion(Random(0)).beliefs[person.id]
-    best = probability_best(profile)
-    return {
-        "id": person.id,
-        "name": person.name,
-        "beliefs": {
-            strategy: {
-                "alpha": belief.alpha,
-                "beta": belief.beta,
-                "mean": belief.mean,
-                "p_best": best[strategy],
-            }
-            for strategy, belief in profile.items()
-        },
-    }
 
 
 def _people_table(house: House, beliefs: Mapping[str, Beliefs]) -> Table:

@@ -10,11 +10,12 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from tangy_tui.house import House
+from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.story import learn
 from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.program import Program, effects_of
+from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.screens.play import PlayScreen
@@ -206,7 +207,8 @@ async def test_the_policy_screen_says_what_was_never_shown(run: Run, house: Hous
     assert unseen, "this game was to leave something out"
 
     async def start(program: Program) -> None:
-        await program.push_screen(PolicyScreen(house, policy, effects_of(house, policy)))
+        effects = effects_of(house.store, house.activity, policy)
+        await program.push_screen(PolicyScreen(house, policy, effects))
 
     async with run(app=Program(house, start, clock=StillClock()), size=LARGE) as pilot:
         shown = screen_text(pilot.app)

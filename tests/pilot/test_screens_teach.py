@@ -149,9 +149,7 @@ async def test_leaving_and_coming_back_finds_the_steps(run: Run, house: House) -
         assert "Going on where you left" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 
-async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
-    run: Run, house: House
-) -> None:
+async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(run: Run, house: House) -> None:
     async with run(app=program(house)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, TeachScreen)

@@ -23,7 +23,7 @@ from tangy_tui.interaction.facilitation import (
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import WIDE, key_line, panel
+from tangy_tui.ui.panels import WIDE, key_line, panel, room_panel
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -101,14 +101,7 @@ class PlayScreen(TangyScreen[Tally]):
         yield StatusLine()
         with Horizontal(id="body"):
             with Vertical(id="left"):
-                yield panel(
-                    RoomView(
-                        self._house.room,
-                        self._house.people,
-                        robot=self._house.robot.title,
-                        label=self._house.activity.deck.label,
-                    )
-                )
+                yield room_panel(self._house)
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
                 yield panel(Transcript(id="transcript"))

@@ -34,7 +34,7 @@ from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import WIDE, panel
+from tangy_tui.ui.panels import WIDE, panel, room_panel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -99,14 +99,7 @@ class TeachScreen(TangyScreen[bool]):
         yield StatusLine()
         with Horizontal(id="body"):
             with Vertical(id="left"):
-                yield panel(
-                    RoomView(
-                        self._house.room,
-                        self._house.people,
-                        robot=self._house.robot.title,
-                        label=self._teaching.activity.deck.label,
-                    )
-                )
+                yield room_panel(self._house)
                 yield panel(LogView(id="log"))
             yield panel(
                 Transcript(empty="No steps yet. Type what Tangy should do first.", id="transcript")

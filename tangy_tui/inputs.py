@@ -1,0 +1,43 @@
+"""Where lines and keys come from: a script, standard input, or the terminal behind it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+
+def line_reader(script: Path | None) -> Callable[[], str | None]:
+    """Return where lines come from: the script, or standard input."""
+    if script is None:
+        return lambda: sys.stdin.readline() or None
+    try:
+        lines = iter(script.read_text(encoding="utf-8").splitlines())
+    except FileNotFoundError:
+        raise TangyError(plain(f"{script}: there is no such file.")) from None
+    except (OSError, UnicodeDecodeError):
+        raise TangyError(plain(f"{script}: cannot be read as text.")) from None
+    return lambda: next(lines, None)
+
+
+def keys_from_terminal(script: Path | None) -> int:
+    """Move the sound on standard input elsewhere, and read keys from the terminal instead.
+
+    Returns:
+        The file descriptor that now has the sound.
+    """
+    sound = os.dup(0)
+    try:
+        keys = os.open("/dev/null" if script is not None else "/dev/tty", os.O_RDWR)
+    except OSError:
+        raise TangyError(
+            "--mic -: the sound comes on standard input, so the answers need a terminal or "
+            "--script FILE."
+        ) from None
+    os.dup2(keys, 0)
+    os.close(keys)
+    return sound
