@@ -49,6 +49,7 @@ FLOOR_SECONDS = 3.0  # the floor is the tenth percentile of that time
 
 LARGEST_WAV = 100_000_000  # bytes: 17 minutes of 48 kHz stereo
 KERNEL = 16  # zero crossings of the resampling kernel to each side
+END_SECONDS = 2.0  # for arecord to end by itself when it has closed its output
 RECORD = ("arecord", "-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE), "-c", "1")
 HOW_TO_RECORD = "record one with: arecord -f S16_LE -r 16000 -c 1 FILE.wav"
 CODECS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "ADPCM", 0x31: "GSM", 0x55: "MP3"}
@@ -317,6 +318,8 @@ async def _recorded() -> Chunks:
         while chunk := await process.stdout.read(2 * RATE // 10):
             yield chunk
         said = plain((await process.stderr.read(2000)).decode(errors="replace").strip())
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(process.communicate(), END_SECONDS)
         last = said.replace("\N{REPLACEMENT CHARACTER}", " ").strip()[-120:]
         raise SoundError(f"The microphone stopped: {last or 'arecord ended'}.")
     finally:

@@ -152,11 +152,7 @@ class Recogniser:
             return
         if process.stdin is not None:
             process.stdin.close()
-        try:
-            await asyncio.wait_for(process.wait(), END_SECONDS)
-        except TimeoutError:
-            _kill(process)
-            await process.wait()
+        await _let_end(process)
 
     async def _ask(self, request: dict[str, Any], seconds: float) -> dict[str, Any]:
         """Send a request and return its answer, passing over answers nobody waits for any more."""
@@ -180,8 +176,7 @@ class Recogniser:
         except (OSError, ValueError):
             answer = None
         if answer is None:
-            _kill(process)  # its output has ended or makes no sense
-            await process.wait()
+            await _let_end(process)
             raise SpeechUnavailable(_epitaph(process))
         if "error" in answer:
             raise SpeechUnavailable(str(answer["error"]))
@@ -193,6 +188,19 @@ class Recogniser:
             if answer.get("id") == id:
                 return answer
         return None
+
+
+async def _let_end(process: asyncio.subprocess.Process) -> None:
+    """Wait for a process that is about to end; kill it if it does not.
+
+    Not before: killing a process that has just ended takes its status away from asyncio, which
+    then complains about it on the terminal.
+    """
+    try:
+        await asyncio.wait_for(process.wait(), END_SECONDS)
+    except TimeoutError:
+        _kill(process)
+        await process.wait()
 
 
 def _kill(process: asyncio.subprocess.Process) -> None:
