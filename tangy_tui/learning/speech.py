@@ -19,7 +19,8 @@ from typing import IO, Any
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.commands import Command, Phrasebook
-from tangy_tui.learning.microphone import read_wav, split
+from tangy_tui.learning.microphone import split
+from tangy_tui.learning.wav import read_wav
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.learning.speech_worker")
 START_SECONDS = 30.0  # for the worker to load its models: 0.4 s when nothing else runs

@@ -28,9 +28,10 @@ import numpy as np
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.microphone import RATE, read_wav, split
+from tangy_tui.learning.microphone import split
 from tangy_tui.learning.speech import Heard, Recogniser, understand
 from tangy_tui.learning.speech_worker import Decoder
+from tangy_tui.learning.wav import RATE, read_wav
 
 TUNED = ("rms", "awb")
 QUOTED = ("slt", "kal16", "kal")  # kal has 8,000 samples a second, like a telephone

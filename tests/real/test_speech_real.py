@@ -21,7 +21,7 @@ import pytest
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.microphone import RATE, open_microphone, read_wav, split
+from tangy_tui.learning.microphone import open_microphone, split
 from tangy_tui.learning.speech import (
     END_SECONDS,
     WORKER,
@@ -30,6 +30,7 @@ from tangy_tui.learning.speech import (
     listen,
     understand,
 )
+from tangy_tui.learning.wav import RATE, read_wav
 
 pytestmark = pytest.mark.skipif(
     shutil.which("flite") is None, reason="flite is not installed: nobody to speak the commands"
@@ -342,7 +343,7 @@ class TestProtocol:
         code = (
             "import asyncio, os, sys\n"
             "from pathlib import Path\n"
-            "from tangy_tui.learning.microphone import read_wav\n"
+            "from tangy_tui.learning.wav import read_wav\n"
             "from tangy_tui.learning.speech import Recogniser, SpeechUnavailable\n"
             "async def run():\n"
             "    recogniser = Recogniser(log=Path(sys.argv[2]))\n"
