@@ -332,17 +332,13 @@ def _likeness(said: str, known: str) -> float:
 
 
 def _slips(one: str, other: str) -> int:
-    """Count the letters to insert, drop, replace or swap with their neighbour (OSA distance)."""
-    before: list[int] = []
-    last = list(range(len(other) + 1))
+    """Count the letters to insert, drop or replace."""
+    row = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
-        row = [i]
+        last, row = row, [i]
         for j, wanted in enumerate(other, 1):
             row.append(min(last[j] + 1, row[-1] + 1, last[j - 1] + (letter != wanted)))
-            if i > 1 and j > 1 and letter == other[j - 2] and one[i - 2] == wanted:
-                row[-1] = min(row[-1], before[j - 2] + 1)
-        before, last = last, row
-    return last[-1]
+    return row[-1]
 
 
 def _clean(text: str, *, strip: bool = True) -> str:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import Person, load_people
-from tangy_tui.learning.commands import FILLERS, LONGEST_TEXT, Phrasebook
+from tangy_tui.learning.commands import FILLERS, KEYWORDS_AT_LEAST, LONGEST_TEXT, Phrasebook
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 NAMED = Phrasebook(
@@ -145,6 +145,26 @@ class TestUnderstanding:
         assert command is not None
         assert command.behaviour == behaviour
         assert 0.3 < command.confidence < 1
+
+    @pytest.mark.parametrize(
+        "text", ["hello and goodbye", "after that joke go to the front", "move closer to the front"]
+    )
+    def test_keywords_of_two_behaviours_decide_nothing(self, text: str) -> None:
+        command = BOOK.understand(text)
+        assert command is None or command.confidence < KEYWORDS_AT_LEAST
+
+    def test_what_only_fillers_tell_apart_is_not_certain_without_them(
+        self, activity: Activity, people: tuple[Person, ...]
+    ) -> None:
+        changed = {
+            name: replace(behaviour, phrases=(phrase,), keywords=())
+            for (name, behaviour), phrase in zip(
+                activity.behaviours.items(), ["do it now", "do it then"], strict=False
+            )
+        }
+        book = Phrasebook(replace(activity, behaviours=changed), people)
+        command = book.understand("do it")
+        assert command is None or command.confidence < 1
 
     def test_words_shared_by_two_behaviours_offer_the_other(self) -> None:
         command = BOOK.understand("draw missing number")
@@ -315,3 +335,7 @@ class TestSpoken:
     def test_every_phrase_of_the_activity_is_spoken(self, activity: Activity) -> None:
         listed = {p for b in activity.behaviours.values() for p in b.phrases}
         assert listed <= set(BOOK.spoken()) <= set(BOOK.phrases)
+
+    def test_names_of_behaviours_are_spoken_only_if_they_are_listed(self) -> None:
+        assert "valediction" in BOOK.phrases
+        assert "valediction" not in BOOK.spoken()
