@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -94,8 +95,7 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
         assert taught.stdout is not None
         taught.stdin.write(b"greet everyone\ny\n")
         taught.stdin.flush()
-        while b"Tangy says" not in taught.stdout.readline():
-            pass
+        assert any(b"Tangy says" in line for line in iter(taught.stdout.readline, b""))
         busy = tangy("teach", "--plain", *data, home=tmp_path)
         assert busy.returncode == 2
         assert f"process {taught.pid} is writing to".encode() in busy.stderr
@@ -103,4 +103,23 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
         taught.wait(60)
     again = tangy("teach", "--plain", *data, home=tmp_path)
     assert again.returncode == 0
+    assert b"demonstration of 1 steps" in again.stdout
+
+
+def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
+    data = ["--data", str(tmp_path / "data")]
+    with subprocess.Popen(  # noqa: S603 - our own interpreter
+        [*TANGY, "teach", "--plain", *data], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as taught:
+        assert taught.stdin is not None
+        assert taught.stdout is not None
+        taught.stdin.write(b"greet everyone\ny\n")
+        taught.stdin.flush()
+        assert any(b"Now: facilitate" in line for line in iter(taught.stdout.readline, b""))
+        taught.send_signal(signal.SIGINT)
+        try:
+            assert taught.wait(3) == 130
+        finally:
+            taught.kill()
+    again = tangy("teach", "--plain", *data, home=tmp_path)
     assert b"demonstration of 1 steps" in again.stdout
