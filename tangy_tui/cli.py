@@ -56,6 +56,9 @@ def program(
         raise typer.Exit
     if context.invoked_subcommand is None:
         if not _full_screen():
+            from tangy_tui.ui.terminal import terminal_kind
+
+            print(f"No screens here ({terminal_kind().reason}): try `tangy teach --plain`.\n")
             print(context.get_help())
             return
         from tangy_tui.ui.program import run_program
@@ -132,7 +135,7 @@ def learn(
     from tangy_tui.documents import policy_document
     from tangy_tui.learning.library import keep_policy, read_demonstrations
     from tangy_tui.learning.policy import FORESTS, learn_policy
-    from tangy_tui.wording import counted, situation_words
+    from tangy_tui.wording import counted
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
@@ -164,7 +167,7 @@ def learn(
         )
         for situation in house.activity.situations:
             if situation not in seen:
-                print(f"  not shown yet: {situation_words(house.activity, situation)}")
+                print(f"  not shown yet: {house.activity.in_words(situation)}")
         if left_out:
             print(
                 f"{counted(left_out, 'unfinished demonstration')} left out; "
@@ -245,7 +248,9 @@ def demo(
         if _full_screen() and not (plain_lines or as_json):
             from tangy_tui.ui.program import run_demo
 
-            raise typer.Exit(run_demo(house, seed=seed, ascii_only=ascii_only))
+            status = run_demo(house, seed=seed, ascii_only=ascii_only)
+            print("Teach it yourself: tangy teach. All you can do: tangy --help.")
+            raise typer.Exit(status)
         from tangy_tui.story import tell
 
         tally = tell(house, seed, (lambda _: None) if as_json else print)
@@ -323,7 +328,7 @@ def people_rename(
     """Give a person another name; what Tangy has learnt of them stays."""
     with _house(data, "bingo", users) as house:
         found = house.find_person(person)
-        house.store.rename(found.id, name)
+        house.rename(found, name)
         if as_json:
             _print_json({"id": found.id, "name": name})
         else:

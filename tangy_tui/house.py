@@ -14,6 +14,7 @@ from tangy_profiles.person import Person, load_people
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
+from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
@@ -84,6 +85,23 @@ class House:
         if found:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
         raise TangyError(plain(f"There is nobody called {wanted!r}: {nearest(wanted, known)}"))
+
+    def rename(self, person: Person, name: str) -> None:
+        """Give a person another name, one that nobody else answers to.
+
+        Raises:
+            TangyError: the name is somebody else's name or id, or a place.
+        """
+        wanted = name.strip().casefold()
+        taken = {FRONT: "is a place"}
+        for other in self.people:
+            if other.id != person.id:
+                taken |= dict.fromkeys(
+                    (other.id.casefold(), other.name.casefold()), f"is what {other.id} is called"
+                )
+        if wanted in taken:
+            raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
+        self.store.rename(person.id, name)
 
     @property
     def names(self) -> dict[str, str]:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable
+from contextlib import suppress
+from threading import Thread
 from typing import Any
 
 from tangy_profiles.beliefs import probability_best
@@ -37,7 +39,7 @@ from tangy_tui.learning.demonstrating import (
     Undo,
 )
 from tangy_tui.learning.ears import Ears
-from tangy_tui.wording import Name, situation_words, state_words, step_words
+from tangy_tui.wording import Name, counted, state_words, step_words
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
@@ -89,8 +91,8 @@ class TeachingLines:
         demonstration = teaching.demonstration
         if not demonstration.finished and demonstration.steps:
             write(
-                f"Left after {len(demonstration.steps)} steps. They are kept: "
-                "the next `tangy teach` goes on from here."
+                f"Left after {counted(len(demonstration.steps), 'step')}. What you confirmed is "
+                "kept: the next `tangy teach` goes on from here."
             )
 
     async def _next_line(self) -> str | Say | None:
@@ -114,7 +116,21 @@ class TeachingLines:
         return said
 
     def _reading(self) -> asyncio.Future[str | None]:
-        return asyncio.ensure_future(asyncio.to_thread(self._read))
+        """Read a line beside the program, in a thread that does not hold up its end."""
+        loop = asyncio.get_running_loop()
+        line: asyncio.Future[str | None] = loop.create_future()
+
+        def give(read: str | None) -> None:
+            if not line.done():
+                line.set_result(read)
+
+        def wait() -> None:
+            read = self._read()
+            with suppress(RuntimeError):  # the program has ended meanwhile
+                loop.call_soon_threadsafe(give, read)
+
+        Thread(target=wait, daemon=True).start()
+        return line
 
     async def _line(self) -> str | None:
         line, self._typed = self._typed or self._reading(), None
@@ -153,7 +169,7 @@ class TeachingLines:
         teaching = self._teaching
         state = teaching.world.observe()
         self._write(
-            f"Now: {situation_words(teaching.activity, state.situation)}. "
+            f"Now: {teaching.activity.in_words(state.situation)}. "
             + state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
         )
 
@@ -215,7 +231,7 @@ def game_lines(event: GameEvent, facilitation: Facilitation, name: Name) -> list
             target = f" ({name(action.target)})" if action.target else ""
             how = f", {choice.strategy}" if choice else ""
             return [
-                f"{number}. {situation_words(activity, state.situation)} -> "
+                f"{number}. {activity.in_words(state.situation)} -> "
                 f"{action.behaviour.name}{target}{how}, {decision.share:.0%} of the votes",
                 f"   Tangy says: {speech}",
             ]

@@ -13,7 +13,6 @@ from tangy_tui.learning.library import keep_policy, read_demonstrations
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.lines import belief_lines, game_lines
-from tangy_tui.wording import situation_words
 
 DEMONSTRATIONS = 3
 """What the paper found to be enough when situations come about by chance."""
@@ -35,7 +34,7 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
                     write(f"   Game {demonstration.seed}:")
                 case Executed(_, step, _, _, speech, _) if step.state.situation not in seen:
                     seen.add(step.state.situation)
-                    write(f"   new: {situation_words(activity, step.state.situation)}")
+                    write(f"   new: {activity.in_words(step.state.situation)}")
                     write(f"        teacher: {step.behaviour}. Tangy: {speech}")
         steps = len(teaching.demonstration.steps)
         write(f"   {steps} steps; {len(seen)} of {len(activity.situations)} situations shown.")
@@ -46,7 +45,7 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
     for situation in activity.situations:
         decision = policy.decide(situation)
         write(
-            f"   {situation_words(activity, situation)} -> {decision.behaviour} "
+            f"   {activity.in_words(situation)} -> {decision.behaviour} "
             f"({decision.share:.0%} of the votes, {decision.seen} times shown)"
         )
     write(f"   Effects of {len(effects.values)} behaviours are known.")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
 from tangy_profiles.scene import CardView, Scene
-from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_profiles.state import FRONT, ActivityState
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""
@@ -18,24 +18,10 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def situation_words(activity: Activity, situation: Situation) -> str:
-    """Write a triple in a few words: the stage, and what matters about the attended person.
-
-    Within the stage of helping that is how the person is doing, elsewhere whether somebody asks.
-    """
-    stage, request, user_state = situation
-    helping = any(
-        r.stage == stage and r.condition == "beside requester" for r in activity.stage_rules
-    )
-    if helping or user_state != activity.unread:
-        return f"{stage} · {activity.state_label(user_state)}"
-    return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
-
-
 def step_words(activity: Activity, step: Step, name: Name) -> str:
     """Write one step of a trajectory: the situation, the behaviour, and for whom."""
     target = f" ({name(step.target)})" if step.target else ""
-    return f"{situation_words(activity, step.state.situation)} -> {step.behaviour}{target}"
+    return f"{activity.in_words(step.state.situation)} -> {step.behaviour}{target}"
 
 
 def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
@@ -50,7 +36,9 @@ def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Na
     else:
         sentences.append("Nobody asks for help.")
     shown = next((s for s in activity.user_states if s.name == state.situation.user_state), None)
-    if shown is not None and state.attended == state.place and state.attended is not None:
+    if any(r.stage == state.stage and r.condition == "after" for r in activity.stage_rules):
+        sentences.append("The game is won: only the end is left.")
+    elif shown is not None and activity.reads(state.stage):
         sentences.append(shown.hint)
         if scene.card is not None:
             sentences.append(card_words(activity, scene.card))

@@ -132,6 +132,21 @@ class Activity:
         """Return what a user activity state is called in front of people."""
         return next((s.label for s in self.user_states if s.name == user_state), user_state)
 
+    def reads(self, stage: str) -> bool:
+        """Whether the card beside the robot is looked at in a stage."""
+        return any(r.stage == stage and r.condition == "beside requester" for r in self.stage_rules)
+
+    def in_words(self, situation: Situation) -> str:
+        """Write a triple in a few words: the stage, and what matters about the attended person.
+
+        Within the stage of helping that is how the person is doing, elsewhere whether somebody
+        asks.
+        """
+        stage, request, user_state = situation
+        if self.reads(stage) or user_state != self.unread:
+            return f"{stage} · {self.state_label(user_state)}"
+        return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
+
     @cached_property
     def stages(self) -> tuple[str, ...]:
         """The stages in the order of their rules."""

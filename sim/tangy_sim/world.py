@@ -71,6 +71,7 @@ class SimulatedWorld:
             player.slips_at = waiting_calls(self._uniform, self.users.slip)
         self._next_slip = min(p.slips_at for p in self._players.values())
         self._next_ask = 1e18
+        self._in_view = False  # whether the card beside the robot can be read
         self._opened = False
         return self.tracker.state()
 
@@ -103,6 +104,8 @@ class SimulatedWorld:
             self._let_people_ask()
         elif not self._opened and tracker.begun():
             self._open()
+        if self._in_view and tracker.seen is None and tracker.place in tracker.queue:
+            self._read_card()  # the person beside the robot asks again, the card still there
         return Outcome(succeeded, calls * self.users.call_seconds, numbers, response)
 
     def scene(self) -> Scene:
@@ -179,12 +182,14 @@ class SimulatedWorld:
         target = action.target or (tracker.queue[0] if tracker.queue else None)
         if target in self._players:
             tracker.arrive(target)
+            self._in_view = False
             if self._uniform() >= self.users.occluded and target in tracker.queue:
                 self._read_card()
         return ()
 
     def _go_to_front(self, _: Action) -> tuple[int, ...]:
         self.tracker.arrive(FRONT)
+        self._in_view = False
         return ()
 
     def _bring_card_closer(self, _: Action) -> tuple[int, ...]:
@@ -218,5 +223,6 @@ class SimulatedWorld:
         self._players[self.tracker.place].did = (self.tracker.step, verb, 0)
 
     def _read_card(self) -> None:
+        self._in_view = True
         card = self._players[self.tracker.place]
         self.tracker.seen = card.judged(self.activity.card_states)

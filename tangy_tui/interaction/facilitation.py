@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.activity import Action
+from tangy_profiles.activity import Action, Activity
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
@@ -133,7 +133,7 @@ class Facilitation:
         state = self.world.observe()
         decision = self.policy.decide(state.situation)
         if not decision.sure:
-            return [self._end(_why_not(state, decision))]
+            return [self._end(_why_not(self._activity, state, decision))]
         if self.steps >= MOST_STEPS:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
         with self._store.transaction():
@@ -202,8 +202,8 @@ class Facilitation:
         return GameEnded(self._game, self.steps, reason)
 
 
-def _why_not(state: ActivityState, decision: Decision) -> str:
-    situation = " / ".join(state.situation)
+def _why_not(activity: Activity, state: ActivityState, decision: Decision) -> str:
+    situation = activity.in_words(state.situation)
     if not decision.seen:
         return f"Nobody has shown Tangy what to do here yet: {situation}. Demonstrate it once."
     return (

@@ -8,7 +8,7 @@ from pathlib import Path
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.demonstrating import Say
 from tangy_tui.learning.microphone import Microphone, open_microphone
-from tangy_tui.learning.speech import Recogniser
+from tangy_tui.learning.speech import Recogniser, SpeechUnavailable
 
 
 class Ears:
@@ -65,7 +65,11 @@ class Ears:
                 self._told(f"Cannot be heard, only typed: {', '.join(recogniser.left_out)}.")
             self._told("Listening.")
             async for utterance in self._microphone:
-                heard = await recogniser.decode(utterance)
+                try:
+                    heard = await recogniser.decode(utterance)
+                except SpeechUnavailable as error:  # it is started again for the next one
+                    self._told(f"{error} Please say that again.")
+                    continue
                 if heard.text:
                     yield Say(heard.text, heard.confidence)
                 else:

@@ -83,6 +83,7 @@ class TangyScreen(Screen[ResultT]):
     TangyScreen { layers: default cover; overflow: hidden hidden; }
     """
     HELP: ClassVar[str] = ""
+    ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
 
     def on_resize(self, event: events.Resize) -> None:
         """Cover the screen if it has too little room."""

@@ -16,6 +16,9 @@ WidgetT = TypeVar("WidgetT", bound=Widget)
 WIDE = [(0, "-narrow"), (118, "-wide")]
 """Textual's horizontal breakpoints: the class a screen has from this many columns on."""
 
+LOW = [(0, "-low"), (22, "-tall")]
+"""The class a screen has below 22 lines, where every line counts."""
+
 
 def key_line(*keys: tuple[str, str]) -> Static:
     """Make the last line of a screen: its keys, each with a word on what it does."""

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from textual.screen import Screen
-from textual.worker import Worker, WorkerFailed
+from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
@@ -48,6 +48,7 @@ class Program(TangyApp):
         super().__init__(self._home, pictures=house.store.folder, **settings)
         self.house = house
         self._start = start
+        self._busy = False
 
     def on_mount(self) -> None:
         """Do what comes first."""
@@ -77,20 +78,22 @@ class Program(TangyApp):
     # ---------------------------------------------------------------------------------- ways
 
     def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
-        """Open what was chosen."""
+        """Open what was chosen, unless something is being loaded."""
+        if self._busy:
+            return
         match event.id:
             case "teach":
                 self.teach(self.house.teaching(teacher_name(), None))
             case "learn":
-                self.run_worker(self._learn(), exclusive=True)
+                self.run_worker(self._learn())
             case "play":
-                self.run_worker(self.play(), exclusive=True)
+                self.run_worker(self.play())
             case "policy":
-                self.run_worker(self._show_policy(), exclusive=True)
+                self.run_worker(self._show_policy())
             case "people":
                 self.people()
             case "demo":
-                self.run_worker(self._demo_aside(), exclusive=True)
+                self.run_worker(self._demo_aside())
 
     def teach(self, teaching: Teaching) -> None:
         """Open the teaching screen."""
@@ -106,7 +109,7 @@ class Program(TangyApp):
 
     def action_learn(self) -> None:
         """Learn from all finished demonstrations."""
-        self.run_worker(self._learn(), exclusive=True)
+        self.run_worker(self._learn())
 
     async def _learn(self) -> None:
         from tangy_tui.story import learn
@@ -158,10 +161,17 @@ class Program(TangyApp):
 
     async def _in_thread(self, what: str, work: Callable[[], T]) -> T | None:
         """Do slow work beside the screen; None if it failed for a reason that was shown."""
+        if self._busy:
+            return None
+        self._busy = True
         self.say(what)
         try:
-            worker: Worker[T] = self.run_worker(work, thread=True, exit_on_error=False)
+            worker: Worker[T] = self.run_worker(
+                work, thread=True, exit_on_error=False, group="thread"
+            )
             return await worker.wait()
+        except WorkerCancelled:
+            return None  # the program is being left
         except WorkerFailed as failed:
             if not isinstance(failed.error, TangyError):
                 raise
@@ -169,6 +179,7 @@ class Program(TangyApp):
             await self._tell(str(failed.error), title="Not yet")
             return None
         finally:
+            self._busy = False
             self.clear_notifications()
 
     # ---------------------------------------------------------------------------------- demo

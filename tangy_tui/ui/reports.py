@@ -19,7 +19,7 @@ from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
-from tangy_tui.wording import counted, situation_words
+from tangy_tui.wording import counted
 
 T = TypeVar("T")
 
@@ -44,7 +44,7 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects) -> None:
     for situation in activity.situations:
         decision = policy.decide(situation)
         table.add_row(
-            situation_words(activity, situation),
+            activity.in_words(situation),
             Text(decision.behaviour, style="" if decision.sure else "bold red"),
             f"{decision.share:.2f}",
             str(decision.seen) if decision.seen else Text("never", style="bold red"),
@@ -72,7 +72,7 @@ def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> N
     )  # fmt: skip
     for row in tally.rows(house.activity.situations):
         table.add_row(
-            situation_words(house.activity, row.situation),
+            house.activity.in_words(row.situation),
             row.behaviour,
             str(row.instances),
             f"{row.success:.1%}",

@@ -107,7 +107,6 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
     assert b"demonstration of 1 steps" in again.stdout
 
 
-@pytest.mark.xfail(reason="asyncio waits for its thread that waits for a line (tangy_tui/lines.py)")
 def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
     with subprocess.Popen(  # noqa: S603 - our own interpreter

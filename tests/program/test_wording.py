@@ -8,7 +8,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
-from tangy_tui.wording import card_words, situation_words, state_words, step_words
+from tangy_tui.wording import card_words, state_words, step_words
 
 NUMBERS = tuple(range(1, 26))
 
@@ -40,7 +40,7 @@ def test_a_situation_is_its_stage_and_what_matters_there(
     situation: tuple[str, str, str], words: str, activity: Activity
 ) -> None:
     triple = next(s for s in activity.situations if s == situation)
-    assert situation_words(activity, triple) == words
+    assert activity.in_words(triple) == words
 
 
 def test_a_step_names_the_behaviour_and_for_whom(activity: Activity) -> None:

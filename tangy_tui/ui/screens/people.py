@@ -23,7 +23,7 @@ class PeopleScreen(TangyScreen[None]):
     HELP = (
         "For each person and way of speaking: how often they complied of how often it was "
         "tried, the curve of what Tangy believes, and the probability that it is the best. "
-        "Names are given with: tangy people rename user1 Rosa"
+        "Names are given on the command line: tangy people rename."
     )
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,enter", "leave", "Back")]
 

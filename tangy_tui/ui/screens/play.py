@@ -22,8 +22,9 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import WIDE, key_line, panel, room_panel
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel, room_panel
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -31,7 +32,7 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import situation_words
+from tangy_tui.wording import counted
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Times life; at 1 a game takes the half hour that it takes among people."""
@@ -45,6 +46,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     CSS_PATH = "play.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
     HELP = (
         "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
         "the speed, e skips to the end of the game, g begins another. On the right: how sure "
@@ -94,6 +96,7 @@ class PlayScreen(TangyScreen[Tally]):
         self._skipping = False
         self._single = False
         self._stopped = False
+        self._halted = False
         self._status = Status(mode="play")
 
     def compose(self) -> ComposeResult:
@@ -163,10 +166,16 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_panel(self, name: str) -> None:
         """Show a panel where there is no room for all of them, and give it the keys."""
+        enlarged = self.maximized is not None
+        self.minimize()
         for id in ("transcript", "policy", "posteriors", "log"):
             self.query_one(f"#{id}").set_class(id == name, "-chosen")
+        self.set_class(name == "log", "-log")
         if name != "room":
-            self.query_one(f"#{name}").focus()
+            chosen = self.query_one(f"#{name}")
+            chosen.focus()
+            if enlarged:
+                self.maximize(chosen)
 
     def action_leave(self) -> None:
         """Go back."""
@@ -224,6 +233,8 @@ class PlayScreen(TangyScreen[Tally]):
             match event:
                 case GameBegun(_, number, state):
                     log.write(f"Game {number} begins.", "dim")
+                    self._halted = False
+                    self.query_one(RoomView).say("")
                     self.query_one(Transcript).clear()
                     self._status = Status(mode="play", stage=state.stage, game=number)
                     self._show_scene(0, drive=False)
@@ -239,14 +250,23 @@ class PlayScreen(TangyScreen[Tally]):
                     )
                     self._show_beliefs((response.person, response.strategy))
                 case GameEnded(_, steps, None):
-                    log.write(f"The game is over after {steps} steps. g plays another.", "good")
-                case GameEnded(_, steps, reason):
-                    log.write(f"The game stopped after {steps} steps. {reason}", "bad")
+                    words = f"The game is over after {counted(steps, 'step')}."
+                    log.write(f"{words} g plays another.", "good")
+                case GameEnded(_, steps, str(reason)):
+                    log.write(f"The game stopped after {counted(steps, 'step')}. {reason}", "bad")
+                    self._halted = True
+                    self.run_worker(self._say_why(reason), name="why")
         self._show_status()
+
+    async def _say_why(self, reason: str) -> None:
+        """Tell why a game could not go on, at every size of the window."""
+        if self._leave_after is None:
+            text = f"{reason}\nEsc leads home, where t teaches; g plays another game."
+            await self.app.push_screen_wait(MessageDialog(text, title="The game stopped"))
 
     def _show_step(self, event: Acted) -> None:
         activity, house = self._house.activity, self._house
-        words = situation_words(activity, event.state.situation)
+        words = activity.in_words(event.state.situation)
         target = f" ({house.name(event.action.target)})" if event.action.target else ""
         how = f", {event.choice.strategy}" if event.choice else ""
         self.query_one(Transcript).append(f"{words} -> {event.action.behaviour.name}{target}{how}")
@@ -275,16 +295,23 @@ class PlayScreen(TangyScreen[Tally]):
         self.query_one(Posteriors).show(self._facilitation.persuasion.beliefs, names, highlight)
 
     def _show_status(self) -> None:
-        paused = not self._going.is_set() and not self._facilitation.over
         status = self._status
         self.query_one(StatusLine).show(
             Status(
                 mode="play",
-                robot="STOPPED" if self._stopped else "OK",
+                robot="STOPPED" if self._stopped else "ASKS" if self._halted else "OK",
                 stage="over" if self._facilitation.over else status.stage,
                 game=status.game,
                 step=status.step,
-                note="paused" if paused else f"x{self._speed:g}",
-                alarm=self._stopped,
+                note=self._note(),
+                alarm=self._stopped or self._halted,
             )
         )
+
+    def _note(self) -> str:
+        """Say what the keys would do next, or how fast it goes."""
+        if self._stopped:
+            return "p goes on"
+        if self._facilitation.over:
+            return "g plays again"
+        return f"x{self._speed:g}" if self._going.is_set() else "paused"

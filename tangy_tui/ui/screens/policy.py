@@ -17,7 +17,6 @@ from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-from tangy_tui.wording import situation_words
 
 
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
@@ -25,16 +24,12 @@ def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
     rows = []
     for situation in activity.situations:
         decision = policy.decide(situation)
-        note = "" if decision.sure else "not sure" if decision.seen else "never shown"
-        rows.append(
-            PolicyRow(
-                situation_words(activity, situation),
-                decision.behaviour,
-                decision.share,
-                decision.seen,
-                note,
-            )
-        )
+        words = activity.in_words(situation)
+        if decision.seen:
+            note = "" if decision.sure else "not sure"
+            rows.append(PolicyRow(words, decision.behaviour, decision.share, decision.seen, note))
+        else:  # whatever the trees would vote for, Tangy stops there and says so
+            rows.append(PolicyRow(words, "never shown", 0.0, 0))
     return rows
 
 

@@ -34,13 +34,13 @@ from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import WIDE, panel, room_panel
+from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import state_words, step_words
+from tangy_tui.wording import counted, state_words, step_words
 
 DRIVING_PACE = 4.0
 """How many times faster than the robot the picture of it drives: nobody waits for a picture."""
@@ -51,13 +51,13 @@ class TeachScreen(TangyScreen[bool]):
 
     CSS_PATH = "teach.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
     AUTO_FOCUS = "#command-input"
     HELP = (
-        "You are the teacher. Look at the room, decide what Tangy should do, and type it: "
-        "greet everyone, call number, go to user 2. Tangy asks whether it understood; "
-        "press y and it is done. People press a button when they want help (1, 2, ... is the "
-        "order); go to them, look at what the line Now says about their card, and react. "
-        "The game ends when you have celebrated a bingo and said goodbye."
+        "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
+        "asks whether it understood; press y and it is done. People press a button when they "
+        "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
+        "Tangy sees there. Leave whenever you like: what you confirmed is kept."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("u", "undo", "Undo the last step"),
@@ -92,6 +92,8 @@ class TeachScreen(TangyScreen[bool]):
         self._ears = ears
         self._scripted = scripted
         self._another = another
+        phrases = (b.phrases[0] for b in teaching.activity.behaviours.values())
+        self.HELP = f"{type(self).HELP} You can say: {', '.join(phrases)}."  # type: ignore[misc]
         self._free = asyncio.Event()
 
     def compose(self) -> ComposeResult:
@@ -105,7 +107,11 @@ class TeachScreen(TangyScreen[bool]):
                 Transcript(empty="No steps yet. Type what Tangy should do first.", id="transcript")
             )
         yield Static(id="now", markup=False)
-        yield CommandBar(self._teaching.phrasebook.complete, id="command")
+        yield CommandBar(
+            lambda typed: self._teaching.phrasebook.complete(typed),
+            resting="u undo   d another game   r learn   : type   esc home",
+            id="command",
+        )
 
     def on_mount(self) -> None:
         """Begin the session."""
@@ -113,6 +119,7 @@ class TeachScreen(TangyScreen[bool]):
         self._tell(teaching.apply(Next()) if self._another else teaching.begin(resume=self._resume))
         self._free.set()
         if self._scripted is not None:
+            self.query_one(CommandBar).disabled = True
             self.run_worker(self._follow_script(self._scripted), name="scripted teacher")
         if self._ears is not None:
             self.run_worker(self._listen(self._ears), name="ears")
@@ -122,7 +129,24 @@ class TeachScreen(TangyScreen[bool]):
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         """Put a typed command to Tangy."""
         event.stop()
-        self._apply(Say(event.text))
+        match event.text.strip().lower():
+            case "help":
+                self.query_one(CommandBar).ready()
+                self.app.run_worker(self.run_action("app.help"))
+            case "stop":
+                self.app.run_worker(self.run_action("app.stop"))
+            case "undo":
+                self.action_undo()
+            case "next":
+                self.action_next()
+            case "quit" | "exit" | "leave":
+                self.action_leave()
+            case _:
+                self._apply(Say(event.text))
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave a scripted teacher alone: who watches can only leave, or stop."""
+        return self._scripted is None or action not in ("undo", "next", "learn")
 
     def action_undo(self) -> None:
         """Take the last step back."""
@@ -141,8 +165,10 @@ class TeachScreen(TangyScreen[bool]):
         await self.run_action("app.learn")
 
     def on_stop(self, message: Stop) -> None:
-        """Say what STOP means where nothing can move."""
-        self._log.write("STOP: this robot is simulated, and it stands still.", "warn")
+        """Let the robot stand; what was verified has been done."""
+        self.query_one(RoomView).skip()
+        self.query_one(CommandBar).ready()
+        self._log.write("STOP: the simulated robot stands still.", "warn")
 
     def _apply(self, command: TeacherCommand) -> None:
         self._tell(self._teaching.apply(command))
@@ -193,8 +219,8 @@ class TeachScreen(TangyScreen[bool]):
         behaviours = self._teaching.activity.behaviours
         dialog = QuestionDialog(
             asked.question,
-            heard=asked.heard,
-            confidence=asked.confidence,
+            heard=asked.heard if asked.confidence < 1 else "",
+            confidence=asked.confidence if asked.confidence < 1 else None,
             alternatives=[behaviours[name].question for name in asked.alternatives],
         )
         answer = await self.app.push_screen_wait(dialog)
@@ -229,7 +255,7 @@ class TeachScreen(TangyScreen[bool]):
         )
         self._show_scene(teaching.world.observe().place)
         if resumed:
-            self._log.write(f"Going on where you left, after {steps} steps.", "good")
+            self._log.write(f"Going on where you left, after {counted(steps, 'step')}.", "good")
         else:
             self._log.write(
                 f"A new game of {teaching.activity.title}, demonstrated by {teaching.teacher}.",
@@ -237,10 +263,7 @@ class TeachScreen(TangyScreen[bool]):
             )
 
     def _finish(self, steps: int) -> None:
-        self._log.write(
-            f"Game complete, {steps} steps. Esc, then: d for another game, r to let Tangy learn.",
-            "good",
-        )
+        self._log.write(f"The game is complete: {counted(steps, 'step')}.", "good")
 
     def _show_state(self) -> None:
         teaching = self._teaching
@@ -254,7 +277,7 @@ class TeachScreen(TangyScreen[bool]):
             )
         )
         words = (
-            "The game is over."
+            "The game is over. Press esc, then d for another game, or r to let Tangy learn."
             if teaching.world.over
             else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
         )

@@ -102,7 +102,7 @@ class CommandInput(Input):
         Binding("escape", "leave", "Leave the command bar"),
     ]
     HELP = (
-        "Type what Tangy should do, for example: call number. Tab or the right arrow completes "
+        "Type what Tangy should do. Tab or the right arrow completes "
         "it, Enter gives it, and Tangy asks before it does anything. Esc leaves the bar, so that "
         "single letters are keys again."
     )
@@ -239,12 +239,14 @@ class CommandBar(Vertical):
         complete: Complete = lambda prefix: (),
         *,
         placeholder: str = "type a command, or ? for help",
+        resting: str = "",
         id: str | None = "command",
     ) -> None:
         super().__init__(id=id)
         self._complete = complete
         self._matches = Matches()
         self._input = CommandInput(complete, placeholder)
+        self._texts = (placeholder, resting or placeholder)
         self._prompt = Static("> ", classes="prompt", markup=False)
         self._reopen: Timer | None = None
 
@@ -281,6 +283,14 @@ class CommandBar(Vertical):
         if self._input.closed:
             self._input.closed = False
             self._prompt.update("> ")
+
+    def on_descendant_focus(self) -> None:
+        """Say that a command can be typed."""
+        self._input.placeholder = self._texts[0]
+
+    def on_descendant_blur(self) -> None:
+        """Say which letters are keys while the bar does not have them."""
+        self._input.placeholder = self._texts[1]
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Show what fits."""
