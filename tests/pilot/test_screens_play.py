@@ -95,9 +95,8 @@ async def test_skipping_plays_the_game_to_its_end(run: Run, house: House, policy
     async with run(app=playing(house, policy)) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
-        await pilot.app.workers.wait_for_complete(
-            [w for w in pilot.app.workers if w.name == "game"]
-        )
+        while not screen._facilitation.over:
+            await pilot.pause(0.02)
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
         assert screen.query_one(StatusLine).status.stage == "over"
@@ -173,11 +172,11 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     async with run(app=playing(house, poor), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
-        await pilot.app.workers.wait_for_complete(
-            [w for w in pilot.app.workers if w.name == "game"]
-        )
-        await pilot.pause()
+        while not isinstance(pilot.app.screen, MessageDialog):
+            await pilot.pause(0.02)
+        assert "Nobody has shown Tangy" in screen_text(pilot.app)
         assert "Nobody has shown Tangy" in screen.query_one(LogView).sentences[-1]
+        assert screen.query_one(StatusLine).status.alarm
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
@@ -251,3 +250,13 @@ async def test_learning_from_home_shows_the_policy(run: Run, house: House, polic
         while not isinstance(pilot.app.screen, PolicyScreen):
             await pilot.pause(0.02)
         assert "Learnt from 3 demonstrations" in screen_text(pilot.app)
+
+
+async def test_two_letters_at_home_are_one_choice(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("o", "p", "l")
+        while not isinstance(pilot.app.screen, PolicyScreen):
+            await pilot.pause(0.02)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
