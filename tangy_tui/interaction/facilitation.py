@@ -137,9 +137,10 @@ class Facilitation:
         if self.steps >= MOST_STEPS:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
         with self._store.transaction():
-            return self._act(state, decision)
+            events = self._act(state, decision)
+        return [self._learn(e) if isinstance(e, Response) else e for e in events]
 
-    def _act(self, state: ActivityState, decision: Decision) -> list[GameEvent]:
+    def _act(self, state: ActivityState, decision: Decision) -> list[GameEvent | Response]:
         activity = self._activity
         behaviour = activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
@@ -152,7 +153,7 @@ class Facilitation:
         self.steps += 1
         expected = activity.expected.get(state.situation, behaviour.name)
         name = self._names.get(target, target) if target is not None else ""
-        events: list[GameEvent] = [
+        events: list[GameEvent | Response] = [
             Acted(
                 self.steps,
                 state,
@@ -181,12 +182,13 @@ class Facilitation:
             },
         )
         if outcome.response is not None:
-            events.append(self._learn(outcome.response))
+            self._log_response(outcome.response)
+            events.append(outcome.response)
         if self.world.over:
             events.append(self._end(None))
         return events
 
-    def _learn(self, response: Response) -> Learnt:
+    def _log_response(self, response: Response) -> None:
         self._store.append(
             RESPONSE,
             {"game": self._game, "followed": response.followed, "seconds": response.seconds},
@@ -194,6 +196,9 @@ class Facilitation:
             strategy=response.strategy,
             complied=response.complied,
         )
+
+    def _learn(self, response: Response) -> Learnt:
+        """Let the beliefs grow, now that the response is in the log."""
         return Learnt(response, self.persuasion.update(response))
 
     def _end(self, reason: str | None) -> GameEnded:

@@ -12,7 +12,7 @@ from time import monotonic
 from textual import events
 
 SETTLE_SECONDS = 0.2
-"""How long a person needs at the least to see that there is a question (notes/terminal.md)."""
+"""How long a person needs at the least to see that there is a question."""
 
 Clock = Callable[[], float]
 """Gives seconds on the scale on which Textual stamps keys, `time.monotonic`."""

@@ -123,7 +123,7 @@ def test_it_stops_and_says_why_where_nobody_has_shown_what_to_do(
         stopped = {e.stopped for e in events if isinstance(e, GameEnded)} - {None}
         assert stopped == {
             "Nobody has shown Tangy what to do here yet: "
-            f"{' / '.join(situation)}. Demonstrate it once."
+            f"{activity.in_words(situation)}. Demonstrate it once."
         }
 
 

@@ -1,4 +1,4 @@
-"""The stage rules, the first-come queue and the closing of requests, as design.md has them."""
+"""The stage rules, the first-come queue and the closing of requests, as the activity has them."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ FITTED = {
     "mark numbers": 22.3, "encourage": 17.5, "move card closer": 22.3, "navigate to user": 69.2,
     "navigate to front": 37.0, "valediction": 20,
 }  # fmt: skip
-"""Instances per 20 games: notes/paper-in-numbers.md."""
+"""Instances per 20 games of the fitted user model."""
 
 
 def document(done: CompletedProcess[str]) -> Any:
@@ -30,9 +30,7 @@ def document(done: CompletedProcess[str]) -> Any:
 # --------------------------------------------------------------------------------- the story
 
 
-def test_the_story_of_the_issue_taught_learnt_and_played_a_thousand_times(
-    tangy: Tangy, tmp_path: Path
-) -> None:
+def test_the_story_taught_learnt_and_played_a_thousand_times(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "mine")
     assert tangy("teach", "--teacher", "scripted", "--games", 3, *data).returncode == 0
     assert tangy("learn", *data).returncode == 0

@@ -16,7 +16,7 @@ FITTED = {
     "mark numbers": 22.3, "encourage": 17.5, "move card closer": 22.3, "navigate to user": 69.2,
     "navigate to front": 37.0, "valediction": 20,
 }  # fmt: skip
-"""Instances per 20 games: notes/paper-in-numbers.md."""
+"""Instances per 20 games of the fitted user model."""
 
 GAMES = 1000
 

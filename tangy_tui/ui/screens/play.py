@@ -11,6 +11,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 
+from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import (
     Acted,
@@ -137,7 +138,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_one_step(self) -> None:
         """Do one step and pause."""
-        if self._refused():
+        if self._refused() or self._facilitation.over:
             return
         self._single = True
         self._going.set()
@@ -152,7 +153,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_skip(self) -> None:
         """Play the rest of the game at once."""
-        if self._refused():
+        if self._refused() or self._facilitation.over:
             return
         self._skipping = True
         self._going.set()
@@ -200,6 +201,15 @@ class PlayScreen(TangyScreen[Tally]):
     # ---------------------------------------------------------------------------------- game
 
     async def _play(self) -> None:
+        try:
+            await self._play_games()
+        except TangyError as error:  # the log could not be written, so nothing more is done
+            self._halted = True
+            self.query_one(LogView).write(str(error), "bad")
+            self._show_status()
+            await self._say_why(str(error))
+
+    async def _play_games(self) -> None:
         facilitation = self._facilitation
         while self._tally.games < self._games:
             self._tell(facilitation.begin())

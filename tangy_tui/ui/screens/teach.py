@@ -171,7 +171,15 @@ class TeachScreen(TangyScreen[bool]):
         self._log.write("STOP: the simulated robot stands still.", "warn")
 
     def _apply(self, command: TeacherCommand) -> None:
-        self._tell(self._teaching.apply(command))
+        try:
+            events = self._teaching.apply(command)
+        except TangyError as error:  # the log could not be written, and nothing was done
+            self._log.write(str(error), "bad")
+            self.notify(str(error), severity="error", markup=False)
+            self.query_one(CommandBar).ready()
+            self._free.set()
+        else:
+            self._tell(events)
 
     # -------------------------------------------------------------------------------- events
 
