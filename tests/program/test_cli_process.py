@@ -50,7 +50,7 @@ def test_a_session_by_lines_runs_in_any_terminal_and_locale(
     )
     assert (taught.returncode, taught.stderr) == (0, b"")
     assert b"1. start" in taught.stdout
-    assert b"Left after 1 steps" in taught.stdout
+    assert b"Left after 1 step." in taught.stdout
 
 
 def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> N
 def test_without_a_terminal_the_program_says_what_it_can_do(tmp_path: Path) -> None:
     done = tangy(home=tmp_path)
     assert (done.returncode, done.stderr) == (0, b"")
-    assert done.stdout.startswith(b"Usage: ")
+    assert done.stdout.startswith(b"No screens here")
 
 
 def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) -> None:

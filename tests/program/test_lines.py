@@ -87,7 +87,7 @@ def test_undo_where_help_and_quit_are_understood(house: House) -> None:
 
 def test_a_session_that_is_left_is_gone_on_with(house: House) -> None:
     said = told(house, "greet everyone", "y", "next number", "y", "quit")
-    assert said[-1].startswith("Left after 2 steps. They are kept")
+    assert said[-1].startswith("Left after 2 steps. What you confirmed is kept")
     assert told(house)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
     assert told(house, resume=False)[1].startswith("A new demonstration by Ada")
 
@@ -157,7 +157,7 @@ def test_a_stopped_game_says_why(house: House, cover: Cover) -> None:
     said: list[str] = []
     play_by_lines(house.facilitation(policy, 3), 1, house.name, said.append)
     stopped = next(line for line in said if line.startswith("The game stopped after "))
-    assert "Nobody has shown Tangy what to do here yet: end / AR / occluded." in stopped
+    assert "Nobody has shown Tangy what to do here yet: end · somebody asks." in stopped
 
 
 def test_what_was_said_is_in_the_log(house: House) -> None:
