@@ -8,10 +8,10 @@ from random import Random
 
 import pytest
 
-from tangy_profiles.activity import Activity
+from tangy_profiles.activity import Action, Activity
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.state import Situation
+from tangy_profiles.state import Outcome, Situation
 from tangy_profiles.store import Store
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
@@ -203,3 +203,17 @@ def test_people_who_play_without_a_mistake_are_only_celebrated(
     persuasion = Persuasion(ids, tuple(activity.strategies), Random(1))
     events = play(Facilitation(world, policy, persuasion, store, names={}, seed=1), 3)
     assert not any(isinstance(event, Learnt) for event in events)
+
+
+def test_what_the_world_could_not_carry_out_is_no_success(
+    facilitate: Make, policy: Policy, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    execute = SimulatedWorld.execute
+
+    def in_vain(world: SimulatedWorld, action: Action) -> Outcome:
+        return execute(world, action)._replace(completed=False)
+
+    monkeypatch.setattr(SimulatedWorld, "execute", in_vain)
+    done = acts(play(facilitate(11, policy)))
+    assert done
+    assert not any(act.right for act in done)

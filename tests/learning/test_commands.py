@@ -229,10 +229,14 @@ class TestUnderstanding:
             assert command.behaviour == BOOK.phrases[phrase]
 
     def test_a_long_text_takes_no_time(self) -> None:
-        begun = process_time()
-        BOOK.understand("zelebrate " * 100_000)
-        BOOK.suggestions("\ufdfa" * 100_000)
-        assert process_time() - begun < 0.5
+        def seconds(words: int) -> float:
+            begun = process_time()
+            BOOK.understand("zelebrate " * words)
+            BOOK.suggestions("\ufdfa" * words)
+            return process_time() - begun
+
+        capped = min(seconds(1_000) for _ in range(3))  # longer already than is looked at
+        assert min(seconds(100_000) for _ in range(3)) < 20 * capped
 
 
 class TestPeople:
