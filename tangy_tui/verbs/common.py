@@ -1,0 +1,58 @@
+"""What the verbs share: their options, the house they work in, and how they print."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
+Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
+Data = Annotated[Path | None, typer.Option(help="The data folder, instead of your own.")]
+ActivityName = Annotated[str, typer.Option("--activity", help="A shipped activity, or its TOML.")]
+Users = Annotated[int, typer.Option(help="How many people take part, 1 to 8.")]
+Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
+Games = Annotated[int, typer.Option(min=1, help="How many games.")]
+
+
+@contextmanager
+def open_house(
+    data: Path | None, activity: str, users: int, *, write: bool = True
+) -> Iterator[House]:
+    from tangy_tui.house import House, data_folder
+
+    house = House(data_folder(data), activity=activity, users=users, write=write)
+    try:
+        say_notices(house.store.notices)
+        yield house
+    finally:
+        house.close()
+
+
+def full_screen() -> bool:
+    from tangy_tui.ui.terminal import terminal_kind
+
+    return terminal_kind().full_screen
+
+
+def say_notices(notices: list[str]) -> None:
+    for notice in notices:
+        print(f"tangy: {plain(notice)}", file=sys.stderr)
+
+
+def print_line(line: str) -> None:
+    print(line, flush=True)
+
+
+def print_json(document: Any) -> None:
+    print(json.dumps(document, ensure_ascii=False, indent=2))

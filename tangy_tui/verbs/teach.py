@@ -1,0 +1,126 @@
+"""`tangy teach`: demonstrate an activity on a screen, by lines, by script or by voice."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Ascii,
+    Data,
+    Games,
+    Json,
+    Seed,
+    Users,
+    full_screen,
+    open_house,
+    print_json,
+    print_line,
+)
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.ears import Ears
+
+
+def teach(
+    activity: ActivityName = "bingo",
+    script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
+    mic: Annotated[
+        str | None, typer.Option(help="Listen to FILE.wav, - (standard input) or arecord.")
+    ] = None,
+    plain_lines: Annotated[
+        bool, typer.Option("--plain", help="By lines, for any terminal.")
+    ] = False,
+    teacher: Annotated[
+        str | None, typer.Option(help="Whose demonstration it is; 'scripted' for the built-in one.")
+    ] = None,
+    games: Games = 1,
+    speed: Annotated[
+        float | None,
+        typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, x times life."),
+    ] = None,
+    users: Users = 4,
+    new: Annotated[bool, typer.Option("--new", help="Leave an unfinished game as it is.")] = False,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+    ascii_only: Ascii = False,
+) -> None:
+    """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
+    from tangy_tui.house import teacher_name
+
+    who = plain(teacher or teacher_name())[:40]
+    from tangy_tui.inputs import keys_from_terminal
+
+    sound = keys_from_terminal(script) if mic == "-" else 0
+    with open_house(data, activity, users) as house:
+        teaching = house.teaching(who, seed)
+        ears = _ears(mic, teaching, sound, house)
+        if who == "scripted" and (speed is None or not full_screen()):
+            _teach_by_script(teaching, games, as_json)
+        elif not (plain_lines or script or as_json) and full_screen():
+            from tangy_tui.ui.program import run_teaching
+
+            status = run_teaching(
+                house, teaching, ears=ears, resume=not new, games=games, speed=speed,
+                ascii_only=ascii_only,
+            )  # fmt: skip
+            raise typer.Exit(status)
+        else:
+            _teach_by_lines(teaching, script, ears, as_json, resume=not new)
+
+
+def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
+    from tangy_tui.documents import demonstration_document
+    from tangy_tui.learning.demonstrating import Finished, Next
+    from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+
+    scripted = ScriptedTeacher(teaching)
+    teaching.begin()
+    done = []
+    for number in range(games):
+        if number:
+            teaching.apply(Next())
+        for event in scripted.demonstrate():
+            if isinstance(event, Finished):
+                done.append(event.demonstration)
+                shown = {step.state.situation for d in done for step in d.steps}
+                if not as_json:
+                    print(
+                        f"Demonstration {number + 1} (game {event.demonstration.seed}): "
+                        f"{len(event.demonstration.steps)} steps; "
+                        f"{len(shown)} of {len(teaching.activity.situations)} situations "
+                        "shown so far."
+                    )
+    if as_json:
+        print_json({"demonstrations": [demonstration_document(d) for d in done]})
+
+
+def _teach_by_lines(
+    teaching: Teaching, script: Path | None, ears: Ears | None, as_json: bool, *, resume: bool
+) -> None:
+    from tangy_tui.documents import demonstration_document
+    from tangy_tui.inputs import line_reader
+    from tangy_tui.lines import TeachingLines
+
+    write: Callable[[str], None] = (lambda _: None) if as_json else print_line
+    lines = TeachingLines(teaching, line_reader(script), write, ears, scripted=script is not None)
+    asyncio.run(lines.run(resume=resume))
+    if as_json:
+        print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
+
+
+def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears | None:
+    if mic is None:
+        return None
+    from tangy_tui.learning.ears import Ears
+
+    return Ears(mic, teaching.phrasebook, stdin=sound, log=house.store.folder / "speech.log")
