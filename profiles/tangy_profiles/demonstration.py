@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 from tangy_profiles.state import ActivityState
+
+Origin = Literal["shown", "guided", "again", "asked", "merged", "split"]
+"""How a demonstration came about: shown in a game, in a guided game, shown again from a step of
+an earlier one, answered when Tangy asked, or made of others."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One behaviour-state pair, with the state that followed (from which effects are learnt)."""
+    """One behaviour-state pair, with the state that followed (from which effects are learnt).
+
+    `completed` says whether the world could carry the behaviour out. `id` is the step's number in
+    the log, which it keeps in every demonstration that it is copied into (0: not logged).
+    """
 
     behaviour: str
     target: str | None
     state: ActivityState
     after: ActivityState
+    completed: bool = True
+    id: int = field(default=0, compare=False)
 
     def to_json(self) -> dict[str, Any]:
         """Return the step as the log keeps it."""
@@ -25,16 +35,19 @@ class Step:
             "target": self.target,
             "state": self.state.to_json(),
             "after": self.after.to_json(),
+            "completed": self.completed,
         }
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> Step:
+    def from_json(cls, body: Mapping[str, Any], id: int = 0) -> Step:
         """Read a step that `to_json` wrote."""
         return cls(
             str(body["behaviour"]),
             body["target"],
             ActivityState.from_json(body["state"]),
             ActivityState.from_json(body["after"]),
+            bool(body.get("completed", True)),
+            id,
         )
 
 
@@ -42,7 +55,8 @@ class Step:
 class Demonstration:
     """What a teacher showed in one game: who, which activity and world, and the ordered steps.
 
-    `seed` and `people` make the simulated world again, so that a demonstration can be resumed.
+    `seed`, `people` and `guided` make the simulated world again, so that a demonstration can be
+    resumed; `of` names the demonstrations that it was made from.
     """
 
     id: str
@@ -52,6 +66,14 @@ class Demonstration:
     people: tuple[str, ...]
     steps: tuple[Step, ...] = ()
     finished: bool = False
+    origin: Origin = "shown"
+    of: tuple[str, ...] = ()
+    guided: bool = False
+
+    @property
+    def replayable(self) -> bool:
+        """Whether its steps are those of one simulated game from its beginning."""
+        return self.origin in ("shown", "guided", "again")
 
     def with_step(self, step: Step) -> Demonstration:
         """Return the demonstration with one more step."""

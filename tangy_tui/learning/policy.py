@@ -11,7 +11,7 @@ import hashlib
 import json
 import platform
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import product
 from types import MappingProxyType
@@ -21,6 +21,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
+from tangy_tui.learning.conflicts import Resolution, find_conflicts, training_rows
 
 SURE = 0.7
 """The vote share below which a decision is called unsure."""
@@ -53,19 +54,26 @@ FORESTS: Mapping[str, ForestSettings] = MappingProxyType({"exact": EXACT, "paper
 class Decision:
     """What the policy does in a situation: pi(s) = b with the share of the trees that voted for it.
 
-    `votes` lists every behaviour that got votes, most first; `seen` counts the demonstrated steps
-    in exactly this situation.
+    `votes` lists every behaviour that got votes, most first; `seen` counts the steps in exactly
+    this situation that were learnt from. `contested`: demonstrations disagree about it, and no
+    teacher has said who is right; `right` are the answers that a teacher called right.
     """
 
     behaviour: str
     share: float
     votes: tuple[tuple[str, float], ...]
     seen: int
+    contested: bool = False
+    right: tuple[str, ...] = ()
 
     @property
     def sure(self) -> bool:
-        """Whether it may be acted on: it was demonstrated, and most trees agree."""
-        return self.seen > 0 and self.share >= SURE
+        """Whether it may be acted on: demonstrated, not contested, and most trees agree.
+
+        Where a teacher has called answers right, no majority is needed among them.
+        """
+        agreed = self.behaviour in self.right or self.share >= SURE
+        return self.seen > 0 and agreed and not self.contested
 
 
 @dataclass(frozen=True)
@@ -79,6 +87,7 @@ class Policy:
     table: Mapping[Situation, Decision]
     digest: str
     versions: Mapping[str, str]
+    resolutions: tuple[Resolution, ...] = ()
 
     def decide(self, situation: Situation) -> Decision:
         """Look up the decision for a situation.
@@ -109,6 +118,7 @@ class Policy:
             "forest": asdict(self.settings),
             "versions": dict(self.versions),
             "digest": self.digest,
+            "resolved": [resolution.to_json() for resolution in self.resolutions],
             "rows": [
                 [*situation, decision.behaviour, decision.share]
                 for situation, decision in self.table.items()
@@ -125,32 +135,26 @@ def all_situations(activity: Activity) -> Iterator[Situation]:
         yield Situation(stage, "AR" if request == "AR" else "ANR", state)
 
 
-def training_rows(demonstrations: Iterable[Demonstration]) -> list[tuple[Situation, str]]:
-    """Return the training set: the situation and behaviour of every step, in order."""
-    return [
-        (step.state.situation, step.behaviour)
-        for demonstration in demonstrations
-        for step in demonstration.steps
-    ]
-
-
 def learn_policy(
     activity: Activity,
     demonstrations: Sequence[Demonstration],
     *,
+    resolutions: Sequence[Resolution] = (),
     settings: ForestSettings = EXACT,
     name: str = "",
 ) -> Policy:
     """Fit the forest to demonstrations and ask it about every situation.
 
     The same demonstrations in the same order give the same policy, bit for bit, on the same
-    version of scikit-learn.
+    version of scikit-learn. A situation with a conflict that no resolution settles is contested.
 
     Raises:
         NothingToLearnFrom: the demonstrations hold no step.
         NotOfThisActivity: they were made before the activity was changed.
     """
-    rows = training_rows(demonstrations)
+    rows = training_rows(demonstrations, resolutions)
+    contested = {conflict.situation for conflict in find_conflicts(demonstrations, resolutions)}
+    right = {resolution.situation: resolution.right for resolution in resolutions}
     situations = list(all_situations(activity))
     strange = set(rows) - set(product(situations, activity.behaviours))
     if strange:
@@ -184,7 +188,14 @@ def learn_policy(
             ((b, round(share, 9)) for b, share in zip(behaviours, row, strict=True) if share > 0),
             key=lambda vote: (-vote[1], vote[0]),
         )
-        table[situation] = Decision(votes[0][0], votes[0][1], tuple(votes), seen[situation])
+        table[situation] = Decision(
+            votes[0][0],
+            votes[0][1],
+            tuple(votes),
+            seen[situation],
+            situation in contested,
+            right.get(situation, ()),
+        )
     ids = tuple(d.id for d in demonstrations)
     return Policy(
         name=name or f"{activity.name}-{len(ids)}",
@@ -192,7 +203,7 @@ def learn_policy(
         demonstrations=ids,
         settings=settings,
         table=MappingProxyType(table),
-        digest=_digest(settings, rows, table),
+        digest=_digest(settings, rows, table, resolutions),
         versions=MappingProxyType(
             {
                 "python": platform.python_version(),
@@ -200,6 +211,7 @@ def learn_policy(
                 "scikit-learn": str(sklearn.__version__),
             }
         ),
+        resolutions=tuple(resolutions),
     )
 
 
@@ -225,12 +237,15 @@ def _digest(
     settings: ForestSettings,
     rows: list[tuple[Situation, str]],
     table: Mapping[Situation, Decision],
+    resolutions: Sequence[Resolution],
 ) -> str:
     """Return a SHA-256 over what was learnt from and what came of it."""
-    body = [
+    body: list[object] = [
         asdict(settings),
         [[*situation, behaviour] for situation, behaviour in rows],
         [[*situation, [list(vote) for vote in d.votes]] for situation, d in table.items()],
     ]
+    if resolutions:
+        body.append([[*r.situation, *r.right] for r in resolutions])
     canonical = json.dumps(body, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(canonical.encode()).hexdigest()

@@ -1,0 +1,134 @@
+"""Conflicts: situations in which demonstrations, one or several, give different answers.
+
+A forest outvotes a rare answer silently (notes: one of three vanishes, two of four flip with the
+seed), so a conflict is looked for before training, and a teacher says which answer is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.state import Situation
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One demonstrated step and where it stands: step `number` (from 1) of a demonstration."""
+
+    demonstration: str
+    teacher: str
+    number: int
+    step: Step
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """What a teacher said of a conflict: the right answers, and the steps that are wrong by it.
+
+    Only the steps that were looked at are set aside: whoever shows another answer later makes a
+    conflict again. An answer in `right` that nobody demonstrated is learnt all the same.
+    """
+
+    situation: Situation
+    right: tuple[str, ...]
+    wrong: frozenset[int]
+
+    def sets_aside(self, step: Step) -> bool:
+        """Say whether a step is not to be learnt from."""
+        return (
+            step.state.situation == self.situation
+            and step.behaviour not in self.right
+            and step.id in self.wrong
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the resolution as the log keeps it."""
+        return {
+            "situation": list(self.situation),
+            "right": list(self.right),
+            "wrong": sorted(self.wrong),
+        }
+
+    @classmethod
+    def from_json(cls, body: Mapping[str, Any]) -> Resolution:
+        """Read a resolution that `to_json` wrote."""
+        return cls(Situation(*body["situation"]), tuple(body["right"]), frozenset(body["wrong"]))
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """A situation with the different answers to it, most often shown first, and their steps."""
+
+    situation: Situation
+    answers: Mapping[str, tuple[Shown, ...]]
+
+    @property
+    def steps(self) -> tuple[Shown, ...]:
+        """All steps in the situation."""
+        return tuple(shown for steps in self.answers.values() for shown in steps)
+
+    def resolved(self, *right: str) -> Resolution:
+        """Return the resolution by which these answers are right, and the other steps wrong."""
+        wrong = (s.step.id for s in self.steps if s.step.behaviour not in right)
+        return Resolution(self.situation, tuple(dict.fromkeys(right)), frozenset(wrong))
+
+
+def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
+    """Yield every step with where it stands; a step that was copied, only where it is first."""
+    known: set[int] = set()
+    for demonstration in demonstrations:
+        for number, step in enumerate(demonstration.steps, 1):
+            if step.id and step.id in known:
+                continue
+            known.add(step.id)
+            yield Shown(demonstration.id, demonstration.teacher, number, step)
+
+
+def find_conflicts(
+    demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
+) -> list[Conflict]:
+    """Return the conflicts that no resolution settles, in the order in which they came about.
+
+    The latest resolution of a situation counts. Two answers that were both called right are no
+    conflict; a step with another answer, made since, is one.
+    """
+    settled = {r.situation: r for r in resolutions}
+    answers: dict[Situation, dict[str, list[Shown]]] = {}
+    for shown in shown_steps(demonstrations):
+        said = settled.get(shown.step.state.situation)
+        if said is not None and said.sets_aside(shown.step):
+            continue
+        of_situation = answers.setdefault(shown.step.state.situation, {})
+        of_situation.setdefault(shown.step.behaviour, []).append(shown)
+    found = []
+    for situation, given in answers.items():
+        right = settled[situation].right if situation in settled else ()
+        different = set(given) | set(right)
+        if len(different) > 1 and not different <= set(right):
+            ordered = sorted(given.items(), key=lambda item: -len(item[1]))
+            found.append(Conflict(situation, MappingProxyType({b: tuple(s) for b, s in ordered})))
+    return found
+
+
+def training_rows(
+    demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
+) -> list[tuple[Situation, str]]:
+    """Return the training set: situation and behaviour of every step, in order.
+
+    Steps that a resolution calls wrong are left out; an answer that it calls right and that no
+    step shows stands at the end.
+    """
+    settled = {r.situation: r for r in resolutions}
+    rows: list[tuple[Situation, str]] = []
+    for demonstration in demonstrations:
+        for step in demonstration.steps:
+            said = settled.get(step.state.situation)
+            if said is None or not said.sets_aside(step):
+                rows.append((step.state.situation, step.behaviour))
+    shown = set(rows)
+    rows += [(s, b) for s, said in settled.items() for b in said.right if (s, b) not in shown]
+    return rows
