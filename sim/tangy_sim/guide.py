@@ -1,0 +1,399 @@
+"""A guided game: one simulated game in which everything comes about that an activity can show.
+
+Left to chance, a person has to demonstrate about three games before every row of Table II was
+seen. Here the same people play with the same cards, but who errs, who asks for help, whose card
+is out of view and which number comes next follow a plan of what was not shown yet.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import TypeVar
+
+from tangy_profiles.activity import Action, Activity
+from tangy_profiles.cards import CardState
+from tangy_profiles.state import ActivityState, Outcome, Situation
+from tangy_profiles.tracker import Tracker
+from tangy_sim.compliance import Preferences
+from tangy_sim.users import Player, UserModel
+from tangy_sim.world import SimulatedWorld
+
+Some = TypeVar("Some")
+
+SPAN = 18
+"""Calls over which visits are spread in an activity that counts none itself."""
+
+FEWEST, MOST = 2, 6
+"""Calls from the end of one request to the next one."""
+
+
+@dataclass
+class Cue:
+    """What one person is to show: a state of their card, and from which call on they ask.
+
+    `hidden`: their card is out of view when the robot arrives. They err, if they are to, from
+    the call on in which they got the cue.
+    """
+
+    person: str
+    shows: CardState
+    hidden: bool
+    asks_at: int
+    asked: bool = False
+
+
+class Plan:
+    """What was shown of an activity in one game, what lacks, and what is to be shown next.
+
+    It knows the activity alone, neither cards nor people.
+    """
+
+    def __init__(self, activity: Activity, uniform: Callable[[], float]) -> None:
+        self.activity = activity
+        self.shown: dict[Situation, None] = {}
+        rules = activity.stage_rules
+        self._reading = {r.stage for r in rules if r.condition == "beside requester"}
+        self._travel = {r.stage for r in rules if r.condition == "requested or away"}
+        self._ends = [r for r in rules if r.condition == "after"]
+        self._closing = {r.stage for r in self._ends}
+        self._final = {n for r in self._ends for n in activity.behaviours[r.behaviour].needs}
+        rank = {s.name: uniform() + (s.checker == "complete line") for s in activity.card_states}
+        self._kinds = sorted(activity.card_states, key=lambda state: rank[state.name])
+        self.drawing = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        counted = [
+            r.at_least for r in rules if r.condition == "count" and r.behaviour in self.drawing
+        ]
+        self.span = min(counted, default=SPAN)
+
+    def show(self, situation: Situation) -> None:
+        """Note that the teacher acts in a situation."""
+        self.shown[situation] = None
+
+    @property
+    def lacking(self) -> tuple[Situation, ...]:
+        """The situations in which the teacher has not acted yet."""
+        return tuple(s for s in self.activity.situations if s not in self.shown)
+
+    @property
+    def lacks_hidden(self) -> bool:
+        """Whether nobody's card was out of view yet when the robot came."""
+        return any(s.stage in self._reading and self._unread(s) for s in self.lacking)
+
+    def visits(self) -> list[CardState]:
+        """Return the states that cards are still to be seen in, in the order of showing them.
+
+        A state that can end the game is not among them; a full line comes last.
+        """
+        lacking = {s.user_state for s in self.lacking if s.stage in self._reading}
+        ordinary = [s for s in self._kinds if s.name not in self._final]
+        found = [state for state in ordinary if state.name in lacking]
+        if not [s for s in found if s.checker != "complete line"] and self._lacks_visit():
+            found[:0] = ordinary[:1]  # any visit will do
+        return found
+
+    def wanted(self, spent: bool) -> CardState | None:
+        """Return what somebody's card is to show next, or None while only calls are lacking.
+
+        Args:
+            spent: nothing but an end can come about any more (no numbers are left to show it).
+        """
+        visits = self.visits()
+        final = [s for s in self._kinds if s.name in self._final]
+        if final and (spent or not self._lacks_other()):
+            return final[-1]
+        return visits[0] if visits else None
+
+    def ended(self, tracker: Tracker) -> bool:
+        """Say whether what an `after` stage comes after has been done."""
+        return any(tracker.count(rule.behaviour) for rule in self._ends)
+
+    def ends_freely(self, tracker: Tracker) -> bool:
+        """Say whether it has ended in a way in which nobody's request has to be open."""
+        done = [rule for rule in self._ends if tracker.count(rule.behaviour)]
+        return any(not self.activity.leaves_request(rule) for rule in done)
+
+    def gap(self, calls: int, share: float) -> int:
+        """Return how many calls to let pass: visits are spread evenly over what is left.
+
+        Args:
+            calls: how many there were in this game.
+            share: a number from 0 to 1 that makes it shorter or longer by up to a quarter.
+        """
+        even = (self.span - calls) / (len(self.visits()) + 1)
+        return max(FEWEST, min(MOST, round(even * (0.75 + share / 2))))
+
+    def _unread(self, situation: Situation) -> bool:
+        return situation.user_state == self.activity.unread
+
+    def _lacks_visit(self) -> bool:
+        """Whether a visit must be made for another reason than the state of a card."""
+        return self.lacks_hidden or any(s.stage in self._travel for s in self.lacking)
+
+    def _lacks_other(self) -> bool:
+        """Whether anything lacks but the end of the game and what brings it about."""
+        return any(
+            s.stage not in self._closing and s.user_state not in self._final for s in self.lacking
+        )
+
+
+class GuidedWorld(SimulatedWorld):
+    """A simulated world that sees to it that one game shows all that its activity can bring about.
+
+    Where an `after` stage can come with and without a request, one game shows one of the two, and
+    the game of the next seed the other. The same seed and the same actions give the same states
+    on every machine.
+    """
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        users: UserModel | None = None,
+        preferences: Preferences | None = None,
+    ) -> None:
+        self._game = seed
+        self._guide = Random(f"{seed}/guide").random
+        super().__init__(activity, people, seed=seed, users=users, preferences=preferences)
+
+    def begin(self) -> ActivityState:
+        """Deal new cards, plan a game in which everything lacks, and return its first state."""
+        state = super().begin()
+        self.plan = Plan(self.activity, self._guide)
+        self._next_ask = 0.0  # people are looked at after every behaviour
+        self._beats = self._played = 0  # calls, with or without a number; those acted upon
+        self._cue: Cue | None = None
+        self._next = self.plan.gap(0, self._guide())
+        winner = self._prepare_line()
+        self._turns = Counter({winner.id: 1})  # how often each has asked; the others come first
+        self._asks_at_end = self._game % 2 == 1
+        self._game += 1
+        return state
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot carry out an action, and people do what the plan has for them."""
+        if not self.over:
+            self.plan.show(self.tracker.state().situation)
+        return super().execute(action)
+
+    # ------------------------------------------------------------------------ which number comes
+
+    def _prepare_line(self) -> Player:
+        """Put all but one number of somebody's line among the first: a win can come in time."""
+        deck, uniform = self.activity.deck, self._guide
+        player = self._pick(tuple(self._players.values()))
+        numbers = list(player.cells(self._pick(deck.lines) & ~deck.free))
+        if numbers:
+            numbers.remove(self._pick(numbers))
+        order = [n for n in self._order if n not in numbers]
+        for number in numbers:
+            order.insert(int(uniform() * max(self.plan.span - FEWEST, 1)), number)
+        self._order = order
+        return player
+
+    def _draw(self, _: Action) -> tuple[int, ...]:
+        self._beats += 1
+        self._give_cue()
+        if self._calls >= len(self._order):
+            return ()
+        number = self._choose()
+        self._order.remove(number)
+        self._order.insert(self._calls, number)
+        self._calls += 1
+        for player, cell in self._holders[number]:
+            overlooked = self._overlooks(player, cell)
+            player.called |= 1 << cell
+            if not player.marked >> cell & 1 and not overlooked:
+                player.did = (self.tracker.step, "marks", number)
+                player.mark(cell)
+        return (number,)
+
+    def _choose(self) -> int:
+        """Choose the number that the plan needs, or else the next one that endangers nothing."""
+        left, wished = self._order[self._calls :], self._wished()
+        asking = [*self.tracker.queue, *([self._cue.person] if self._cue else [])]
+
+        def cost(number: int) -> tuple[int, int, int]:
+            """Count the cards with a line now called: of who asks, of all; and marks made right."""
+            threatened = spoilt = theirs = 0
+            for player, cell in self._holders[number]:
+                if not self._has_line(player) and self._completes(player.called, cell):
+                    threatened += 1
+                    theirs += player.id in asking
+                spoilt += player.marked >> cell & 1
+            return theirs, threatened, spoilt
+
+        return min([n for n in left if n in wished] or left, key=cost)
+
+    def _wished(self) -> tuple[int, ...]:
+        """Return the numbers, some not called yet, one of which the cue needs to be called now."""
+        cue = self._cue
+        if cue is None or cue.asked:
+            return ()
+        player = self._players[cue.person]
+        open_cells = ~(player.called | player.marked)
+        if cue.shows.checker == "complete line" and self._beats >= cue.asks_at:
+            return player.cells(self._nearest_line(player) & ~player.called)
+        if cue.shows.checker == "missing marks" and not self._shows(cue):
+            cells = [c for c in player.cell.values() if not self._completes(player.called, c)]
+            return player.cells(sum(1 << c for c in cells) & open_cells)
+        return ()
+
+    def _overlooks(self, player: Player, cell: int) -> bool:
+        """Say whether a person misses the number that is called: by the plan, or not to win yet."""
+        cue = self._cue
+        if cue is not None and cue.person == player.id and not cue.asked:
+            if cue.shows.checker == "missing marks" and not self._shows(cue):
+                return True
+            if cue.shows.checker == "complete line" and self._beats >= cue.asks_at:
+                return False
+        return self._completes(player.marked, cell)
+
+    # ------------------------------------------------------------------------- who does what when
+
+    def _give_cue(self) -> None:
+        """Tell somebody what to show next, as soon as it is time and nobody asks."""
+        cue, tracker = self._cue, self.tracker
+        if cue is not None:
+            if cue.asked and cue.person not in tracker.queue:
+                self._cue = None
+                self._next = self._beats - 1 + self.plan.gap(self._beats - 1, self._guide())
+            elif not cue.asked and self._hopeless(cue):
+                self._cue = None  # somebody else has to
+        if self._cue or tracker.queue or self._beats < self._next - 1:
+            return
+        if not tracker.begun() or self.plan.ended(tracker):
+            return
+        shows = self.plan.wanted(self._spent())
+        if shows is not None:
+            wait = int(3 * self._guide()) if shows.checker == "complete line" else 1
+            hidden = self.plan.lacks_hidden and (
+                len(self.plan.visits()) < 2 or self._guide() < self.users.occluded
+            )
+            person = self._choose_person(shows)
+            self._cue = Cue(person.id, shows, hidden, max(self._next, self._beats + wait))
+
+    def _let_people_ask(self) -> None:
+        """After every behaviour: let those act, and then ask, whose cue it is."""
+        if not self.plan.drawing and not self.over:
+            self._beats += 1
+            self._give_cue()
+        if self.plan.ended(self.tracker):
+            self._ask_at_the_end()
+        elif self._beats > self._played and self._cue is not None and not self._cue.asked:
+            self._act(self._cue)
+        self._played = self._beats
+
+    def _act(self, cue: Cue) -> None:
+        player = self._players[cue.person]
+        if not self._shows(cue):
+            self._bring_about(cue, player)
+        ready = self._shows(cue) or self._spent() or not self.plan.drawing
+        if ready and self._beats >= cue.asks_at:
+            cue.asked = True
+            self._turns[player.id] += 1
+            self.tracker.ask(player.id)
+
+    def _bring_about(self, cue: Cue, player: Player) -> None:
+        """Let a person do to their own card what makes it show what it should, if they can."""
+        match cue.shows.checker:
+            case "complete line":
+                if self._has_line(player):
+                    self._mark_as(player, player.called)
+            case "missing marks":
+                self._mark_as(player, player.marked & player.called)
+                if not self._shows(cue) and self._beats >= cue.asks_at:
+                    self._take_off(player)  # no number of theirs was left to be overlooked
+            case "wrong marks":
+                if not self._has_line(player):
+                    self._mark_as(player, player.called)
+                self._slip(player)
+            case _:
+                self._mark_as(player, player.called)
+
+    def _mark_as(self, player: Player, cells: int) -> None:
+        """Let a person notice by themselves what is wrong, and mend it."""
+        if player.marked != cells:
+            verb = "clears marks" if player.marked & ~cells else "marks"
+            player.marked = cells
+            player.did = (self.tracker.step - 1, verb, 0)
+
+    def _take_off(self, player: Player) -> None:
+        """Let a person lose a marker from a number that was called."""
+        marked = player.marked & player.called & ~self.activity.deck.free
+        cells = [c for c in player.cell.values() if marked >> c & 1]
+        if cells:
+            self._mark_as(player, player.marked & ~(1 << self._pick(cells)))
+
+    def _slip(self, player: Player) -> None:
+        """Let a person mark a number that was not called, best one that fills no line."""
+        taken = player.marked | player.called
+        cells = [c for c in player.cell.values() if not taken >> c & 1]
+        harmless = [c for c in cells if not self._completes(taken, c)]
+        if cells:
+            cell = self._pick(harmless or cells)
+            player.mark(cell)
+            player.did = (self.tracker.step - 1, "marks", player.numbers[cell])
+
+    def _ask_at_the_end(self) -> None:
+        """Let somebody ask in an ending that comes both ways, if this game is to show that."""
+        if self._asks_at_end and not self.tracker.queue and self.plan.ends_freely(self.tracker):
+            self._asks_at_end = False
+            self.tracker.ask(self._choose_person(None).id)
+
+    def _go_to_user(self, action: Action) -> tuple[int, ...]:
+        tracker = self.tracker
+        target = action.target or (tracker.queue[0] if tracker.queue else None)
+        if target in self._players:
+            tracker.arrive(target)
+            self._in_view = False
+            hidden = self._cue is not None and self._cue.hidden and self.plan.lacks_hidden
+            if not hidden and target in tracker.queue:
+                self._read_card()
+        return ()
+
+    # ---------------------------------------------------------------------------- what cards tell
+
+    def _choose_person(self, shows: CardState | None) -> Player:
+        """Choose who has the next turn: who is nearest to a line, or has asked least so far."""
+        players, turns = list(self._players.values()), self._turns
+        if shows is not None and shows.checker == "complete line":
+            return min(players, key=lambda p: (self._left_of_line(p), turns[p.id]))
+        able = [p for p in players if not self._has_line(p)] or players
+        fewest = min(turns[p.id] for p in able)
+        return self._pick([p for p in able if turns[p.id] == fewest])
+
+    def _shows(self, cue: Cue) -> bool:
+        return self._players[cue.person].judged(self.activity.card_states) == cue.shows.name
+
+    def _hopeless(self, cue: Cue) -> bool:
+        """Say whether a person can win only, though they were to show something else."""
+        player = self._players[cue.person]
+        return cue.shows.checker != "complete line" and self._has_line(player) and not self._spent()
+
+    def _nearest_line(self, player: Player) -> int:
+        lines = self.activity.deck.lines
+        return min(lines, key=lambda line: (line & ~player.called).bit_count())
+
+    def _left_of_line(self, player: Player) -> int:
+        return (self._nearest_line(player) & ~player.called).bit_count()
+
+    def _completes(self, mask: int, cell: int) -> bool:
+        """Say whether a cell added to a mask completes a line."""
+        mask |= 1 << cell
+        return any(mask & line == line for line in self.activity.deck.lines_through[cell])
+
+    def _has_line(self, player: Player) -> bool:
+        """Say whether a whole line was called: once all is marked, the card can only win."""
+        return self.activity.deck.wins(player.called)
+
+    def _spent(self) -> bool:
+        """Say whether nothing can be shown any more but wins."""
+        return self._calls >= len(self._order) or all(map(self._has_line, self._players.values()))
+
+    def _pick(self, choices: Sequence[Some]) -> Some:
+        return choices[int(self._guide() * len(choices))]
