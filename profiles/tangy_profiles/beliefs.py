@@ -11,12 +11,25 @@ GRID = 400
 """Points of the midpoint rule on [0, 1] that P(best) is integrated with."""
 
 
+SETTLED = 0.9
+"""From this P(best) on a person's best strategy is as good as known."""
+
+SURE = 0.9
+"""How probable it is that the truth lies in the interval that is shown."""
+
+
 @dataclass(frozen=True, slots=True)
 class Beta:
-    """A Beta(alpha, beta) belief about the probability that a person complies with a strategy."""
+    """A Beta(alpha, beta) belief about the probability that a person complies with a strategy.
+
+    `counts` are the responses it rests on, (complied, did not), where alpha and beta hold more
+    or less than these: what earlier people lent it, or what was forgotten since. None where they
+    are alpha - 1 and beta - 1, as in the paper.
+    """
 
     alpha: float = 1.0
     beta: float = 1.0
+    counts: tuple[int, int] | None = None
 
     @property
     def mean(self) -> float:
@@ -24,13 +37,32 @@ class Beta:
         return self.alpha / (self.alpha + self.beta)
 
     @property
+    def complied(self) -> int:
+        """How many of the responses that it rests on were compliance."""
+        return round(self.alpha - 1) if self.counts is None else self.counts[0]
+
+    @property
     def trials(self) -> int:
-        """How many responses it rests on, the uniform start not counted."""
-        return round(self.alpha + self.beta - 2)
+        """How many responses it rests on; neither the start nor earlier people count."""
+        return round(self.alpha + self.beta - 2) if self.counts is None else sum(self.counts)
 
     def updated(self, complied: bool) -> Beta:
         """Return the belief after one more response (Eq. 2)."""
-        return Beta(self.alpha + 1, self.beta) if complied else Beta(self.alpha, self.beta + 1)
+        a, b = (1, 0) if complied else (0, 1)
+        if self.counts is None:
+            return Beta(self.alpha + a, self.beta + b)
+        yes, no = self.counts
+        return Beta(self.alpha + a, self.beta + b, (yes + a, no + b))
+
+    def quantile(self, share: float) -> float:
+        """Return the probability below which the truth lies with the probability `share`."""
+        from scipy.special import betaincinv  # type: ignore[import-untyped]
+
+        return float(betaincinv(self.alpha, self.beta, share))
+
+    def interval(self, sure: float = SURE) -> tuple[float, float]:
+        """Return the equal-tailed credible interval: as much may lie below it as above it."""
+        return self.quantile((1 - sure) / 2), self.quantile((1 + sure) / 2)
 
     def sample(self, rng: Random) -> float:
         """Draw one probability from the belief."""
@@ -80,3 +112,9 @@ def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
     }
     whole = sum(raw.values())
     return {strategy: value / whole for strategy, value in raw.items()}
+
+
+def settled(best: Mapping[str, float]) -> str | None:
+    """Return the strategy that is settled on, its P(best) being .9 or more; None: not yet."""
+    leading = max(best, key=best.__getitem__, default=None)
+    return leading if leading is not None and best[leading] >= SETTLED else None

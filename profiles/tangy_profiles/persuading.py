@@ -1,0 +1,100 @@
+"""How a strategy is to be chosen and learnt about, in the words that people choose it with."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import Table, nearest, plain
+
+METHODS = ("thompson", "bayes-ucb")
+PRIORS = ("uniform", "people")
+PERIODS = ("interaction", "day")
+LEAST_KEPT = 0.5
+"""What keeps less than half of itself each time learns nothing."""
+
+
+@dataclass(frozen=True)
+class Persuading:
+    """A choice of method; the default is the paper's, exactly.
+
+    `method` chooses among the beliefs, `prior` is where they begin ("people": from what worked
+    with earlier people), and `forgetting` is the share of what was learnt that is kept from one
+    interaction, or from one day, to the next (1: everything).
+    """
+
+    method: str = "thompson"
+    prior: str = "uniform"
+    forgetting: float = 1.0
+    per: str = "interaction"
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the choice as the log keeps it."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, body: Mapping[str, Any]) -> Persuading:
+        """Read a choice that `to_json` wrote; what is not there is as in the paper."""
+        return cls(
+            str(body.get("method", cls.method)),
+            str(body.get("prior", cls.prior)),
+            float(body.get("forgetting", cls.forgetting)),
+            str(body.get("per", cls.per)),
+        )
+
+
+PAPER = Persuading()
+
+
+def read_persuading(table: Table) -> Persuading:
+    """Read an activity's [persuasion]; what is left out is as in the paper.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    chosen = Persuading(
+        table.choice("method", METHODS, PAPER.method),
+        table.choice("prior", PRIORS, PAPER.prior),
+        table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
+        table.choice("per", PERIODS, PAPER.per),
+    )
+    table.close()
+    return chosen
+
+
+def spoken_persuading(words: Iterable[str]) -> Persuading:
+    """Read a choice from words in any order: "bayes-ucb people 0.98 day".
+
+    Raises:
+        ProfileError: a word is none of these, or says again what another has said.
+    """
+    chosen, said = PAPER, set[str]()
+    for word in words:
+        key, value = _meant(word)
+        if key in said:
+            raise ProfileError(plain(f"{word!r} says again what another word has said."))
+        said.add(key)
+        chosen = replace(chosen, **{key: value})
+    if "per" in said and "forgetting" not in said:
+        raise ProfileError(f"{chosen.per!r} needs the share that is kept, for example 0.98.")
+    return chosen
+
+
+def _meant(word: str) -> tuple[str, Any]:
+    """Return the key that a word is for, and its value."""
+    for key, known in (("method", METHODS), ("prior", PRIORS), ("per", PERIODS)):
+        if word.casefold() in known:
+            return key, word.casefold()
+    try:
+        share = float(word)
+    except ValueError:
+        known_words = (*METHODS, *PRIORS, *PERIODS)
+        raise ProfileError(
+            plain(f"There is no method {word!r}: {nearest(word, known_words)}")
+        ) from None
+    if not LEAST_KEPT <= share <= 1 or math.isnan(share):
+        raise ProfileError(f"What is kept must be a share from {LEAST_KEPT:g} to 1, not {share:g}.")
+    return "forgetting", share

@@ -1,0 +1,246 @@
+"""Ways to choose a strategy and to learn from the response, each a small class.
+
+`Thompson` is the paper's (III-B-2). `BayesUcb` chooses otherwise; `EarlierPeople` begins
+otherwise; `Forgetting` remembers otherwise. The last two go around any other method, so they
+combine: `Forgetting(EarlierPeople(BayesUcb(), ...), 0.98)`. Beliefs are never changed in place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from random import Random
+from typing import Protocol
+
+from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
+from tangy_profiles.persuading import Persuading
+
+Counts = Mapping[str, tuple[int, int]]
+"""One person's responses: strategy -> how often they complied, and did not."""
+
+MOST_LENT = 4
+"""What earlier people are worth at most, in responses a strategy. A wrong prior of this strength
+costs 7 choices of 23; one that is not capped never lets go."""
+
+STEPS_LENT = 4
+"""The prior is fitted in quarters of a response."""
+
+
+class Method(Protocol):
+    """How a strategy is chosen for a person, and how the beliefs about the person grow."""
+
+    @property
+    def words(self) -> str:
+        """What it is called in front of people."""
+        ...
+
+    @property
+    def forgets(self) -> bool:
+        """Whether the order and the age of responses matter, not only their counts."""
+        ...
+
+    def prior(self, strategies: Iterable[str]) -> Beliefs:
+        """Return what is believed of a person before their first response."""
+        ...
+
+    def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
+        """Return the beliefs after so many days in which nothing was learnt."""
+        ...
+
+    def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
+        """Return the beliefs after one more response to a strategy."""
+        ...
+
+    def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
+        """Return a score for each strategy; the highest is used."""
+        ...
+
+
+class Plain:
+    """Beginning and learning as the paper has them: Beta(1, 1), and Eq. 2 for each response."""
+
+    forgets = False
+
+    def prior(self, strategies: Iterable[str]) -> Beliefs:
+        """Return Beta(1, 1) for every strategy (Eq. 1)."""
+        return uniform_beliefs(strategies)
+
+    def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
+        """Return the beliefs as they are: nothing is forgotten."""
+        return beliefs
+
+    def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
+        """Add one to alpha or to beta of the strategy (Eq. 2)."""
+        return {**beliefs, strategy: beliefs[strategy].updated(complied)}
+
+
+class Thompson(Plain):
+    """Draw from every belief and use the strategy with the highest draw, as the paper does."""
+
+    words = "Thompson sampling"
+
+    def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
+        """Return one draw for each strategy."""
+        draw = rng.betavariate
+        return {strategy: draw(b.alpha, b.beta) for strategy, b in beliefs.items()}
+
+
+class BayesUcb(Plain):
+    """Use the strategy that may well be the best: the highest upper quantile of its belief.
+
+    The quantile is 1 - 1/(t + 1) before the t-th response (Kaufmann, Cappe, Garivier 2012, with
+    c = 0). Nothing is drawn; equal scores are for the caller to break.
+    """
+
+    words = "Bayes-UCB"
+
+    def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
+        """Return the upper quantile of each belief."""
+        share = 1 - 1 / (2 + sum(belief.trials for belief in beliefs.values()))
+        return {strategy: belief.quantile(share) for strategy, belief in beliefs.items()}
+
+
+@dataclass(frozen=True)
+class EarlierPeople:
+    """Begin from what worked with earlier people (empirical Bayes), then as `inner` does.
+
+    `people` are the counts of everybody but the person. With nobody to learn from it begins as
+    `inner` does.
+    """
+
+    inner: Method
+    people: Sequence[Counts]
+    fitted: dict[str, Beta] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def words(self) -> str:
+        """Its name, with whom it begins from."""
+        return f"{self.inner.words}, beginning from earlier people"
+
+    @property
+    def forgets(self) -> bool:
+        """Whether the inner one does."""
+        return self.inner.forgets
+
+    def prior(self, strategies: Iterable[str]) -> Beliefs:
+        """Return a Beta fitted to earlier people's counts for each strategy they were met with."""
+        prior = self.inner.prior(strategies)
+        for strategy in prior:
+            if strategy not in self.fitted:
+                counts = (p[strategy] for p in self.people if strategy in p)
+                self.fitted[strategy] = lent([c for c in counts if sum(c)])
+            if self.fitted[strategy].counts is not None:
+                prior[strategy] = self.fitted[strategy]
+        return prior
+
+    def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
+        """Do as the inner one does."""
+        return self.inner.faded(beliefs, prior, days)
+
+    def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
+        """Do as the inner one does."""
+        return self.inner.updated(beliefs, prior, strategy, complied)
+
+    def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
+        """Do as the inner one does."""
+        return self.inner.scores(beliefs, rng)
+
+
+@dataclass(frozen=True)
+class Forgetting:
+    """Let what was learnt fade towards the prior: people change. For the rest as `inner` does.
+
+    Args:
+        keep: the share in (0, 1] of what was learnt that is left after one interaction with the
+            person (whichever strategy was used), or after one day.
+    """
+
+    inner: Method
+    keep: float
+    daily: bool = False
+    forgets = True
+
+    @property
+    def words(self) -> str:
+        """Its name, with how fast it forgets."""
+        every = "day" if self.daily else "interaction"
+        return f"{self.inner.words}, forgetting {1 - self.keep:.3g} of it with each {every}"
+
+    def prior(self, strategies: Iterable[str]) -> Beliefs:
+        """Do as the inner one does."""
+        return self.inner.prior(strategies)
+
+    def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
+        """Let days pass."""
+        beliefs = self.inner.faded(beliefs, prior, days)
+        return _towards(prior, beliefs, self.keep**days) if self.daily and days > 0 else beliefs
+
+    def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
+        """Let the others fade a little, and this strategy too, before its response is added."""
+        if not self.daily:
+            beliefs = _towards(prior, beliefs, self.keep)
+        return self.inner.updated(beliefs, prior, strategy, complied)
+
+    def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
+        """Do as the inner one does."""
+        return self.inner.scores(beliefs, rng)
+
+
+def method_of(chosen: Persuading, earlier: Sequence[Counts] = ()) -> Method:
+    """Make the method that was chosen in words; `earlier` are the counts of everybody else."""
+    method: Method = Thompson() if chosen.method == "thompson" else BayesUcb()
+    if chosen.prior == "people":
+        method = EarlierPeople(method, earlier)
+    if chosen.forgetting < 1:
+        method = Forgetting(method, chosen.forgetting, chosen.per == "day")
+    return method
+
+
+def others(counts: Mapping[tuple[str, str], tuple[int, int]], person: str) -> list[Counts]:
+    """Take the counts of everybody but one person out of `Store.responses()`, person by person."""
+    grouped: dict[str, dict[str, tuple[int, int]]] = {}
+    for (somebody, strategy), pair in counts.items():
+        if somebody != person:
+            grouped.setdefault(somebody, {})[strategy] = pair
+    return list(grouped.values())
+
+
+def lent(counts: Sequence[tuple[int, int]]) -> Beta:
+    """Fit the prior of one strategy to earlier people's counts (complied, did not).
+
+    It is Beta(1 + u, 1 + v), the uniform start and u + v responses on loan, with the u and v under
+    which the counts are most probable (beta-binomial likelihood, which does not mind that people
+    were asked more often with what worked). u + v is at most four, and at most the number of
+    people there are: one person says little about the next.
+    """
+    most = min(MOST_LENT, len(counts)) * STEPS_LENT
+    if not most:
+        return Beta()
+    grid = [n / STEPS_LENT for n in range(most + 1)]
+    yes = _rising([y for y, _ in counts], [1 + u for u in grid])
+    no = _rising([n for _, n in counts], [1 + v for v in grid])
+    both = _rising([y + n for y, n in counts], [2 + w for w in grid])
+    u, v = max(
+        ((u, v) for u in range(most + 1) for v in range(most + 1 - u)),
+        key=lambda pair: yes[pair[0]] + no[pair[1]] - both[pair[0] + pair[1]],
+    )
+    return Beta(1 + grid[u], 1 + grid[v], (0, 0))
+
+
+def _rising(times: Sequence[int], starts: Sequence[float]) -> list[float]:
+    """Return, for each start a, the log of the product over n in `times` of a (a+1) ... (a+n-1)."""
+    return [sum(math.lgamma(a + n) for n in times) - len(times) * math.lgamma(a) for a in starts]
+
+
+def _towards(prior: Beliefs, beliefs: Beliefs, keep: float) -> Beliefs:
+    """Keep a share of what lies between the prior and the beliefs; the counts stay."""
+    return {
+        strategy: Beta(
+            start.alpha + keep * (belief.alpha - start.alpha),
+            start.beta + keep * (belief.beta - start.beta),
+            (belief.complied, belief.trials - belief.complied),
+        )
+        for strategy, belief in beliefs.items()
+        for start in (prior[strategy],)
+    }
