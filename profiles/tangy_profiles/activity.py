@@ -18,6 +18,7 @@ from types import MappingProxyType
 
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.persuading import PAPER, Persuading, read_persuading
 from tangy_profiles.reading import Table, nearest, read_toml
 from tangy_profiles.state import Situation
 
@@ -117,6 +118,7 @@ class Activity:
     behaviours: Mapping[str, Behaviour]
     expected: Mapping[Situation, str]
     source: str
+    persuasion: Persuading = PAPER
 
     @cached_property
     def unread(self) -> str:
@@ -260,6 +262,7 @@ def read_activity(path: Path) -> Activity:
         behaviours=MappingProxyType(behaviours),
         expected=MappingProxyType(_expected(top, rules, state_names, behaviours)),
         source=path.name,
+        persuasion=read_persuading(top.table("persuasion", optional=True)),
     )
     top.close()
     for situation in activity.expected:

@@ -56,7 +56,7 @@ class Beta:
 
     def quantile(self, share: float) -> float:
         """Return the probability below which the truth lies with the probability `share`."""
-        from scipy.special import betaincinv  # type: ignore[import-untyped]
+        from scipy.special import betaincinv
 
         return float(betaincinv(self.alpha, self.beta, share))
 

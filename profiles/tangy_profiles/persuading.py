@@ -29,7 +29,7 @@ class Persuading:
     method: str = "thompson"
     prior: str = "uniform"
     forgetting: float = 1.0
-    per: str = "interaction"
+    forgetting_per: str = "interaction"
 
     def to_json(self) -> dict[str, Any]:
         """Return the choice as the log keeps it."""
@@ -42,7 +42,7 @@ class Persuading:
             str(body.get("method", cls.method)),
             str(body.get("prior", cls.prior)),
             float(body.get("forgetting", cls.forgetting)),
-            str(body.get("per", cls.per)),
+            str(body.get("forgetting_per", cls.forgetting_per)),
         )
 
 
@@ -59,7 +59,7 @@ def read_persuading(table: Table) -> Persuading:
         table.choice("method", METHODS, PAPER.method),
         table.choice("prior", PRIORS, PAPER.prior),
         table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
-        table.choice("per", PERIODS, PAPER.per),
+        table.choice("forgetting_per", PERIODS, PAPER.forgetting_per),
     )
     table.close()
     return chosen
@@ -78,14 +78,16 @@ def spoken_persuading(words: Iterable[str]) -> Persuading:
             raise ProfileError(plain(f"{word!r} says again what another word has said."))
         said.add(key)
         chosen = replace(chosen, **{key: value})
-    if "per" in said and "forgetting" not in said:
-        raise ProfileError(f"{chosen.per!r} needs the share that is kept, for example 0.98.")
+    if "forgetting_per" in said and "forgetting" not in said:
+        raise ProfileError(
+            f"{chosen.forgetting_per!r} needs the share that is kept, for example 0.98."
+        )
     return chosen
 
 
 def _meant(word: str) -> tuple[str, Any]:
     """Return the key that a word is for, and its value."""
-    for key, known in (("method", METHODS), ("prior", PRIORS), ("per", PERIODS)):
+    for key, known in (("method", METHODS), ("prior", PRIORS), ("forgetting_per", PERIODS)):
         if word.casefold() in known:
             return key, word.casefold()
     try:

@@ -28,8 +28,25 @@ WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up 
 _READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event"
 _ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
     VALUES (?, ?, ?, ?, ?, ?, ?, ?)"""
-_RESPONSES = """SELECT person, strategy, sum(complied), count(*) - sum(complied) FROM event
-    WHERE complied IS NOT NULL GROUP BY person, strategy"""
+VOID, TAKEN_BACK = "void", "taken back"
+"""The kinds of event whose body names another event `of` (by uuid) that no longer holds, and whose
+person and strategy are that one's. A void that was taken back does not hold itself."""
+
+# The responses that do not hold are few: they are looked up and subtracted, so that the index
+# alone still counts what may be half a million. One query with the counts, as below.
+_RESPONSES = """WITH
+    back AS (SELECT json_extract(body, '$.of') AS uuid, person, strategy FROM event
+        WHERE kind = 'taken back' AND json_extract(body, '$.of') IS NOT NULL),
+    gone AS (SELECT * FROM back UNION ALL
+        SELECT json_extract(body, '$.of'), person, strategy FROM event
+        WHERE kind = 'void' AND uuid NOT IN (SELECT uuid FROM back))
+    SELECT person, strategy, sum(yes), sum(no) FROM (
+    SELECT person, strategy, sum(complied) AS yes, count(*) - sum(complied) AS no FROM event
+        WHERE complied IS NOT NULL GROUP BY person, strategy
+    UNION ALL SELECT person, strategy, -complied, complied - 1 FROM event
+        WHERE complied IS NOT NULL AND uuid IN (SELECT uuid FROM gone)
+        AND (person, strategy) IN (SELECT person, strategy FROM gone)
+    ) GROUP BY person, strategy HAVING sum(yes) + sum(no) > 0"""
 # One query, so that what a writer appends meanwhile is in all of the counts or in none.
 _COUNTS = """SELECT count(*), coalesce(max(seq), 0), count(DISTINCT uuid), count(complied),
     (SELECT count(*) FROM event INDEXED BY event_response WHERE complied IS NOT NULL),
@@ -167,12 +184,21 @@ class Store:
         return self._event(rows[0]) if rows else None
 
     def responses(self) -> dict[tuple[str, str], tuple[int, int]]:
-        """Count the responses by (person, strategy): (complied, did not).
+        """Count the responses that hold by (person, strategy): (complied, did not).
 
         One more than each is the posterior's alpha and beta (Eq. 2).
         """
         rows = self._rows(_RESPONSES)
         return {(person, strategy): (yes, no) for person, strategy, yes, no in rows}
+
+    def answers(self, person: str) -> Iterator[Event]:
+        """Yield every response of one person, also those that do not hold, by seq."""
+        sql = f"{_READ} WHERE complied IS NOT NULL AND person = ? ORDER BY seq"
+        return map(self._event, self._rows(sql, person))
+
+    def now(self) -> datetime:
+        """Return the time by the clock that events are stamped with."""
+        return self._now().astimezone(UTC)
 
     def names(self) -> dict[str, str]:
         """Return the name of every person who has one, by id."""

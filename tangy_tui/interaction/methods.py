@@ -193,7 +193,7 @@ def method_of(chosen: Persuading, earlier: Sequence[Counts] = ()) -> Method:
     if chosen.prior == "people":
         method = EarlierPeople(method, earlier)
     if chosen.forgetting < 1:
-        method = Forgetting(method, chosen.forgetting, chosen.per == "day")
+        method = Forgetting(method, chosen.forgetting, chosen.forgetting_per == "day")
     return method
 
 
