@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ from tangy_profiles.store import Store
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 if TYPE_CHECKING:
+    from tangy_profiles.demonstration import Demonstration
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.learning.demonstrating import Teaching
@@ -108,27 +108,36 @@ class House:
         """The names of those who take part, by id."""
         return {person.id: person.name for person in self.people}
 
-    def teaching(self, teacher: str, seed: int | None) -> Teaching:
+    def teaching(self, teacher: str, seed: int | None, *, guided: bool = False) -> Teaching:
         """Make a teaching session; `begin` it to take up what was unfinished.
 
         Without a seed the games count on from the demonstrations there are, so that no two are
-        alike and each can be had again.
+        alike and each can be had again. A guided game brings about every situation.
         """
         from tangy_tui.learning import library
         from tangy_tui.learning.demonstrating import Teaching
 
         if seed is None:
-            seed = 1 + len(library.read_demonstrations(self.store, self.activity.name))
+            entries = library.read_library(self.store, self.activity.name).entries.values()
+            seed = 1 + max((entry.demonstration.seed for entry in entries), default=0)
         return Teaching(
-            self.activity, self.people, self.store, self.teaching_world, teacher=teacher, seed=seed
+            self.activity,
+            self.people,
+            self.store,
+            self.teaching_world,
+            teacher=teacher,
+            seed=seed,
+            guided=guided,
         )
 
-    def teaching_world(self, seed: int, people: Sequence[str]) -> World:
+    def teaching_world(self, shown: Demonstration) -> World:
         """Make the simulated world of a demonstration, in which people ask more often."""
+        from tangy_sim.guide import GuidedWorld
         from tangy_sim.users import load_users
         from tangy_sim.world import SimulatedWorld
 
-        return SimulatedWorld(self.activity, people, seed=seed, users=load_users().teaching())
+        kind = GuidedWorld if shown.guided else SimulatedWorld
+        return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
 
     def facilitation(self, policy: Policy, seed: int | None) -> Facilitation:
         """Make a run of simulated games with a policy and with what is believed of the people."""
@@ -136,7 +145,8 @@ class House:
         from tangy_tui.interaction import facilitation
 
         if seed is None:
-            seed = 1 + sum(1 for _ in self.store.events(facilitation.BEGUN))
+            games = self.store.events(facilitation.BEGUN)
+            seed = 1 + max((int(game.body["seed"]) for game in games), default=0)
         ids = [person.id for person in self.people]
         return facilitation.Facilitation(
             SimulatedWorld(self.activity, ids, seed=seed),

@@ -22,16 +22,10 @@ from tangy_tui.interaction.facilitation import (
     Learnt,
 )
 from tangy_tui.learning.demonstrating import (
-    Asked,
     Begun,
     Executed,
     Finished,
     Next,
-    NotUnderstood,
-    Refused,
-    Rejected,
-    Reply,
-    Say,
     StepUndone,
     TeacherCommand,
     Teaching,
@@ -39,6 +33,7 @@ from tangy_tui.learning.demonstrating import (
     Undo,
 )
 from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.wording import Name, counted, state_words, step_words
 
 Read = Callable[[], str | None]

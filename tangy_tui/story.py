@@ -9,7 +9,8 @@ from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.demonstrating import Begun, Executed, Next
 from tangy_tui.learning.effects import learn_effects
-from tangy_tui.learning.library import keep_policy, read_demonstrations
+from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.lines import belief_lines, game_lines

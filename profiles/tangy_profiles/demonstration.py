@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 from tangy_profiles.state import ActivityState
 
-Origin = Literal["shown", "guided", "again", "asked", "merged", "split"]
-"""How a demonstration came about: shown in a game, in a guided game, shown again from a step of
-an earlier one, answered when Tangy asked, or made of others."""
+Origin = Literal["shown", "again", "asked", "merged", "split"]
+"""How a demonstration came about: shown in a game, shown again from a step of an earlier one,
+answered when Tangy asked in a game, or made of others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Demonstration:
     @property
     def replayable(self) -> bool:
         """Whether its steps are those of one simulated game from its beginning."""
-        return self.origin in ("shown", "guided", "again")
+        return self.origin in ("shown", "again")
 
     def with_step(self, step: Step) -> Demonstration:
         """Return the demonstration with one more step."""

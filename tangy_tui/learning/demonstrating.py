@@ -9,39 +9,33 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
-from uuid import uuid4
 
 from tangy_profiles.activity import Action, Activity, Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.person import Person
 from tangy_profiles.state import Outcome
 from tangy_profiles.store import Store
-from tangy_tui.learning.commands import Command, Phrasebook
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, UNDONE, read_demonstrations
-from tangy_tui.learning.speech import UNDERSTOOD
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.editing import new_id
+from tangy_tui.learning.library import BEGUN, FINISHED, REDONE, STEP, UNDONE, read_library
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Verification,
+    Verified,
+    Verifier,
+)
 from tangy_tui.world import World
 
-MakeWorld: TypeAlias = Callable[[int, Sequence[str]], World]
-"""Make the world of a demonstration from its seed and people, ready at its first state."""
+MakeWorld: TypeAlias = Callable[[Demonstration], World]
+"""Make the world of a demonstration (its seed, people, guided), ready at its first state."""
 
 
 # ------------------------------------------------------------------- what a teacher can do
-
-
-@dataclass(frozen=True, slots=True)
-class Say:
-    """A command in words, typed or heard; `confidence` is the decoder's (typed: 1)."""
-
-    text: str
-    confidence: float = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Reply:
-    """The answer to the question that is open: execute it, or not; or ask about another."""
-
-    yes: bool
-    alternative: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,49 +44,31 @@ class Undo:
 
 
 @dataclass(frozen=True, slots=True)
+class Redo:
+    """Do the step again that was taken back last."""
+
+
+@dataclass(frozen=True, slots=True)
 class Next:
     """Begin another demonstration after a finished one."""
 
 
-TeacherCommand: TypeAlias = Say | Reply | Undo | Next
+@dataclass(frozen=True, slots=True)
+class Again:
+    """Show a demonstration again from some step on: its first `kept` steps stay as they are.
+
+    The present demonstration is taken back to there, and redo leads forward again. Another one is
+    replaced when the new one is complete, and not before.
+    """
+
+    demonstration: str
+    kept: int
+
+
+TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Again
 
 
 # ---------------------------------------------------------------------------- what follows
-
-
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """The question that verifies a command; nothing happens before it is answered."""
-
-    behaviour: str
-    question: str
-    heard: str
-    confidence: float
-    alternatives: tuple[str, ...]
-    target: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class NotUnderstood:
-    """Words that match no behaviour, with the nearest phrases."""
-
-    heard: str
-    suggestions: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """Something that cannot be done now, and why; `heard` goes back to the teacher."""
-
-    reason: str
-    heard: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Rejected:
-    """The question was answered with no; `heard` goes back to the teacher."""
-
-    heard: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +111,10 @@ TeachingEvent: TypeAlias = (
 )
 
 
+class NotAsBefore(Exception):
+    """A step that was done again did not come out as it did."""
+
+
 class Teaching:
     """One teacher's session: demonstrations one after another, each in its own simulated game."""
 
@@ -147,13 +127,22 @@ class Teaching:
         *,
         teacher: str,
         seed: int,
+        guided: bool = False,
     ) -> None:
+        """Prepare a session; `begin` it.
+
+        Args:
+            seed: of the first new game; the next games count on.
+            guided: new games are arranged so that one of them brings about every situation.
+        """
         self.activity = activity
         self.phrasebook = Phrasebook(activity, people)
         self.teacher = teacher
         self.demonstration: Demonstration
         self.world: World
-        self.question: Asked | None = None
+        self.guided = guided
+        self._verifier: Verifier
+        self._undone: list[Step] = []
         self._names = {person.id: person.name for person in people}
         self._store = store
         self._make_world = make_world
@@ -164,6 +153,16 @@ class Teaching:
     def people(self) -> tuple[str, ...]:
         """The ids of those who take part in the present demonstration."""
         return self.demonstration.people
+
+    @property
+    def question(self) -> Asked | None:
+        """The question that is open, if one is."""
+        return self._verifier.question
+
+    @property
+    def undone(self) -> int:
+        """How many steps redo can bring back."""
+        return len(self._undone)
 
     def name(self, person: str) -> str:
         """Return a person's name, or the id of somebody who has none here."""
@@ -177,11 +176,14 @@ class Teaching:
         and a new one is begun.
         """
         if resume:
-            for kept in reversed(read_demonstrations(self._store, self.activity.name)):
-                if kept.teacher == self.teacher and not kept.finished:
+            entries = read_library(self._store, self.activity.name).entries.values()
+            for entry in reversed(entries):
+                kept = entry.demonstration
+                if kept.teacher == self.teacher and not kept.finished and not entry.hidden:
                     world = self._replay(kept)
                     if world is not None:
                         self._enter(kept, world)
+                        self._undone = list(entry.undone)
                         self._logged = True
                         self._seed = max(self._seed, kept.seed + 1)
                         return [Begun(kept, resumed=True)]
@@ -197,22 +199,60 @@ class Teaching:
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
         """Carry out one command of the teacher and return what followed."""
         match command:
-            case Say(text, confidence):
-                return self._say(text, confidence)
-            case Reply(yes, alternative):
-                return self._reply(yes, alternative)
+            case Say():
+                return self._say(command)
+            case Reply():
+                return self._told(self._verifier.reply(command))
             case Undo():
                 return self._undo()
+            case Redo():
+                return self._redo()
             case Next():
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("This demonstration is not finished yet.")]
+            case Again(id, kept):
+                return self._again(id, kept)
 
     def _begin_new(self) -> list[TeachingEvent]:
         people = tuple(self._names)
-        new = Demonstration(uuid4().hex[:12], self.activity.name, self.teacher, self._seed, people)
+        new = Demonstration(
+            new_id(), self.activity.name, self.teacher, self._seed, people, guided=self.guided
+        )
         self._seed += 1
-        self._enter(new, self._make_world(new.seed, people))
+        self._enter(new, self._make_world(new))
+        self._logged = False
+        return [Begun(new, resumed=False)]
+
+    def _again(self, id: str, kept: int) -> list[TeachingEvent]:
+        if id == self.demonstration.id:
+            if not 0 <= kept < len(self.demonstration.steps):
+                return [Refused(f"There is no step {kept + 1} to show again.")]
+            events: list[TeachingEvent] = []
+            while len(self.demonstration.steps) > kept:
+                events += self._undo()
+                if isinstance(events[-1], Refused):
+                    break
+            return events
+        entry = read_library(self._store, self.activity.name).find(id)
+        source = entry.demonstration
+        if not source.replayable:
+            return [Refused("It was not shown in one game, so there is no game to go back to.")]
+        if not 0 <= kept < len(source.steps):
+            return [Refused(f"It has {len(source.steps)} steps: there is no step {kept + 1}.")]
+        new = replace(
+            source,
+            id=new_id(),
+            teacher=self.teacher,
+            steps=source.steps[:kept],
+            finished=False,
+            origin="again",
+            of=(source.id,),
+        )
+        world = self._replay(new)
+        if world is None:
+            return [Refused("It was made with another simulator: show the whole game anew.")]
+        self._enter(new, world)
         self._logged = False
         return [Begun(new, resumed=False)]
 
@@ -220,93 +260,58 @@ class Teaching:
         """Go on with a demonstration, among those who take part, in a world that it led to."""
         self.demonstration = demonstration
         self.world = world
-        self.question = None
+        self._undone = []
         present = [Person(id, self.name(id)) for id in demonstration.people]
         self.phrasebook = Phrasebook(self.activity, present)
+        self._verifier = Verifier(
+            self.activity, self.phrasebook, lambda: self.world.observe(), self._names
+        )
 
-    def _say(self, text: str, confidence: float) -> list[TeachingEvent]:
+    def _say(self, said: Say) -> list[TeachingEvent]:
         if self.demonstration.finished:
             return [Refused("This game is over. Begin the next demonstration, or undo a step.")]
-        command = self.phrasebook.understand(text)
-        if command is not None:
-            command = replace(command, confidence=command.confidence * confidence)
-        if command is None or (confidence < 1 and command.confidence < UNDERSTOOD):
-            self.question = None
-            return [NotUnderstood(text, self.phrasebook.suggestions(text))]
-        return self._ask(command, command.behaviour)
+        return self._told(self._verifier.say(said))
 
-    def _ask(self, command: Command, name: str) -> list[TeachingEvent]:
-        behaviour = self.activity.behaviour(name)
-        target = command.arguments.get("user") if behaviour.attends else None
-        if behaviour.attends and target is None:
-            target = self.world.observe().attended
-        reason = self._obstacle(behaviour, target)
-        if reason is not None:
-            self.question = None
-            return [Refused(reason, command.heard)]
-        question = behaviour.question
-        if target is not None:
-            question = f"{question} ({self.name(target)})"
-        others = tuple(other for other in command.alternatives if other != name)
-        if command.confidence >= 1:
-            others = ()  # a phrase typed letter by letter leaves no doubt
-        if name != command.behaviour:
-            others = (command.behaviour, *others)
-        self.question = Asked(name, question, command.heard, command.confidence, others[:3], target)
-        return [self.question]
+    def _told(self, verification: Verification) -> list[TeachingEvent]:
+        if isinstance(verification, Verified):
+            return self._execute(verification)
+        return [verification]
 
-    def _obstacle(self, behaviour: Behaviour, target: str | None) -> str | None:
-        """Return why a behaviour for one person cannot be done now, or None."""
-        if not behaviour.attends:
-            return None
-        goes = behaviour.effect == "go to user"
-        if target is None:
-            way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
-            return f"Nobody asks for help.{way}"
-        if not goes and self.world.observe().place != target:
-            return f"Tangy is not with {self.name(target)} yet: it has to go there first."
-        return None
+    def _execute(self, verified: Verified) -> list[TeachingEvent]:
+        behaviour = verified.behaviour
+        heard = {"heard": verified.heard, "confidence": verified.confidence}
 
-    def _reply(self, yes: bool, alternative: int | None) -> list[TeachingEvent]:
-        question, self.question = self.question, None
-        if question is None:
-            return [Refused("There is no question to answer: give a command first.")]
-        if alternative is not None:
-            if not 1 <= alternative <= len(question.alternatives):
-                self.question = question
-                return [Refused(f"There is no choice {alternative}.")]
-            chosen = question.alternatives[alternative - 1]
-            command = Command(
-                question.behaviour,
-                {},
-                question.confidence,
-                question.heard,
-                question.alternatives,
+        def log(step: Step) -> Step:
+            id = self._store.append(
+                STEP, {"demonstration": self.demonstration.id, **step.to_json(), **heard}
             )
-            return self._ask(command, chosen)
-        if not yes:
-            return [Rejected(question.heard)]
-        return self._execute(question)
+            return replace(step, id=id)
 
-    def _execute(self, question: Asked) -> list[TeachingEvent]:
-        behaviour = self.activity.behaviour(question.behaviour)
+        events = self._carry_out(behaviour, verified.target, log)
+        self._undone = []
+        return events
+
+    def _carry_out(
+        self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
+    ) -> list[TeachingEvent]:
+        """Execute a behaviour in the world and log the step; what is not logged did not happen."""
         before = self.world.observe()
-        action = self.activity.action(behaviour, question.target, None)
+        action = self.activity.action(behaviour, target, None)
         outcome = self.world.execute(action)
-        step = Step(behaviour.name, question.target, before, self.world.observe())
+        after = self.world.observe()
         finished = self.world.over
         try:
             with self._store.transaction():
                 self._log_beginning()
-                self._store.append(STEP, {"demonstration": self.demonstration.id, **step.to_json()})
+                step = log(Step(behaviour.name, target, before, after, outcome.completed))
                 if finished:
                     self._store.append(FINISHED, {"demonstration": self.demonstration.id})
-        except BaseException:  # what is not in the log has not happened
+        except BaseException:
             self.world = self._replay(self.demonstration) or self.world
             raise
         self._logged = True
         self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
-        name = self.name(question.target) if question.target else ""
+        name = self.name(target) if target else ""
         events: list[TeachingEvent] = [
             Executed(
                 len(self.demonstration.steps),
@@ -324,14 +329,19 @@ class Teaching:
     def _log_beginning(self) -> None:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
         if not self._logged:
+            shown = self.demonstration
             self._store.append(
                 BEGUN,
                 {
-                    "demonstration": self.demonstration.id,
+                    "demonstration": shown.id,
                     "activity": self.activity.name,
                     "teacher": self.teacher,
-                    "seed": self.demonstration.seed,
-                    "people": list(self.demonstration.people),
+                    "seed": shown.seed,
+                    "people": list(shown.people),
+                    "guided": shown.guided,
+                    "origin": shown.origin,
+                    "of": list(shown.of),
+                    "kept": len(shown.steps),
                 },
             )
 
@@ -344,13 +354,39 @@ class Teaching:
         world = self._replay(shorter)
         if world is None:
             return [Refused("This step cannot be undone: the simulator has changed since.")]
-        self._store.append(UNDONE, {"demonstration": shorter.id, "step": number})
+        with self._store.transaction():
+            self._log_beginning()
+            self._store.append(UNDONE, {"demonstration": shorter.id, "step": number})
+        self._logged = True
+        undone = [*self._undone, last]
         self._enter(shorter, world)
+        self._undone = undone
         return [StepUndone(number, last)]
+
+    def _redo(self) -> list[TeachingEvent]:
+        if not self._undone:
+            return [Refused("There is no step to do again.")]
+        if self.question is not None:
+            return [Refused("Answer the question first.")]
+        step = self._undone[-1]
+        behaviour = self.activity.behaviour(step.behaviour)
+
+        def log(done: Step) -> Step:
+            if done != step:
+                raise NotAsBefore
+            self._store.append(REDONE, {"demonstration": self.demonstration.id})
+            return step
+
+        try:
+            events = self._carry_out(behaviour, step.target, log)
+        except NotAsBefore:
+            return [Refused("This step cannot be done again: the simulator has changed since.")]
+        self._undone.pop()
+        return events
 
     def _replay(self, demonstration: Demonstration) -> World | None:
         """Make the world that a demonstration led to; None if its states come out differently."""
-        world = self._make_world(demonstration.seed, demonstration.people)
+        world = self._make_world(demonstration)
         for step in demonstration.steps:
             behaviour = self.activity.behaviours.get(step.behaviour)
             if behaviour is None or world.observe() != step.state:

@@ -6,9 +6,9 @@ from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.demonstrating import Say
 from tangy_tui.learning.microphone import Microphone, open_microphone
 from tangy_tui.learning.speech import Recogniser, SpeechUnavailable
+from tangy_tui.learning.verifying import Say
 
 
 class Ears:

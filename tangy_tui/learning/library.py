@@ -1,16 +1,22 @@
-"""The demonstrations and policies in the log: read from its events, never kept beside it."""
+"""The library of demonstrations: read from the events of the log, never kept beside it.
+
+What teachers show is a chain of step events. What is done to whole demonstrations afterwards
+(deleting, merging, settling a conflict, ...) is one event each, an edit; edits are undone and done
+again like typing, the latest first, by events of their own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
-from tangy_profiles.state import Situation
-from tangy_profiles.store import Store
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.store import Event, Store
+from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
     from tangy_tui.learning.effects import Effects
@@ -19,136 +25,273 @@ if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
 BEGUN = "demonstration begun"
 STEP = "demonstration step"
 UNDONE = "demonstration step undone"
+REDONE = "demonstration step redone"
 FINISHED = "demonstration finished"
-POLICY = "policy learnt"
+EDITED = "demonstrations edited"
+EDIT_UNDONE = "demonstrations edit undone"
+EDIT_REDONE = "demonstrations edit redone"
+
+SHORTEST_PREFIX = 3
+"""Characters of an id that are enough to name a demonstration, if only one begins so."""
 
 
-class NoPolicy(TangyError):
-    """Nothing has been learnt yet for this activity."""
+class NoDemonstration(TangyError):
+    """There is no demonstration of that name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One demonstration of the library and what became of it.
+
+    `at` and `last` are the UTC times (ISO 8601) of its first and last event, `undone` the steps
+    that redo brings back (the next one last), `taken_back` how often a step was undone, and
+    `hidden` says why it is not learnt from (empty: it is).
+    """
+
+    demonstration: Demonstration
+    at: str
+    last: str
+    undone: tuple[Step, ...] = ()
+    taken_back: int = 0
+    hidden: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A change of the library: what was done to which demonstrations, by the event `seq`."""
+
+    seq: int
+    at: str
+    what: str
+    body: Mapping[str, Any]
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The demonstrations that it was done to."""
+        return tuple(self.body.get("ids", ()))
+
+
+@dataclass
+class Library:
+    """The demonstrations of one activity in the order in which they were begun."""
+
+    activity: str
+    entries: dict[str, Entry] = field(default_factory=dict)
+    done: list[Edit] = field(default_factory=list)
+    """The edits in force; undo takes back the last."""
+    undone: list[Edit] = field(default_factory=list)
+    """The edits that redo brings back, the next one last."""
+
+    @property
+    def demonstrations(self) -> list[Demonstration]:
+        """Those that are learnt from when they are finished: all that are not hidden."""
+        return [e.demonstration for e in self.entries.values() if not e.hidden]
+
+    @property
+    def finished(self) -> list[Demonstration]:
+        """Those that are learnt from."""
+        return [d for d in self.demonstrations if d.finished]
+
+    @property
+    def resolutions(self) -> tuple[Resolution, ...]:
+        """What teachers said of conflicts; of each situation the latest."""
+        said = [Resolution.from_json(e.body) for e in self.done if e.what == "resolve"]
+        return tuple({r.situation: r for r in said}.values())
+
+    @property
+    def conflicts(self) -> list[Conflict]:
+        """What the finished demonstrations disagree about, and nobody has settled."""
+        return find_conflicts(self.finished, self.resolutions)
+
+    def find(self, wanted: str) -> Entry:
+        """Return a demonstration by its number in the list (from 1), its id, or how that begins.
+
+        Raises:
+            NoDemonstration: there is none, or more than one.
+        """
+        entries = list(self.entries.values())
+        if wanted in self.entries:
+            return self.entries[wanted]
+        if wanted.isdecimal() and 1 <= int(wanted) <= len(entries):
+            return entries[int(wanted) - 1]
+        enough = len(wanted) >= SHORTEST_PREFIX
+        found = [e for id, e in self.entries.items() if enough and id.startswith(wanted)]
+        if len(found) == 1:
+            return found[0]
+        if not entries:
+            raise NoDemonstration("There are no demonstrations yet: begin with `tangy teach`.")
+        known = [str(n + 1) for n in range(len(entries))] + list(self.entries)
+        problem = "More than one" if found else "No"
+        raise NoDemonstration(
+            plain(f"{problem} demonstration is called {wanted!r}: {nearest(wanted, known)}")
+        )
+
+    def number(self, id: str) -> int:
+        """Return the number in the list, from 1, of a demonstration."""
+        return list(self.entries).index(id) + 1
+
+
+def read_library(store: Store, activity: str) -> Library:
+    """Read the library of an activity from the log."""
+    library = Library(activity)
+    edits: list[Edit] = []
+    for event in store.events(
+        BEGUN, STEP, UNDONE, REDONE, FINISHED, EDITED, EDIT_UNDONE, EDIT_REDONE
+    ):
+        body = event.body
+        if event.kind == BEGUN:
+            if body["activity"] == activity:
+                _begin(library, event)
+        elif event.kind in (STEP, UNDONE, REDONE, FINISHED):
+            entry = library.entries.get(str(body["demonstration"]))
+            if entry is not None:
+                changed = replace(_stepped(entry, event), last=event.at)
+                library.entries[entry.demonstration.id] = changed
+        elif body["activity"] == activity:
+            if event.kind == EDITED:
+                edits.append(Edit(event.seq, event.at, str(body["what"]), body))
+                library.done.append(edits[-1])
+                library.undone.clear()
+            elif event.kind == EDIT_UNDONE:
+                library.undone.append(library.done.pop())
+            else:
+                library.done.append(library.undone.pop())
+    in_force = {edit.seq for edit in library.done}
+    for edit in edits:
+        _APPLY[edit.what](library, edit, edit.seq in in_force)
+    _replace_repeated(library)
+    return library
 
 
 def read_demonstrations(store: Store, activity: str) -> list[Demonstration]:
-    """Return the demonstrations of an activity in the order in which they were begun."""
-    found: dict[str, Demonstration] = {}
-    for event in store.events(BEGUN, STEP, UNDONE, FINISHED):
-        body = event.body
-        id = str(body["demonstration"])
-        if event.kind == BEGUN:
-            if body["activity"] == activity:
-                found[id] = Demonstration(
-                    id, activity, str(body["teacher"]), int(body["seed"]), tuple(body["people"])
-                )
-        elif id not in found:
-            continue
-        elif event.kind == STEP:
-            found[id] = found[id].with_step(Step.from_json(body))
-        elif event.kind == UNDONE:
-            found[id] = found[id].without_last()
-        else:
-            found[id] = replace(found[id], finished=True)
-    return list(found.values())
+    """Return the demonstrations of an activity that are not hidden, in order."""
+    return read_library(store, activity).demonstrations
 
 
 def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
     """Learn the effects from the demonstrations that a policy rests on."""
     from tangy_tui.learning.effects import learn_effects
 
-    shown = read_demonstrations(store, activity.name)
-    return learn_effects(activity, [d for d in shown if d.id in policy.demonstrations])
+    entries = read_library(store, activity.name).entries
+    used = [entries[id].demonstration for id in policy.demonstrations if id in entries]
+    return learn_effects(activity, used)
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A situation that a policy learnt again answers otherwise than it did."""
-
-    situation: Situation
-    before: str
-    after: str
+# ------------------------------------------------------------------------ the chain of steps
 
 
-def keep_policy(store: Store, policy: Policy) -> None:
-    """Log a policy: how to learn it again, and the digest of what that must give."""
-    store.append(POLICY, policy.to_json())
-
-
-def last_policy(store: Store, activity: str) -> Mapping[str, Any] | None:
-    """Return what was kept of the last policy of an activity (`Policy.to_json`), or None."""
-    kept: Mapping[str, Any] | None = None
-    for event in store.events(POLICY):
-        if event.body["activity"] == activity:
-            kept = event.body
-    return kept
-
-
-def need_policy(store: Store, activity: Activity) -> Mapping[str, Any]:
-    """Return what was kept of the last policy of an activity.
-
-    Raises:
-        NoPolicy: none has been learnt; says how to.
-    """
-    kept = last_policy(store, activity.name)
-    if kept is None:
-        raise NoPolicy(
-            f"Tangy has not learnt {activity.title} yet: "
-            "demonstrate it with `tangy teach`, then run `tangy learn`."
-        )
-    return kept
-
-
-def load_policy(store: Store, activity: Activity) -> tuple[Policy, list[str]]:
-    """Learn the last kept policy of an activity again from its demonstrations.
-
-    Returns:
-        The policy, and what a person must be told: a digest that does not match is said, with
-        the rows that differ, because then the policy is not the one that was looked at.
-
-    Raises:
-        NoPolicy: none has been learnt, or its demonstrations are gone.
-    """
-    from tangy_tui.learning.policy import ForestSettings, learn_policy
-
-    kept = need_policy(store, activity)
-    shown = {d.id: d for d in read_demonstrations(store, activity.name)}
-    missing = [id for id in kept["demonstrations"] if id not in shown]
-    if missing:
-        raise NoPolicy(
-            f"The policy {kept['name']!r} rests on {len(missing)} demonstrations that are not in "
-            "this data folder: run `tangy learn` again."
-        )
-    policy = learn_policy(
-        activity,
-        [shown[id] for id in kept["demonstrations"]],
-        settings=ForestSettings(**kept["forest"]),
-        name=str(kept["name"]),
+def _begin(library: Library, event: Event) -> None:
+    body = event.body
+    id = str(body["demonstration"])
+    of = tuple(body.get("of", ()))
+    steps: tuple[Step, ...] = ()
+    if body.get("origin") == "again" and of[0] in library.entries:
+        steps = library.entries[of[0]].demonstration.steps[: int(body["kept"])]
+    made = Demonstration(
+        id,
+        library.activity,
+        str(body["teacher"]),
+        int(body["seed"]),
+        tuple(body["people"]),
+        steps,
+        origin=body.get("origin", "shown"),
+        of=of,
+        guided=bool(body.get("guided", False)),
     )
-    if policy.digest == kept["digest"]:
-        return policy, []
-    return policy, _explain(kept, policy)
+    library.entries[id] = Entry(made, event.at, event.at)
 
 
-def changes(rows: Sequence[Sequence[Any]], policy: Policy) -> list[Change]:
-    """Compare kept rows (stage, request, user state, behaviour, share) with a policy."""
-    found: list[Change] = []
-    for stage, request, user_state, behaviour, _ in rows:
-        situation = Situation(stage, request, user_state)
-        decision = policy.table.get(situation)
-        now = decision.behaviour if decision else "nothing"
-        if now != behaviour:
-            found.append(Change(situation, behaviour, now))
-    return found
+def _stepped(entry: Entry, event: Event) -> Entry:
+    shown = entry.demonstration
+    match event.kind:
+        case "demonstration step":
+            step = Step.from_json(event.body, event.seq)
+            return replace(entry, demonstration=shown.with_step(step), undone=())
+        case "demonstration step undone":
+            return replace(
+                entry,
+                demonstration=shown.without_last(),
+                undone=(*entry.undone, shown.steps[-1]),
+                taken_back=entry.taken_back + 1,
+            )
+        case "demonstration step redone":
+            again = shown.with_step(entry.undone[-1])
+            return replace(entry, demonstration=again, undone=entry.undone[:-1])
+        case _:
+            return replace(entry, demonstration=replace(shown, finished=True))
 
 
-def _explain(kept: Mapping[str, Any], policy: Policy) -> list[str]:
-    was, now = dict(kept["versions"]), dict(policy.versions)
-    moved = [f"{part} {was.get(part)} -> {now[part]}" for part in now if was.get(part) != now[part]]
-    why = f" ({', '.join(moved)})" if moved else " (its demonstrations have changed since)"
-    notices = [f"The policy {policy.name!r} does not come out as it was kept{why}."]
-    different = changes(kept["rows"], policy)
-    if not different:
-        notices.append("It decides the same everywhere; only the votes differ.")
-    for change in different:
-        notices.append(
-            f"{' / '.join(change.situation)}: was {change.before}, is now {change.after}."
-        )
-    notices.append("Look at it with `tangy policy`, and keep it with `tangy learn`.")
-    return notices
+# --------------------------------------------------------------------------------- the edits
+
+
+def _hide(library: Library, ids: Sequence[str], why: str) -> None:
+    for id in ids:
+        if id in library.entries:
+            library.entries[id] = replace(library.entries[id], hidden=why)
+
+
+def _delete(library: Library, edit: Edit, in_force: bool) -> None:
+    if in_force:
+        _hide(library, edit.ids, "deleted")
+
+
+def _restore(library: Library, edit: Edit, in_force: bool) -> None:
+    if in_force:
+        _hide(library, edit.ids, "")
+
+
+def _resolve(library: Library, edit: Edit, in_force: bool) -> None:
+    """A resolution changes no demonstration; `Library.resolutions` reads it."""
+
+
+def _merge(library: Library, edit: Edit, in_force: bool) -> None:
+    sources = [library.entries[id].demonstration for id in edit.ids]
+    steps = tuple(step for source in sources for step in source.steps)
+    _make(library, edit, str(edit.body["made"][0]), sources[0], steps, "merged", in_force)
+    if in_force:
+        _hide(library, edit.ids, "merged")
+
+
+def _split(library: Library, edit: Edit, in_force: bool) -> None:
+    source = library.entries[edit.ids[0]].demonstration
+    at = int(edit.body["kept"])
+    for id, steps in zip(edit.body["made"], (source.steps[:at], source.steps[at:]), strict=True):
+        _make(library, edit, str(id), source, steps, "split", in_force)
+    if in_force:
+        _hide(library, edit.ids, "split")
+
+
+def _make(
+    library: Library,
+    edit: Edit,
+    id: str,
+    source: Demonstration,
+    steps: tuple[Step, ...],
+    origin: Any,
+    in_force: bool,
+) -> None:
+    """Add what an edit made; where the edit was undone it stays, hidden, for old policies."""
+    made = replace(
+        source, id=id, steps=steps, finished=True, origin=origin, of=edit.ids, guided=False
+    )
+    hidden = "" if in_force else "undone"
+    library.entries[id] = Entry(made, edit.at, edit.at, hidden=hidden)
+
+
+_APPLY: Mapping[str, Callable[[Library, Edit, bool], None]] = {
+    "delete": _delete,
+    "restore": _restore,
+    "resolve": _resolve,
+    "merge": _merge,
+    "split": _split,
+}
+
+
+def _replace_repeated(library: Library) -> None:
+    """Hide what was shown again from some step, from the moment the new one is complete."""
+    for entry in list(library.entries.values()):
+        made = entry.demonstration
+        if made.origin == "again" and made.finished and not entry.hidden:
+            for id in made.of:
+                if id in library.entries and not library.entries[id].hidden:
+                    _hide(library, [id], "shown again")

@@ -12,7 +12,7 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
-from tangy_tui.learning import library
+from tangy_tui.learning import library, policies
 from tangy_tui.ui.app import TangyApp, run_app
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import terminal_kind
@@ -64,7 +64,7 @@ class Program(TangyApp):
         shown = library.read_demonstrations(self.house.store, self.house.activity.name)
         finished = sum(1 for d in shown if d.finished)
         unfinished = sum(1 for d in shown if d.steps and not d.finished)
-        kept = library.last_policy(self.house.store, self.house.activity.name)
+        kept = policies.last_policy(self.house.store, self.house.activity.name)
         people = ", ".join(person.name for person in self.house.people)
         return {
             "teach": counted(finished, "demonstration")
@@ -145,7 +145,7 @@ class Program(TangyApp):
         house = self.house
         loaded = await self._in_thread(
             "Tangy is recalling what it learnt ...",
-            lambda: library.load_policy(house.store, house.activity),
+            lambda: policies.load_policy(house.store, house.activity),
         )
         if loaded is None:
             return None

@@ -35,7 +35,8 @@ def learn(
 
     from tangy_profiles.reading import nearest
     from tangy_tui.documents import policy_document
-    from tangy_tui.learning.library import keep_policy, read_demonstrations
+    from tangy_tui.learning.library import read_demonstrations
+    from tangy_tui.learning.policies import keep_policy
     from tangy_tui.learning.policy import FORESTS, learn_policy
     from tangy_tui.wording import counted
 
@@ -85,7 +86,8 @@ def policy(
 ) -> None:
     """Show what was learnt: every situation, what Tangy does there, and what follows."""
     from tangy_tui.documents import policy_document
-    from tangy_tui.learning.library import effects_of, load_policy
+    from tangy_tui.learning.library import effects_of
+    from tangy_tui.learning.policies import load_policy
     from tangy_tui.ui import reports
 
     with open_house(data, activity, 4, write=False) as house:

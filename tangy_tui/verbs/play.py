@@ -37,7 +37,7 @@ def play(
     ascii_only: Ascii = False,
 ) -> None:
     """Let Tangy facilitate games in simulation, by the policy it has learnt."""
-    from tangy_tui.learning.library import load_policy, need_policy
+    from tangy_tui.learning.policies import load_policy, need_policy
 
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity)

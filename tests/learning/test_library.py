@@ -15,15 +15,17 @@ from tangy_profiles.store import Store
 from tangy_tui.learning.library import (
     BEGUN,
     FINISHED,
-    POLICY,
     STEP,
     UNDONE,
+    read_demonstrations,
+)
+from tangy_tui.learning.policies import (
+    POLICY,
     Change,
     NoPolicy,
     changes,
     keep_policy,
     load_policy,
-    read_demonstrations,
 )
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
@@ -15,22 +14,17 @@ from tangy_profiles.store import Store
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
 from tangy_tui.learning.demonstrating import (
-    Asked,
     Begun,
     Executed,
     Finished,
     Next,
-    NotUnderstood,
-    Refused,
-    Rejected,
-    Reply,
-    Say,
     StepUndone,
     Teaching,
     Undo,
 )
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")
@@ -40,8 +34,10 @@ YES, NO = Reply(yes=True), Reply(yes=False)
 def session(
     store: Store, *, teacher: str = "Ada", seed: int = 1, users: int = 4, activity: Activity = BINGO
 ) -> Teaching:
-    def world(seed: int, people: Sequence[str]) -> World:
-        return SimulatedWorld(activity, people, seed=seed, users=load_users().teaching())
+    def world(shown: Demonstration) -> World:
+        return SimulatedWorld(
+            activity, shown.people, seed=shown.seed, users=load_users().teaching()
+        )
 
     return Teaching(activity, load_people(users), store, world, teacher=teacher, seed=seed)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -21,18 +21,15 @@ from tangy_profiles.store import Store
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
 from tangy_tui.learning.demonstrating import (
-    Asked,
     Executed,
     Next,
-    Refused,
-    Reply,
-    Say,
     StepUndone,
     TeacherCommand,
     Teaching,
     Undo,
 )
 from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.verifying import Asked, Refused, Reply, Say
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")
@@ -40,8 +37,8 @@ YES, NO = Reply(yes=True), Reply(yes=False)
 
 
 def begun(store: Store, *, seed: int = 1, users: int = 4) -> Teaching:
-    def world(seed: int, people: Sequence[str]) -> World:
-        return SimulatedWorld(BINGO, people, seed=seed, users=load_users().teaching())
+    def world(shown: Demonstration) -> World:
+        return SimulatedWorld(BINGO, shown.people, seed=shown.seed, users=load_users().teaching())
 
     teaching = Teaching(BINGO, load_people(users), store, world, teacher="Ada", seed=seed)
     teaching.begin()

@@ -13,16 +13,10 @@ from textual.widgets import Static
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import (
-    Asked,
     Begun,
     Executed,
     Finished,
     Next,
-    NotUnderstood,
-    Refused,
-    Rejected,
-    Reply,
-    Say,
     StepUndone,
     TeacherCommand,
     Teaching,
@@ -31,6 +25,7 @@ from tangy_tui.learning.demonstrating import (
 )
 from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.messages import Stop

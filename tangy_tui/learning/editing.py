@@ -1,0 +1,154 @@
+"""Editing the library: delete, restore, merge, split, settle a conflict; undo and redo of each.
+
+Every change is one event, so it is there as a whole or not at all, and nothing is ever lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from uuid import uuid4
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_profiles.store import Store
+from tangy_tui.learning.conflicts import Conflict
+from tangy_tui.learning.library import (
+    EDIT_REDONE,
+    EDIT_UNDONE,
+    EDITED,
+    Edit,
+    Entry,
+    Library,
+    read_library,
+)
+
+MakeId = Callable[[], str]
+
+
+class NotPossible(TangyError):
+    """A change that cannot be made, and why."""
+
+
+def new_id() -> str:
+    """Return a name for a new demonstration."""
+    return uuid4().hex[:12]
+
+
+class Editor:
+    """Changes the library of one activity. Each method returns the edit that it made.
+
+    Raises:
+        NoDemonstration: there is none of that name.
+        NotPossible: it cannot be done; says why.
+    """
+
+    def __init__(self, store: Store, activity: Activity, make_id: MakeId = new_id) -> None:
+        self._store = store
+        self._activity = activity
+        self._make_id = make_id
+
+    @property
+    def library(self) -> Library:
+        """The library as it is now."""
+        return read_library(self._store, self._activity.name)
+
+    def delete(self, *wanted: str) -> Edit:
+        """Put demonstrations away: they are not learnt from until they are restored."""
+        entries = self._choose(wanted)
+        for entry in entries:
+            if entry.hidden:
+                raise NotPossible(f"{entry.demonstration.id} is not in use: {entry.hidden}.")
+        return self._edit("delete", entries)
+
+    def restore(self, *wanted: str) -> Edit:
+        """Take demonstrations into use again that were deleted or replaced."""
+        entries = self._choose(wanted)
+        for entry in entries:
+            if entry.hidden in ("merged", "split", "undone"):
+                raise NotPossible(
+                    f"{entry.demonstration.id} was {entry.hidden}: "
+                    "undo that with `tangy demonstrations undo`."
+                )
+            if not entry.hidden:
+                raise NotPossible(f"{entry.demonstration.id} is in use already.")
+        return self._edit("restore", entries)
+
+    def merge(self, *wanted: str) -> Edit:
+        """Make one demonstration of several, in the given order; they give way to it."""
+        entries = self._choose(wanted)
+        self._need_use(entries)
+        if len(entries) < 2:
+            raise NotPossible("Merging needs two demonstrations or more.")
+        return self._edit("merge", entries, made=[self._make_id()])
+
+    def split(self, wanted: str, kept: int) -> Edit:
+        """Make two demonstrations of one: the first `kept` steps, and those after them."""
+        entries = self._choose([wanted])
+        self._need_use(entries)
+        steps = len(entries[0].demonstration.steps)
+        if not 1 <= kept < steps:
+            choice = f"choose from 1 to {steps - 1}" if steps > 1 else "it is too short"
+            raise NotPossible(
+                f"{entries[0].demonstration.id} has {steps} steps and cannot be split after "
+                f"{kept}: {choice}."
+            )
+        made = [self._make_id(), self._make_id()]
+        return self._edit("split", entries, kept=kept, made=made)
+
+    def resolve(self, conflict: Conflict, *right: str) -> Edit:
+        """Say which answers to a situation are right, shown or not; the other steps are wrong."""
+        if not right:
+            raise NotPossible("Say which answer is right.")
+        for behaviour in right:
+            self._activity.behaviour(behaviour)
+        body = conflict.resolved(*right).to_json()
+        seq = self._store.append(
+            EDITED, {"activity": self._activity.name, "what": "resolve", **body}
+        )
+        return self._made(seq)
+
+    def undo(self) -> Edit:
+        """Take back the last edit."""
+        done = self.library.done
+        if not done:
+            raise NotPossible("There is no change of the demonstrations to undo.")
+        self._store.append(EDIT_UNDONE, {"activity": self._activity.name, "edit": done[-1].seq})
+        return done[-1]
+
+    def redo(self) -> Edit:
+        """Make the edit again that was taken back last."""
+        undone = self.library.undone
+        if not undone:
+            raise NotPossible("There is no change of the demonstrations to do again.")
+        self._store.append(EDIT_REDONE, {"activity": self._activity.name, "edit": undone[-1].seq})
+        return undone[-1]
+
+    def _choose(self, wanted: Sequence[str]) -> list[Entry]:
+        library = self.library
+        entries = [library.find(one) for one in wanted]
+        ids = [entry.demonstration.id for entry in entries]
+        if not ids:
+            raise NotPossible("Name a demonstration: `tangy demonstrations list` shows them.")
+        if len(set(ids)) < len(ids):
+            raise NotPossible("The same demonstration was named twice.")
+        return entries
+
+    def _need_use(self, entries: Sequence[Entry]) -> None:
+        for entry in entries:
+            shown = entry.demonstration
+            if entry.hidden:
+                raise NotPossible(f"{shown.id} is not in use: {entry.hidden}.")
+            if not shown.finished:
+                raise NotPossible(plain(f"{shown.id} by {shown.teacher} is not finished yet."))
+
+    def _edit(self, what: str, entries: Sequence[Entry], **more: object) -> Edit:
+        ids = [entry.demonstration.id for entry in entries]
+        body = {"activity": self._activity.name, "what": what, "ids": ids, **more}
+        return self._made(self._store.append(EDITED, body))
+
+    def _made(self, seq: int) -> Edit:
+        edit = self.library.done[-1]
+        if edit.seq != seq:  # one writer, so nobody can come between
+            raise NotPossible("The log was changed meanwhile.")
+        return edit
