@@ -1,0 +1,158 @@
+"""A classroom: games demonstrated through the real teaching engine, and policies learnt from them.
+
+What the simulated teachers of these experiments do goes through the door that people use:
+commands in words, questions that are answered, steps in a log. Only the log is on a scratch
+folder, and a game is committed as a whole, which takes .1 ms a step instead of 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Protocol
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_sim.guide import GuidedWorld
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.learning.conflicts import Resolution
+from tangy_tui.learning.demonstrating import Next, Teaching, TeachingEvent
+from tangy_tui.learning.policy import Policy, learn_policy
+from tangy_tui.learning.reachable import joint_states
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.world import World
+
+GUIDED = "guided"
+RANDOM = "random"
+"""How the games of a demonstration come about: planned to show everything, or by chance."""
+
+Steps = Iterator[TeachingEvent]
+
+
+class Teacher(Protocol):
+    """Somebody who demonstrates one game to its end."""
+
+    def demonstrate(self) -> Steps:
+        """Demonstrate, event by event."""
+        ...
+
+
+class MakeTeacher(Protocol):
+    """Puts a teacher into a session."""
+
+    def __call__(self, teaching: Teaching) -> Teacher:
+        """Return the teacher."""
+        ...
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is taught, to how many people, in which games."""
+
+    activity: str
+    users: int
+    games: str
+    seed: int
+
+
+@cache
+def activity_of(name: str) -> Activity:
+    """Return an activity by name, read once in each process."""
+    return load_activity(name)
+
+
+@contextmanager
+def lessons(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Steps]:
+    """Give an endless course: iterating it yields the events of one game after another.
+
+    The demonstrations of a course come from `taught`; this is the session beneath it.
+    """
+    activity = activity_of(course.activity)
+    people = load_people(course.users)
+    kind = GuidedWorld if course.games == GUIDED else SimulatedWorld
+
+    def make_world(shown: Demonstration) -> World:
+        return kind(activity, shown.people, seed=shown.seed, users=load_users().teaching())
+
+    with TemporaryDirectory(prefix="tangy-class-") as scratch, Store.open(Path(scratch)) as store:
+        teaching = Teaching(
+            activity, people, store, make_world, teacher="class", seed=1000 * course.seed
+        )
+        yield _games(teaching, store, make_teacher(teaching))
+
+
+def _games(teaching: Teaching, store: Store, teacher: Teacher) -> Steps:
+    teaching.begin()
+    while True:
+        with store.transaction():
+            events = list(teacher.demonstrate())
+        yield from events
+        teaching.apply(Next())
+
+
+def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Demonstration]:
+    """Yield one finished demonstration after another, without end.
+
+    Their steps are numbered through the course, as they would be in one log.
+    """
+    from tangy_tui.learning.demonstrating import Finished
+
+    numbered = 0
+    with lessons(course, make_teacher) as events:
+        for event in events:
+            if isinstance(event, Finished):
+                steps = event.demonstration.steps
+                ids = range(numbered + 1, numbered + 1 + len(steps))
+                numbered += len(steps)
+                yield replace(
+                    event.demonstration,
+                    id=f"{course.games}-{event.demonstration.seed}",
+                    steps=tuple(replace(s, id=i) for s, i in zip(steps, ids, strict=True)),
+                )
+
+
+def people_ids(users: int) -> tuple[str, ...]:
+    """Return the ids of the sample people."""
+    return tuple(person.id for person in people_of(users))
+
+
+@cache
+def people_of(users: int) -> tuple[Person, ...]:
+    """Return the sample people."""
+    return load_people(users)
+
+
+@cache
+def reachable_situations(activity: str, users: int) -> frozenset[Situation]:
+    """Return the triples of all joint states that can come about, and no others."""
+    states = joint_states(activity_of(activity), people_ids(users))
+    return frozenset(state.situation for state in states)
+
+
+def learnt(
+    activity: Activity, shown: Sequence[Demonstration], resolutions: Sequence[Resolution] = ()
+) -> Policy:
+    """Learn a policy from demonstrations, as the program does."""
+    return learn_policy(activity, shown, resolutions=resolutions)
+
+
+def is_exact(policy: Policy, activity: Activity, users: int) -> bool:
+    """Say whether a policy is right on every joint state, whatever comes about or does not."""
+    return policy.exact(activity) and all(
+        policy.decide(situation).behaviour == activity.expected.get(situation)
+        for situation in reachable_situations(activity.name, users)
+    )
+
+
+def covered(activity: Activity, shown: Sequence[Demonstration]) -> bool:
+    """Say whether demonstrations show every situation that the activity can bring about."""
+    seen = {step.state.situation for one in shown for step in one.steps}
+    return seen >= set(activity.expected)

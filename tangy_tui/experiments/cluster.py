@@ -1,0 +1,74 @@
+"""The same pieces of work on a Dask cluster that exists already; it is never started or ended."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.experiments.provenance import code_digest
+
+if TYPE_CHECKING:
+    from tangy_tui.experiments.sweep import Case, Piece, Settings
+
+REACHED_WITHIN = 5.0
+"""Seconds after which a scheduler that does not answer counts as not there."""
+
+
+def on_cluster(
+    address: str, piece: Piece, settings: Settings, cases: Sequence[Case]
+) -> Iterator[tuple[int, Any]]:
+    """Yield (index of the case, result) as a cluster's workers are done with them.
+
+    Raises:
+        TangyError: Dask is not installed, nobody answers at the address, it has no workers, or
+            they have another version of this code.
+    """
+    distributed = _distributed()
+    with _connected(distributed, address) as client:
+        _check_workers(client, address)
+        futures = {
+            client.submit(piece, dict(settings), case, pure=False): index
+            for index, case in enumerate(cases)
+        }
+        try:
+            for future, result in distributed.as_completed(list(futures), with_results=True):
+                yield futures[future], result
+        finally:  # what is left when somebody has had enough
+            client.cancel(list(futures))
+
+
+def _distributed() -> Any:
+    try:
+        return import_module("distributed")
+    except ImportError:
+        raise TangyError(
+            "--dask needs Dask, which is not installed: install the extra tangy[cluster]."
+        ) from None
+
+
+def _connected(distributed: Any, address: str) -> Any:
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # one sentence is enough
+    try:
+        return distributed.Client(address, timeout=REACHED_WITHIN, set_as_default=False)
+    except (OSError, ValueError, TypeError):  # what Dask raises for a bad or a silent address
+        raise TangyError(
+            plain(f"--dask {address}: no Dask scheduler answers there; is its address right?")
+        ) from None
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """See that there are workers, and that they would do the work as it would be done here."""
+    try:
+        theirs = set(client.run(code_digest).values())
+    except Exception:  # a worker without this package raises whatever its unpickling raises
+        theirs = {"none"}
+    if not theirs:
+        raise TangyError(plain(f"--dask {address}: the scheduler has no workers yet."))
+    if theirs != {code_digest()}:
+        raise TangyError(
+            plain(f"--dask {address}: its workers do not have this version of Tangy installed.")
+        )

@@ -1,0 +1,61 @@
+"""What results rest on: a digest of the code that makes them, and the versions around it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+ROOMS = (
+    ("tangy_profiles", ""),
+    ("tangy_sim", ""),
+    ("tangy_tui", "learning"),
+    ("tangy_tui", "interaction"),
+    ("tangy_tui", "experiments"),
+)
+"""The packages, and the folders in them, whose change may change a result."""
+
+ONLY_SHOWN = ("report.py", "figures.py", "html.py", "rows.py")
+"""Files of these rooms that only show results."""
+
+PACKAGES = ("tangy", "numpy", "scikit-learn", "joblib", "matplotlib", "distributed")
+
+
+def digest_of(document: Any) -> str:
+    """Return a SHA-256 over a JSON document."""
+    canonical = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+@cache
+def code_digest() -> str:
+    """Return a SHA-256 over the code and data files that results come from, and what they use.
+
+    So results that older code left in a data folder are never taken for those of this one.
+    """
+    digest = hashlib.sha256()
+    for package, room in ROOMS:
+        root = Path(str(files(package))) / room
+        for path in sorted((*root.rglob("*.py"), *root.rglob("*.toml"))):
+            if path.name in ONLY_SHOWN:
+                continue
+            digest.update(f"{package}/{room}/{path.relative_to(root).as_posix()}".encode())
+            digest.update(path.read_bytes())
+    digest.update(json.dumps([versions()[name] for name in ("numpy", "scikit-learn")]).encode())
+    return digest.hexdigest()
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that have a part in the results."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found

@@ -1,0 +1,125 @@
+"""Simulated teachers who differ: how they speak, whom they help first, what they get wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from random import Random
+
+from tangy_profiles.activity import Behaviour
+from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.experiments.classroom import Steps
+from tangy_tui.learning.demonstrating import Executed, Teaching, Undo
+from tangy_tui.learning.scripted_teacher import MOST_STEPS
+from tangy_tui.learning.verifying import Asked, Reply, Say
+
+Order = Callable[[Sequence[str], Sequence[str], str, Random], str]
+"""Chooses whom to go to: (who asks, first come first; the seats; where the robot is; chance)."""
+
+
+def first_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
+    """Go to whoever asked first."""
+    return asking[0]
+
+
+def last_come(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
+    """Go to whoever asked last."""
+    return asking[-1]
+
+
+def by_seat(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
+    """Go along the table from its beginning."""
+    return min(asking, key=seats.index)
+
+
+def nearest(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
+    """Go to the nearest seat; the front is before the middle of the table."""
+    here = (len(seats) - 1) / 2 if place == FRONT else seats.index(place)
+    return min(asking, key=lambda person: (abs(seats.index(person) - here), seats.index(person)))
+
+
+def anybody(asking: Sequence[str], seats: Sequence[str], place: str, rng: Random) -> str:
+    """Go to any of them."""
+    return asking[int(rng.random() * len(asking))]
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one teacher teaches.
+
+    `varied`: whether every phrase of a behaviour is used, or always the one at `phrase`.
+    `mistakes`: P(giving a wrong command) per step. Of these, `reads` is the share that is noticed
+    in the question and answered with no; of the others, `mends` is undone when it is seen
+    happening. The rest stay in the demonstration.
+    """
+
+    name: str
+    order: Order
+    mistakes: float
+    reads: float
+    mends: float
+    phrase: int = 0
+    varied: bool = False
+
+
+STYLES = (
+    Style("careful, in turn", first_come, 0.0, 1.0, 1.0),
+    Style("many words, last come first", last_come, 0.01, 0.9, 1.0, varied=True),
+    Style("along the table", by_seat, 0.02, 0.5, 0.5, phrase=1),
+    Style("shortest way", nearest, 0.03, 0.5, 0.0, phrase=2),
+    Style("hasty, anybody", anybody, 0.05, 0.3, 0.2, varied=True),
+)
+"""Five teachers, as many as the paper had; from none to one mistake in twenty steps."""
+
+
+class StyledTeacher:
+    """Demonstrates what the activity expects, in a style, mistakes and all."""
+
+    def __init__(self, style: Style, teaching: Teaching, seed: int) -> None:
+        self._style = style
+        self._teaching = teaching
+        self._rng = Random(f"{seed}/{style.name}")
+        self.made = self.noticed = self.mended = 0
+        """Wrong commands given; those answered with no; those undone."""
+
+    def demonstrate(self) -> Steps:
+        """Demonstrate to the end of the game, event by event."""
+        for _ in range(MOST_STEPS):
+            if self._teaching.demonstration.finished:
+                return
+            yield from self._step()
+
+    def _step(self) -> Steps:
+        teaching, rng, style = self._teaching, self._rng, self._style
+        state = teaching.world.observe()
+        right = teaching.activity.expected[state.situation]
+        wrong = None
+        if rng.random() < style.mistakes:
+            others = [name for name in teaching.activity.behaviours if name != right]
+            wrong = others[int(rng.random() * len(others))]
+            self.made += 1
+        command = self._words(teaching.activity.behaviours[wrong or right], state)
+        events = teaching.apply(Say(command))
+        yield from events
+        if not isinstance(events[-1], Asked):
+            return  # it could not be done there: that is a mistake noticed, too
+        if wrong is not None and rng.random() < style.reads:
+            self.noticed += 1
+            yield from teaching.apply(Reply(yes=False))
+            return
+        done = teaching.apply(Reply(yes=True))
+        yield from done
+        if wrong is not None and isinstance(done[0], Executed) and rng.random() < style.mends:
+            self.mended += 1
+            yield from teaching.apply(Undo())
+
+    def _words(self, behaviour: Behaviour, state: ActivityState) -> str:
+        phrases = behaviour.phrases
+        at = int(self._rng.random() * len(phrases)) if self._style.varied else self._style.phrase
+        phrase = phrases[at % len(phrases)]
+        asking = self._teaching.world.scene().requests
+        if behaviour.effect == "go to user" and asking:
+            seats = self._teaching.people
+            person = self._style.order(asking, seats, state.place, self._rng)
+            phrase = f"{behaviour.phrases[0]} {seats.index(person) + 1}"
+        return phrase

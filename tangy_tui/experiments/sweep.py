@@ -1,0 +1,171 @@
+"""A sweep: independent pieces of work on all cores or on a cluster, each kept when it is done.
+
+A piece is a function of settings and one case; the same two give the same result anywhere. What
+is done is a line in a file of the data folder, so a sweep that was interrupted goes on where it
+was, and neither the number of jobs nor the order in which pieces end can change its results.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.experiments.provenance import code_digest, digest_of
+
+Settings: TypeAlias = Mapping[str, Any]
+Case: TypeAlias = Sequence[Any]
+"""Which piece: JSON values, such as ("guided", 4, 17) for a way to teach, people and a seed."""
+
+Piece: TypeAlias = Callable[[Settings, Case], Any]
+"""A function at the top of a module, which returns JSON; it holds neither clock nor chance."""
+
+Tell: TypeAlias = Callable[[str, int, int], None]
+"""Is told the name of the sweep, how many pieces are done, and how many there are."""
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where sweeps are worked at, and where their results are kept.
+
+    `jobs`: processes on this machine (-1: one for each core). `cluster`: the address of a Dask
+    scheduler that does the work instead. `folder`: where the results are kept (None: nowhere).
+    `fresh`: forget what was kept before.
+    """
+
+    folder: Path | None = None
+    jobs: int = -1
+    cluster: str | None = None
+    fresh: bool = False
+    tell: Tell = field(default=lambda name, done, total: None)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A named function, the settings that all its pieces share, and its cases."""
+
+    name: str
+    piece: Piece
+    settings: Settings
+    cases: Sequence[Case]
+
+    @property
+    def digest(self) -> str:
+        """What its results rest on besides the cases: the settings and the code itself."""
+        return digest_of([self.name, dict(self.settings), code_digest()])
+
+    def run(self, where: Where) -> list[Any]:
+        """Return the results in the order of the cases.
+
+        Raises:
+            TangyError: the folder cannot be written, or the cluster not be reached.
+        """
+        kept = Kept(where.folder, f"{self.name}-{self.digest[:12]}.jsonl", fresh=where.fresh)
+        done = {
+            key: kept.results[key] for case in self.cases if (key := _key(case)) in kept.results
+        }
+        left = {key: case for case in self.cases if (key := _key(case)) not in done}
+        total = len(done) + len(left)
+        where.tell(self.name, len(done), total)
+        for key, result in _work(self, list(left.values()), where):
+            kept.add(key, result)
+            done[key] = result
+            where.tell(self.name, len(done), total)
+        return [done[_key(case)] for case in self.cases]
+
+
+class Kept:
+    """The results of a sweep that are on the disk already, one JSON line each.
+
+    A line is written in one go; a line that a kill or a full disk tore is passed over, and the
+    next one begins on a line of its own.
+    """
+
+    def __init__(self, folder: Path | None, name: str, *, fresh: bool = False) -> None:
+        """Read what there is.
+
+        Raises:
+            TangyError: the file cannot be read or written.
+        """
+        self.path = None if folder is None else folder / "experiments" / name
+        self.results: dict[str, Any] = {}
+        if self.path is None:
+            return
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            if fresh:
+                self.path.unlink(missing_ok=True)
+            data = self.path.read_bytes() if self.path.exists() else b""
+            if data and not data.endswith(b"\n"):
+                _append(self.path, b"\n")
+        except OSError as error:
+            raise _unusable(self.path, error) from None
+        for line in data.splitlines():
+            try:
+                case, result = json.loads(line)
+            except ValueError:
+                continue
+            self.results[_key(case)] = result
+
+    def add(self, key: str, result: Any) -> None:
+        """Keep a result."""
+        if self.path is not None:
+            line = f"[{key},{json.dumps(result, ensure_ascii=False, separators=(',', ':'))}]\n"
+            try:
+                _append(self.path, line.encode())
+            except OSError as error:
+                raise _unusable(self.path, error) from None
+
+
+def _append(path: Path, data: bytes) -> None:
+    file = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600)
+    try:
+        os.write(file, data)
+    finally:
+        os.close(file)
+
+
+def _unusable(path: Path, error: OSError) -> TangyError:
+    return TangyError(plain(f"{path}: cannot be used ({error.strerror}); choose another --data."))
+
+
+def _key(case: Case) -> str:
+    return json.dumps(list(case), ensure_ascii=False, separators=(",", ":"))
+
+
+def _work(sweep: Sweep, cases: list[Case], where: Where) -> Iterator[tuple[str, Any]]:
+    """Yield the results of cases as they are done, wherever the work is done."""
+    if not cases:
+        return
+    if where.cluster is not None:
+        from tangy_tui.experiments.cluster import on_cluster
+
+        results = on_cluster(where.cluster, sweep.piece, sweep.settings, cases)
+    elif where.jobs == 1 or len(cases) == 1:
+        results = ((index, sweep.piece(sweep.settings, case)) for index, case in enumerate(cases))
+    else:
+        results = _on_cores(where.jobs, sweep, cases)
+    for index, result in results:
+        # Through JSON, so that a result that was just made is what a kept one is.
+        yield _key(cases[index]), json.loads(json.dumps(result))
+
+
+def _on_cores(jobs: int, sweep: Sweep, cases: list[Case]) -> Iterator[tuple[int, Any]]:
+    from joblib import Parallel, delayed
+
+    parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
+    yield from parallel(
+        delayed(_one)(index, sweep.piece, sweep.settings, case) for index, case in enumerate(cases)
+    )
+
+
+def _one(index: int, piece: Piece, settings: Settings, case: Case) -> tuple[int, Any]:
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that hands out work
+    return index, piece(settings, case)
