@@ -1,39 +1,34 @@
-"""Persuasion (III-B-2): Thompson sampling over each person's Beta posteriors picks the strategy."""
+"""Persuasion (III-B-2): what is believed of everybody present picks the strategy for each.
+
+The paper's method is Thompson sampling over Beta posteriors; `methods` has the others.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from datetime import datetime
 from random import Random
-from typing import Protocol
 
-from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
+from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.state import Response
+from tangy_tui.interaction.memory import Known, Memory, Responses, counted, days, unknown
+from tangy_tui.interaction.methods import Method
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A strategy chosen for a person, with the number that was drawn for each of them."""
+    """A strategy chosen for a person, and why.
+
+    `draws` is the score of every strategy that could be used (for the paper's method: the number
+    drawn from its belief), `beliefs` what was believed at that moment, `method` its name.
+    """
 
     person: str
     strategy: str
     draws: Mapping[str, float]
-
-
-class Chooser(Protocol):
-    """A way to choose a strategy from what is believed of a person."""
-
-    def choose(self, beliefs: Mapping[str, Beta], rng: Random) -> Mapping[str, float]:
-        """Return a score for each strategy; the highest is used."""
-        ...
-
-
-class ThompsonSampling:
-    """Draw from every belief and use the strategy with the highest draw, as the paper does."""
-
-    def choose(self, beliefs: Mapping[str, Beta], rng: Random) -> Mapping[str, float]:
-        """Return one draw for each strategy."""
-        return {strategy: belief.sample(rng) for strategy, belief in beliefs.items()}
+    beliefs: Mapping[str, Beta] = field(default_factory=dict)
+    method: str = ""
 
 
 class Persuasion:
@@ -45,28 +40,75 @@ class Persuasion:
         strategies: Sequence[str],
         rng: Random,
         *,
-        counts: Mapping[tuple[str, str], tuple[int, int]] | None = None,
-        chooser: Chooser | None = None,
+        counts: Responses | None = None,
+        method: Method | None = None,
+        memory: Memory | None = None,
     ) -> None:
-        """Begin with Beta(1, 1) plus the responses that are known already.
+        """Begin with what is known already.
 
         Args:
             counts: (person, strategy) -> how often they complied, and did not.
+            method: how to choose and to learn where there is no memory (default: as the paper).
+            memory: recalls each person from the log, with the method that was chosen for them.
         """
-        self.beliefs: dict[str, Beliefs] = {p: uniform_beliefs(strategies) for p in people}
-        for (person, strategy), (complied, refused) in (counts or {}).items():
-            if person in self.beliefs and strategy in self.beliefs[person]:
-                self.beliefs[person][strategy] = Beta(1 + complied, 1 + refused)
+        self._memory = memory
         self._rng = rng
-        self._chooser = chooser or ThompsonSampling()
+        self._known: dict[str, Known] = {}
+        self._touched: dict[str, datetime] = {}
+        self.beliefs: dict[str, Beliefs] = {}
+        for person in people:
+            if memory is not None:
+                self.recall(person, counts)
+                continue
+            self._known[person] = start = unknown(strategies, method)
+            self.beliefs[person] = counted(start.prior, person, counts or {})
+
+    def known(self, person: str) -> Known:
+        """Return the method, prior and switches of a person as they were recalled last."""
+        return self._known[person]
+
+    def recall(self, person: str, counts: Responses | None = None) -> Beliefs:
+        """Read again what the log says of a person, after a void, a late response or a switch."""
+        if self._memory is not None:
+            known = self._memory.recall(person, counts)
+            self._known[person] = known
+            self._touched[person] = self._memory.now()
+            self.beliefs[person] = known.beliefs
+        return self.beliefs[person]
 
     def choose(self, person: str) -> Choice:
-        """Choose the strategy to persuade a person with."""
-        draws = self._chooser.choose(self.beliefs[person], self._rng)
-        return Choice(person, max(draws, key=draws.__getitem__), draws)
+        """Choose the strategy to persuade a person with, among those that are switched on."""
+        known = self._known[person]
+        self._fade(person, known)
+        beliefs = self.beliefs[person]
+        usable = beliefs
+        if known.off:  # an activity may share no strategy with those that are left on
+            usable = {s: b for s, b in beliefs.items() if s not in known.off} or beliefs
+        draws = known.method.scores(usable, self._rng)
+        return Choice(person, self._highest(draws), draws, beliefs, known.method.words)
 
     def update(self, response: Response) -> Beta:
         """Learn from a response (Eq. 2); return the new belief in the strategy that was used."""
-        profile = self.beliefs[response.person]
-        profile[response.strategy] = profile[response.strategy].updated(response.complied)
-        return profile[response.strategy]
+        person, strategy = response.person, response.strategy
+        known = self._known[person]
+        self._fade(person, known)
+        beliefs = known.method.updated(
+            self.beliefs[person], known.prior, strategy, response.complied
+        )
+        self.beliefs[person] = beliefs
+        return beliefs[strategy]
+
+    def _highest(self, draws: Mapping[str, float]) -> str:
+        """Return the strategy with the highest score; of several, one by chance."""
+        top = max(draws.values())
+        best = [strategy for strategy, draw in draws.items() if draw == top]
+        return best[0] if len(best) == 1 else self._rng.choice(best)
+
+    def _fade(self, person: str, known: Known) -> None:
+        """Let the time since a person was last thought of do what it does to their beliefs."""
+        if self._memory is None or not known.method.forgets:
+            return
+        now = self._memory.now()
+        passed = days(self._touched[person], now)
+        self.beliefs[person] = known.method.faded(self.beliefs[person], known.prior, passed)
+        self._touched[person] = now

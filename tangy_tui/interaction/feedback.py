@@ -1,0 +1,238 @@
+"""What staff say about responses afterwards, as events: late, void, switched off, another method.
+
+Nothing is changed in the log: each is an event of its own, each can be taken back, and what
+counts is derived from all of them (see `Store.responses`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.persuading import Persuading
+from tangy_profiles.reading import plain
+from tangy_profiles.store import TAKEN_BACK, VOID, Event, Store
+
+AWAITED = "response awaited"
+"""A request was put to a person and it is not known yet what they did (written by the game)."""
+FEEDBACK = "feedback"
+SWITCHED = "strategy switched"
+METHOD = "method chosen"
+CHANGES = (FEEDBACK, VOID, SWITCHED, METHOD)
+"""What can be taken back."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line of a person's history: a response, or a request whose response is awaited.
+
+    `number` counts from 1 and stays. `request` is what it answers, by uuid: late feedback names
+    an earlier line's, every other line is its own. `at` is when the request was put, `why` the
+    reason it is void, and `settled` says that another line holds the answer to its request.
+    """
+
+    number: int
+    seq: int
+    uuid: str
+    request: str
+    at: datetime
+    game: str | None
+    strategy: str
+    complied: bool | None
+    late: bool
+    void: bool
+    why: str
+    settled: bool = False
+
+    @property
+    def counts(self) -> bool:
+        """Whether the belief rests on it."""
+        return self.complied is not None and not self.void
+
+    @property
+    def open(self) -> bool:
+        """Whether late feedback could still answer its request."""
+        return not (self.counts or self.settled)
+
+
+class Feedback:
+    """The log's side of persuasion. Every method raises TangyError, one sentence, for a mistake."""
+
+    def __init__(self, store: Store) -> None:
+        """Work on a log; one that cannot be written can still be read."""
+        self.store = store
+
+    def history(self, person: str) -> list[Entry]:
+        """Return everything a person was asked to do with a strategy, in the order of the log."""
+        awaited = (e for e in self.store.events(AWAITED) if e.person == person)
+        found = sorted([*self.store.answers(person), *awaited], key=lambda event: event.seq)
+        voids, back = self._gone()
+        times = {event.uuid: event.at for event in found}
+        entries = [
+            _entry(number, event, times, voids, back) for number, event in enumerate(found, 1)
+        ]
+        answered = {entry.request: entry.seq for entry in entries if entry.counts}
+        return [
+            replace(entry, settled=True)
+            if answered.get(entry.request, entry.seq) != entry.seq
+            else entry
+            for entry in entries
+        ]
+
+    def give(self, person: str, strategy: str, complied: bool, of: int | None = None) -> Entry:
+        """Log what a person did, now that it is known.
+
+        Args:
+            of: the seq of the awaited response, or of a void one, that this is the answer to;
+                None: staff asked by themselves, and the log has no request for it.
+
+        Raises:
+            TangyError: the request was answered already, or was another one.
+        """
+        body: dict[str, str | None] = {"of": None, "game": None}
+        if of is not None:
+            request = self._at(person, of)
+            if request.strategy != strategy:
+                wrong = f"That request was put with {request.strategy}, not with {strategy}."
+                raise TangyError(plain(wrong))
+            if not request.open:
+                raise TangyError(
+                    "That request has its answer already, and none counts twice: "
+                    "void the answer first if it is wrong."
+                )
+            body = {"of": request.request, "game": request.game}
+        seq = self.store.append(FEEDBACK, body, person=person, strategy=strategy, complied=complied)
+        return self._at(person, seq)
+
+    def void(self, person: str, seq: int, why: str = "") -> Entry:
+        """Let a response no longer count ("that was not compliance").
+
+        Raises:
+            TangyError: it does not count as it is.
+        """
+        entry = self._at(person, seq)
+        if entry.complied is None:
+            raise TangyError("That request has no response yet that could be void.")
+        if entry.void:
+            raise TangyError("That response is void already.")
+        body = {"of": entry.uuid, "why": why}
+        self.store.append(VOID, body, person=person, strategy=entry.strategy)
+        return self._at(person, seq)
+
+    def last_change(self, person: str | None = None) -> Event | None:
+        """Return what `undo` would take back: the last change (of one person) that still holds."""
+        back = self._back()
+        found = None
+        for event in self.store.events(*CHANGES):
+            if event.uuid not in back and person in (None, event.person):
+                found = event
+        return found
+
+    def undo(self, person: str | None = None) -> Event:
+        """Take back the last change that holds, of one person or of anybody, and return it.
+
+        Raises:
+            TangyError: there is none.
+        """
+        change = self.last_change(person)
+        if change is None:
+            raise TangyError("There is nothing to take back.")
+        body = {"of": change.uuid, "what": change.kind}
+        self.store.append(TAKEN_BACK, body, person=change.person, strategy=change.strategy)
+        return change
+
+    def off(self, person: str) -> frozenset[str]:
+        """Return the strategies that are switched off for a person."""
+        off: set[str] = set()
+        for event in self._holding(SWITCHED, person):
+            if event.strategy is not None:
+                (off.discard if event.body.get("on") else off.add)(event.strategy)
+        return frozenset(off)
+
+    def switch(self, person: str, strategy: str, on: bool, among: Iterable[str]) -> None:
+        """Switch a strategy off for a person, or on again.
+
+        Args:
+            among: the strategies that the activity has.
+
+        Raises:
+            TangyError: it is so already, or none would be left.
+        """
+        off = self.off(person)
+        if (strategy not in off) == on:
+            state = "on" if on else "off"
+            raise TangyError(plain(f"{strategy} is switched {state} already."))
+        if not on and not set(among) - off - {strategy}:
+            raise TangyError(plain(f"{strategy} is the last one left: one must stay on."))
+        self.store.append(SWITCHED, {"on": on}, person=person, strategy=strategy)
+
+    def method(self, person: str) -> Persuading | None:
+        """Return the method that was chosen for a person; None: the activity's."""
+        chosen = None
+        for event in self._holding(METHOD, person):
+            body = event.body.get("chosen")
+            chosen = Persuading.from_json(body) if isinstance(body, dict) else None
+        return chosen
+
+    def choose_method(self, person: str, chosen: Persuading | None) -> None:
+        """Choose a method for a person; None: the activity's again.
+
+        Raises:
+            TangyError: it is so already.
+        """
+        if chosen == self.method(person):
+            raise TangyError("That is the method already.")
+        body = {"chosen": chosen and chosen.to_json()}
+        self.store.append(METHOD, body, person=person)
+
+    def _at(self, person: str, seq: int) -> Entry:
+        for entry in self.history(person):
+            if entry.seq == seq:
+                return entry
+        raise TangyError(plain(f"Event {seq} is not a request to {person}, nor a response."))
+
+    def _holding(self, kind: str, person: str) -> Iterator[Event]:
+        """Yield a person's changes of one kind that were not taken back."""
+        events = [event for event in self.store.events(kind) if event.person == person]
+        back = self._back() if events else frozenset()
+        return (event for event in events if event.uuid not in back)
+
+    def _back(self) -> frozenset[str]:
+        return frozenset(str(event.body.get("of")) for event in self.store.events(TAKEN_BACK))
+
+    def _gone(self) -> tuple[dict[str, str], frozenset[str]]:
+        """Return what is void, with the reasons, and what was taken back, by uuid."""
+        back = self._back()
+        voids = {
+            str(event.body.get("of")): str(event.body.get("why", ""))
+            for event in self.store.events(VOID)
+            if event.uuid not in back
+        }
+        return voids, back
+
+
+def _entry(
+    number: int,
+    event: Event,
+    times: dict[str, str],
+    voids: dict[str, str],
+    back: frozenset[str],
+) -> Entry:
+    late = event.kind == FEEDBACK
+    request = str(event.body.get("of") or event.uuid) if late else event.uuid
+    game = event.body.get("game")
+    return Entry(
+        number=number,
+        seq=event.seq,
+        uuid=event.uuid,
+        request=request,
+        at=datetime.fromisoformat(times.get(request, event.at)),
+        game=str(game) if game is not None else None,
+        strategy=event.strategy or "",
+        complied=event.complied,
+        late=late,
+        void=event.uuid in voids or event.uuid in back,
+        why=voids.get(event.uuid, "taken back" if event.uuid in back else ""),
+    )

@@ -1,0 +1,99 @@
+"""What the log says of a person, put together: method, prior, beliefs, what is switched off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.persuading import PAPER, Persuading
+from tangy_profiles.store import Store
+from tangy_tui.interaction.feedback import Entry, Feedback
+from tangy_tui.interaction.methods import Method, Thompson, method_of, others
+
+DAY = 86_400.0  # s
+
+Responses = Mapping[tuple[str, str], tuple[int, int]]
+"""(person, strategy) -> how often they complied, and did not: `Store.responses()`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What is known of one person at a time, and how the next strategy is chosen for them.
+
+    `prior` is where the beliefs began; `chosen` is the method in words, and `own` says that it
+    was chosen for this person alone.
+    """
+
+    method: Method
+    prior: Beliefs
+    beliefs: Beliefs
+    off: frozenset[str] = frozenset()
+    chosen: Persuading = PAPER
+    own: bool = False
+
+
+class Memory:
+    """Recalls people from the log, by an activity's strategies and its choice of method."""
+
+    def __init__(self, store: Store, strategies: Sequence[str], chosen: Persuading = PAPER) -> None:
+        """Read from a log; `chosen` holds for everybody who has no method of their own."""
+        self.feedback = Feedback(store)
+        self._store = store
+        self._strategies = tuple(strategies)
+        self._chosen = chosen
+
+    def now(self) -> datetime:
+        """Return the time by the log's clock."""
+        return self._store.now()
+
+    def recall(self, person: str, responses: Responses | None = None) -> Known:
+        """Put together what is known of a person now.
+
+        Args:
+            responses: `Store.responses()`, where the caller has them already.
+        """
+        responses = self._store.responses() if responses is None else responses
+        own = self.feedback.method(person)
+        chosen = own or self._chosen
+        method = method_of(chosen, others(responses, person) if chosen.prior == "people" else ())
+        prior = method.prior(self._strategies)
+        if method.forgets:
+            beliefs = replayed(method, prior, self.feedback.history(person), self.now())
+        else:
+            beliefs = counted(prior, person, responses)
+        return Known(method, prior, beliefs, self.feedback.off(person), chosen, own is not None)
+
+
+def unknown(strategies: Sequence[str], method: Method | None = None) -> Known:
+    """Return what is known of a person of whom there is no log."""
+    method = method or Thompson()
+    prior = method.prior(strategies)
+    return Known(method, prior, prior)
+
+
+def counted(prior: Beliefs, person: str, responses: Responses) -> Beliefs:
+    """Add a person's counts to the prior: all that Eq. 2 comes to, in whatever order."""
+    beliefs = dict(prior)
+    for strategy, start in prior.items():
+        yes, no = responses.get((person, strategy), (0, 0))
+        counts = None if start.counts is None else (yes, no)
+        beliefs[strategy] = Beta(start.alpha + yes, start.beta + no, counts)
+    return beliefs
+
+
+def replayed(method: Method, prior: Beliefs, history: Sequence[Entry], now: datetime) -> Beliefs:
+    """Let a method that forgets learn from each response in the order of the requests."""
+    beliefs, at = prior, None
+    for entry in sorted(history, key=lambda entry: (entry.at, entry.seq)):
+        if entry.counts and entry.complied is not None and entry.strategy in prior:
+            beliefs = method.faded(beliefs, prior, days(at, entry.at))
+            beliefs = method.updated(beliefs, prior, entry.strategy, entry.complied)
+            at = entry.at
+    return method.faded(beliefs, prior, days(at, now))
+
+
+def days(since: datetime | None, until: datetime) -> float:
+    """Return the days between two times; none from before the first, or if a clock went back."""
+    return 0.0 if since is None else max(0.0, (until - since).total_seconds() / DAY)
