@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
@@ -55,6 +55,8 @@ class StageRule:
     behaviour: str = ""
     since: str = ""
     at_least: int = 0
+    not_yet: Mapping[str, str] = field(default_factory=dict)
+    """By request (ANR, AR): how to say that nobody has shown this stage yet."""
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,17 @@ class Activity:
         if self.reads(stage) or user_state != self.unread:
             return f"{stage} · {self.state_label(user_state)}"
         return f"{stage} · {'nobody' if request == 'ANR' else 'somebody'} asks"
+
+    def not_yet(self, situation: Situation) -> str:
+        """Say in plain words that a situation has not been shown yet."""
+        stage, request, user_state = situation
+        if self.reads(stage):
+            state = next((s for s in self.user_states if s.name == user_state), None)
+            words = state.not_yet if state is not None else ""
+        else:
+            rules = (rule for rule in self.stage_rules if rule.stage == stage)
+            words = next((w for rule in rules if (w := rule.not_yet.get(request))), "")
+        return words or f"not shown yet: {self.in_words(situation)}"
 
     @cached_property
     def stages(self) -> tuple[str, ...]:
@@ -288,6 +301,7 @@ def _user_states(top: Table) -> tuple[CardState, ...]:
                 entry.text("label", name),
                 entry.choice("checker", CHECKERS),
                 entry.text("hint", ""),
+                entry.text("not_yet", ""),
             )
         )
         entry.close()
@@ -375,20 +389,30 @@ def _stage_rules(top: Table, behaviours: dict[str, Behaviour]) -> tuple[StageRul
     for entry in top.tables("stages"):
         stage = entry.text("name")
         condition = entry.choice("when", CONDITIONS)
+        not_yet = _not_yet(entry.table("not_yet", optional=True))
         if condition in ("before", "after"):
-            rules.append(StageRule(stage, condition, entry.choice("behaviour", behaviours)))
+            rules.append(
+                StageRule(stage, condition, entry.choice("behaviour", behaviours), not_yet=not_yet)
+            )
         elif condition == "count":
             counted = entry.choice("behaviour", behaviours)
             since = entry.choice("since", behaviours)
             if since == counted:
                 raise entry.wrong("since", "must be another behaviour than the counted one.")
-            rules.append(StageRule(stage, condition, counted, since, entry.whole("every", 1, 999)))
+            every = entry.whole("every", 1, 999)
+            rules.append(StageRule(stage, condition, counted, since, every, not_yet))
         else:
-            rules.append(StageRule(stage, condition))
+            rules.append(StageRule(stage, condition, not_yet=not_yet))
         entry.close()
     if not rules or rules[-1].condition != "otherwise":
         raise top.wrong("stages", "the last one must be when = 'otherwise'.")
     return tuple(rules)
+
+
+def _not_yet(table: Table) -> Mapping[str, str]:
+    words = {request: table.text(request) for request in ("ANR", "AR") if request in table}
+    table.close(also=("ANR", "AR"))
+    return MappingProxyType(words)
 
 
 def _expected(

@@ -116,6 +116,7 @@ class CardState:
     label: str
     checker: str
     hint: str
+    not_yet: str = ""
 
 
 def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> str:

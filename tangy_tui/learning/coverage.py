@@ -1,0 +1,45 @@
+"""Coverage: which of the situations that an activity can bring about were demonstrated."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_tui.learning.conflicts import shown_steps
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """How often each situation was demonstrated, in the order of a game."""
+
+    times: dict[Situation, int]
+
+    @property
+    def seen(self) -> list[Situation]:
+        """The situations that were shown at least once."""
+        return [situation for situation, times in self.times.items() if times]
+
+    @property
+    def missing(self) -> list[Situation]:
+        """The situations that nobody has shown yet."""
+        return [situation for situation, times in self.times.items() if not times]
+
+    @property
+    def complete(self) -> bool:
+        """Whether all of them were shown, so that the policy is exact."""
+        return not self.missing
+
+
+def coverage(activity: Activity, demonstrations: Iterable[Demonstration]) -> Coverage:
+    """Count the steps shown in each situation that can come about."""
+    counts = Counter(shown.step.state.situation for shown in shown_steps(demonstrations))
+    return Coverage({situation: counts[situation] for situation in activity.situations})
+
+
+def missing_words(activity: Activity, found: Coverage) -> list[str]:
+    """Say in plain words, a line each, what Tangy has not been shown yet."""
+    return [activity.not_yet(situation) for situation in found.missing]
