@@ -20,6 +20,7 @@ from tangy_profiles.store import Store
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_tui.interaction.facilitation import Facilitation
+    from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
@@ -166,4 +167,11 @@ class House:
             tuple(self.activity.strategies),
             rng,
             counts=self.store.responses(),
+            memory=self.memory(),
         )
+
+    def memory(self) -> Memory:
+        """Make what recalls people from the log, with the activity's choice of method."""
+        from tangy_tui.interaction.memory import Memory
+
+        return Memory(self.store, tuple(self.activity.strategies), self.activity.persuasion)

@@ -15,6 +15,7 @@ from tangy_profiles.activity import Action, Activity
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
+from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.persuasion import Choice, Persuasion
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.world import World
@@ -184,6 +185,9 @@ class Facilitation:
         if outcome.response is not None:
             self._log_response(outcome.response)
             events.append(outcome.response)
+        elif choice is not None and outcome.completed:  # what they did may be known later
+            body = {"game": self._game}
+            self._store.append(AWAITED, body, person=choice.person, strategy=choice.strategy)
         if self.world.over:
             events.append(self._end(None))
         return events

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beta, probability_best
 from tangy_profiles.state import Response
-from tangy_tui.interaction.persuasion import Persuasion, ThompsonSampling
+from tangy_tui.interaction.methods import BayesUcb, Thompson
+from tangy_tui.interaction.persuasion import Persuasion
 
 STRATEGIES = ("neutral", "praise", "suggestion", "scarcity")
 
@@ -126,16 +127,23 @@ def test_regret_is_that_of_thompson_sampling() -> None:
 
 
 def test_another_way_to_choose_can_take_its_place() -> None:
-    class Last:
-        def choose(self, beliefs: Mapping[str, Beta], rng: Random) -> Mapping[str, float]:
+    class Last(Thompson):
+        def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
             return {strategy: float(place) for place, strategy in enumerate(beliefs)}
 
-    persuasion = Persuasion("a", STRATEGIES, Random(1), chooser=Last())
+    persuasion = Persuasion("a", STRATEGIES, Random(1), method=Last())
     assert persuasion.choose("a").strategy == "scarcity"
 
 
-def test_thompson_sampling_draws_once_from_each_belief() -> None:
-    beliefs = {"a": Beta(1000, 1), "b": Beta(1, 1000)}
-    draws = ThompsonSampling().choose(beliefs, Random(1))
-    assert draws["a"] > 0.9
-    assert draws["b"] < 0.1
+def test_equal_scores_are_broken_by_chance() -> None:
+    persuasion = Persuasion("a", STRATEGIES, Random(1), method=BayesUcb())
+    assert {persuasion.choose("a").strategy for _ in range(50)} == set(STRATEGIES)
+
+
+def test_a_choice_keeps_what_was_believed_when_it_was_made() -> None:
+    persuasion = Persuasion("a", STRATEGIES, Random(1))
+    choice = persuasion.choose("a")
+    persuasion.update(response("a", choice.strategy, True))
+    assert choice.beliefs == dict.fromkeys(STRATEGIES, Beta(1, 1))
+    assert choice.method == "Thompson sampling"
+    assert persuasion.beliefs["a"][choice.strategy] == Beta(2, 1)
