@@ -1,0 +1,254 @@
+"""Every way to choose a strategy, beside the paper's, on the same draws and without games.
+
+Person i at interaction t would answer strategy s the same way whichever method asks, so that
+methods differ by what they choose and by nothing else. Regret is the expected compliance lost:
+the sum, over interactions, of the best strategy's rate less the chosen one's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from math import log
+from random import Random
+from typing import Any
+
+from tangy_sim.users import load_users
+from tangy_tui.experiments.estimates import summary
+from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
+from tangy_tui.interaction.methods import (
+    BayesUcb,
+    Counts,
+    EarlierPeople,
+    Forgetting,
+    Method,
+    Thompson,
+)
+
+HORIZONS = (23, 60, 300)
+"""Interactions at which regret is reported: 20 games of the paper are 23 of them."""
+
+KEEP = 0.98
+"""The share that the forgetting methods keep from one interaction to the next."""
+
+EARLIER = 40
+"""People whom the robot has met before, for the methods that begin from them."""
+
+MET = 23
+"""How often it has met each of them."""
+
+CHANGE = 100
+"""The interaction after which everybody's preference is another one, where they drift."""
+
+A_PIECE = 100
+"""People in one piece of work."""
+
+Rates = tuple[float, ...]
+"""One person's probabilities of complying, strategy by strategy."""
+
+METHODS: Mapping[str, Callable[[Sequence[Counts]], Method]] = {
+    "thompson": lambda earlier: Thompson(),
+    "bayes_ucb": lambda earlier: BayesUcb(),
+    "thompson_prior": lambda earlier: EarlierPeople(Thompson(), earlier),
+    "bayes_ucb_prior": lambda earlier: EarlierPeople(BayesUcb(), earlier),
+    "thompson_forgetting": lambda earlier: Forgetting(Thompson(), KEEP),
+    "bayes_ucb_forgetting": lambda earlier: Forgetting(BayesUcb(), KEEP),
+}
+"""The options that the program offers, each made with the counts of earlier people."""
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """A crowd of people to choose for.
+
+    `alike`: how much all have in common: 0 for preferences that are shared out evenly, and
+    otherwise the concentration of each strategy's rate around its mean among `means`. `drift`:
+    the interaction after which preferences move on to the next strategy (0: never).
+    """
+
+    name: str
+    words: str
+    means: Rates = ()
+    alike: float = 0.0
+    drift: int = 0
+
+    def rates(self, person: int, strategies: int, seed: int) -> Rates:
+        """Return the rates of one person."""
+        if not self.means:
+            users = load_users()
+            return tuple(
+                users.preferred if place == person % strategies else users.other
+                for place in range(strategies)
+            )
+        draw = Random(f"{seed}/{self.name}/{person}").betavariate
+        means = [self.means[place % len(self.means)] for place in range(strategies)]
+        return tuple(draw(self.alike * mean, self.alike * (1 - mean)) for mean in means)
+
+    def at(self, rates: Rates, time: int) -> Rates:
+        """Return a person's rates at an interaction (from 0)."""
+        return rates[-1:] + rates[:-1] if self.drift and time >= self.drift else rates
+
+
+CROWDS = {
+    crowd.name: crowd
+    for crowd in (
+        Crowd("even", "each strategy is the best for as many people; nobody changes"),
+        Crowd(
+            "uneven",
+            "most people like the same; rates are drawn around a mean for each strategy",
+            means=(0.8, 0.6, 0.45, 0.3),
+            alike=6.0,
+        ),
+        Crowd("drifting", "even, until everybody changes at once", drift=CHANGE),
+    )
+}
+
+
+def meet(settings: Settings, case: Case) -> list[list[float]]:
+    """Let a method meet people: a case is (crowd, method, first person, how many).
+
+    Returns:
+        For each person: the regret at each of HORIZONS, the share of optimal choices in all, and
+        the share of optimal choices in the interactions after CHANGE, as many again.
+    """
+    crowd, name, first, count = case
+    strategies, seed = settings["strategies"], settings["seed"]
+    earlier = earlier_people(crowd, strategies, seed) if name.endswith("_prior") else ()
+    method = METHODS[name](earlier)
+    return [
+        _met(CROWDS[crowd], method, person, Random(f"{seed}/{name}/{person}"), strategies, seed)
+        for person in range(first, first + count)
+    ]
+
+
+def _met(
+    crowd: Crowd, method: Method, person: int, rng: Random, strategies: int, seed: int
+) -> list[float]:
+    regret, optimal, marks = 0.0, [], []
+    rates = crowd.rates(person, strategies, seed)
+    best, loss = _stakes(crowd, rates)
+    for time, chosen, _ in choices(crowd, method, person, rng, strategies, seed, HORIZONS[-1]):
+        late = bool(crowd.drift) and time >= crowd.drift
+        regret += loss[late][chosen]
+        optimal.append(chosen == best[late])
+        if time + 1 in HORIZONS:
+            marks.append(regret)
+    after = optimal[CHANGE : 2 * CHANGE]
+    return [*marks, sum(optimal) / len(optimal), sum(after) / len(after)]
+
+
+def _stakes(crowd: Crowd, rates: Rates) -> tuple[list[int], list[list[float]]]:
+    """Return the best strategy, and what each one loses, before and after a change."""
+    both = [rates, crowd.at(rates, crowd.drift)]
+    best = [max(range(len(now)), key=now.__getitem__) for now in both]
+    return best, [[now[b] - rate for rate in now] for now, b in zip(both, best, strict=True)]
+
+
+def choices(
+    crowd: Crowd,
+    method: Method,
+    person: int,
+    rng: Random,
+    strategies: int,
+    seed: int,
+    times: int,
+) -> list[tuple[int, int, bool]]:
+    """Meet one person so many times; return (time, chosen strategy, complied) for each.
+
+    Args:
+        rng: the method's own chance; what the person would answer does not depend on it.
+    """
+    names = [str(place) for place in range(strategies)]
+    answers = Random(f"{seed}/answers/{person}").random
+    rates = crowd.rates(person, strategies, seed)
+    prior = method.prior(names)
+    beliefs = prior
+    met: list[tuple[int, int, bool]] = []
+    for time in range(times):
+        scores = method.scores(beliefs, rng)
+        most = max(scores.values())
+        leading = [name for name in names if scores[name] == most]
+        chosen = leading[0] if len(leading) == 1 else leading[int(rng.random() * len(leading))]
+        place = int(chosen)
+        would = [answers() for _ in names]
+        complied = would[place] < crowd.at(rates, time)[place]
+        beliefs = method.updated(beliefs, prior, chosen, complied)
+        met.append((time, place, complied))
+    return met
+
+
+@cache
+def earlier_people(crowd: str, strategies: int, seed: int) -> tuple[Counts, ...]:
+    """Meet EARLIER people of a crowd by Thompson sampling, and return their counts.
+
+    They are others than those who are met later.
+    """
+    found: list[Counts] = []
+    for person in range(-EARLIER, 0):
+        counts: dict[str, tuple[int, int]] = {}
+        rng = Random(f"{seed}/earlier/{person}")
+        met = choices(CROWDS[crowd], Thompson(), person, rng, strategies, seed, MET)
+        for _, place, complied in met:
+            yes, no = counts.get(str(place), (0, 0))
+            counts[str(place)] = (yes + complied, no + (not complied))
+        found.append(counts)
+    return tuple(found)
+
+
+def lai_robbins(best: float, others: Sequence[float]) -> float:
+    """Return the factor of log T below which no uniformly good method's regret can stay.
+
+    It is the sum over the other strategies of (best - p) / KL(p, best) (Lai and Robbins 1985). It
+    says how regret grows in the long run, and does not bound it at a small T.
+    """
+
+    def divergence(p: float, q: float) -> float:
+        return sum(a * log(a / b) for a, b in ((p, q), (1 - p, 1 - q)) if a > 0)
+
+    return sum((best - p) / divergence(p, best) for p in others if p < best)
+
+
+def run(strategies: int, people: int, seed: int, where: Where) -> dict[str, Any]:
+    """Let every method meet every crowd; the even one in full, the others a quarter of it."""
+    settings = {"strategies": strategies, "seed": seed}
+    many = {"even": people, "uneven": -(-people // 4), "drifting": -(-people // 4)}
+    cases = [
+        (crowd, name, first, min(A_PIECE, many[crowd] - first))
+        for crowd in CROWDS
+        for name in METHODS
+        for first in range(0, many[crowd], A_PIECE)
+    ]
+    results = Sweep("algorithms", meet, settings, cases).run(where)
+    met: dict[tuple[str, str], list[list[float]]] = {}
+    for (crowd, name, _, _), rows in zip(cases, results, strict=True):
+        met.setdefault((crowd, name), []).extend(rows)
+    users = load_users()
+    factor = lai_robbins(users.preferred, [users.other] * (strategies - 1))
+    return {
+        "algorithms": {name: _row(met["even", name]) for name in METHODS},
+        "uneven": {name: _row(met["uneven", name]) for name in METHODS},
+        "drifting": {name: _row(met["drifting", name]) for name in METHODS},
+        "lai_robbins": {
+            "factor": factor,
+            "regret": {str(horizon): factor * log(horizon) for horizon in HORIZONS},
+        },
+        "crowds": {
+            crowd.name: {"words": crowd.words, "means": crowd.means} for crowd in CROWDS.values()
+        },
+        "keep": KEEP,
+        "earlier_people": EARLIER,
+        "change": CHANGE,
+    }
+
+
+def _row(people: Sequence[Sequence[float]]) -> dict[str, Any]:
+    columns = list(zip(*people, strict=True))
+    regrets = {str(h): summary(columns[place]) for place, h in enumerate(HORIZONS)}
+    return {
+        "n": len(people),
+        "regret": {horizon: regret["mean"] for horizon, regret in regrets.items()},
+        "regret_se": {horizon: regret["se"] for horizon, regret in regrets.items()},
+        "optimal_share": summary(columns[len(HORIZONS)])["mean"],
+        "optimal_share_after_change": summary(columns[len(HORIZONS) + 1])["mean"],
+    }

@@ -1,0 +1,152 @@
+"""Scenario 2: does Tangy find out which strategy works with whom, and how soon?
+
+Games are facilitated by a policy that was learnt as in Scenario 1, for four people who each
+comply best with another strategy. What is counted is how often the chosen strategy was the best
+one, interaction by interaction, and how many others were tried before one was settled on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from itertools import islice
+from random import Random
+from typing import Any
+
+from tangy_profiles.person import load_people
+from tangy_sim.compliance import preferences_in_turn
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.experiments.classroom import GUIDED, Course, activity_of, learnt, taught
+from tangy_tui.experiments.estimates import summary
+from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.learning.policy import Policy
+
+CONVERGED = 10
+"""Optimal strategies in a row that count as convergence; the paper does not say its own."""
+
+SHOWN = 60
+"""Interactions of each person that Fig. 5 is drawn over."""
+
+LONGEST = 2_000
+"""Games after which somebody who has not converged is counted as such."""
+
+GROUPS_A_PIECE = 5
+
+
+@cache
+def policy_of(activity: str, users: int) -> Policy:
+    """Learn the policy that facilitates, from one guided demonstration of Scenario 1."""
+    course = Course(activity, users, GUIDED, 1)
+    return learnt(activity_of(activity), list(islice(taught(course), 1)))
+
+
+def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
+    """Play games with some groups until everybody has converged: a case is (first seed, groups).
+
+    Returns:
+        One document a group: `games`, `interactions` of everybody in these, and for each person
+        (in their order) `optimal`, the first interactions as a text of 1 (the best strategy) and
+        0, and `suboptimal`, how many others came before convergence (None: it never came).
+    """
+    first, groups = case
+    return [_group(settings, seed) for seed in range(first, first + groups)]
+
+
+def _group(settings: Settings, seed: int) -> dict[str, Any]:
+    activity = activity_of(settings["activity"])
+    people = tuple(person.id for person in load_people(settings["users"]))
+    preferences = preferences_in_turn(people, tuple(activity.strategies), load_users())
+    best = {person: max(liked, key=liked.__getitem__) for person, liked in preferences.items()}
+    policy = policy_of(activity.name, settings["users"])
+    world = SimulatedWorld(activity, people, seed=seed, preferences=preferences)
+    persuasion = Persuasion(people, tuple(activity.strategies), Random(f"{seed}/persuasion"))
+    optimal: dict[str, list[bool]] = {person: [] for person in people}
+    games = 0
+    while games < LONGEST and not all(_enough(chosen) for chosen in optimal.values()):
+        if games:
+            world.begin()
+        games += 1
+        while not world.over:
+            state = world.observe()
+            behaviour = activity.behaviours[policy.decide(state.situation).behaviour]
+            target = state.attended if behaviour.attends else None
+            strategy = None
+            if behaviour.persuades and target is not None:
+                strategy = persuasion.choose(target).strategy
+            response = world.execute(activity.action(behaviour, target, strategy)).response
+            if response is not None:
+                optimal[response.person].append(response.strategy == best[response.person])
+                persuasion.update(response)
+    return {
+        "games": games,
+        "interactions": [len(chosen) for chosen in optimal.values()],
+        "optimal": ["".join(map(str, map(int, c[:SHOWN]))) for c in optimal.values()],
+        "suboptimal": [suboptimal_before_convergence(c) for c in optimal.values()],
+    }
+
+
+def _enough(chosen: Sequence[bool]) -> bool:
+    return len(chosen) >= SHOWN and suboptimal_before_convergence(chosen) is not None
+
+
+def suboptimal_before_convergence(optimal: Sequence[bool], in_a_row: int = CONVERGED) -> int | None:
+    """Count the sub-optimal choices before the first run of optimal ones; None without a run."""
+    others = run = 0
+    for best in optimal:
+        run = run + 1 if best else 0
+        others += not best
+        if run == in_a_row:
+            return others
+    return None
+
+
+def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict[str, Any]:
+    """Play with many groups of people and say what Scenario 2 says of its four."""
+    settings = {"activity": activity, "users": users}
+    cases = [
+        (seed * 1_000_000 + at, min(GROUPS_A_PIECE, groups - at))
+        for at in range(0, groups, GROUPS_A_PIECE)
+    ]
+    pieces = Sweep("persuading", play, settings, cases).run(where)
+    return _document(activity, users, [group for piece in pieces for group in piece])
+
+
+def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    activity = activity_of(name)
+    people = load_people(users)
+    model = load_users()
+    ids = [person.id for person in people]
+    preferences = preferences_in_turn(ids, tuple(activity.strategies), model)
+    everybody = [count for group in groups for count in group["suboptimal"]]
+    converged = [count for count in everybody if count is not None]
+    games = sum(group["games"] for group in groups)
+    interactions = sum(sum(group["interactions"]) for group in groups)
+    return {
+        "users": [
+            {
+                "name": person.name,
+                "best": max(preferences[person.id], key=preferences[person.id].__getitem__),
+                "optimal_share": [
+                    sum(group["optimal"][place][at] == "1" for group in groups) / len(groups)
+                    for at in range(SHOWN)
+                ],
+                "one_run": [int(digit) for digit in groups[0]["optimal"][place]],
+            }
+            for place, person in enumerate(people)
+        ],
+        "suboptimal_before_convergence": {
+            **summary(converged),
+            "converged_means_in_a_row": CONVERGED,
+            "never": len(everybody) - len(converged),
+        },
+        "four_users": summary(
+            [sum(g["suboptimal"]) / users for g in groups if None not in g["suboptimal"]]
+        ),
+        "interactions_per_user_game": interactions / (games * users),
+        "games": games,
+        "groups": len(groups),
+        "preferred": model.preferred,
+        "other": model.other,
+    }
