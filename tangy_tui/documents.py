@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from random import Random
 from typing import Any
 
-from tangy_profiles.beliefs import probability_best
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.person import Person
 from tangy_tui.house import House
+from tangy_tui.interaction import saying
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.record import Record
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.reachable import joint_states
@@ -67,20 +67,57 @@ def policy_document(house: House, policy: Policy) -> dict[str, Any]:
     }
 
 
-def person_document(house: House, person: Person) -> dict[str, Any]:
-    """Describe what is believed of one person, strategy by strategy."""
-    profile = house.persuasion(Random(0)).beliefs[person.id]
-    best = probability_best(profile)
+def person_document(record: Record) -> dict[str, Any]:
+    """Describe what is known of one person, strategy by strategy, and where it comes from."""
+    known = record.known
     return {
-        "id": person.id,
-        "name": person.name,
+        "id": record.person.id,
+        "name": record.person.name,
         "beliefs": {
             strategy: {
                 "alpha": belief.alpha,
                 "beta": belief.beta,
                 "mean": belief.mean,
-                "p_best": best[strategy],
+                "p_best": record.best[strategy],
+                "interval": list(belief.interval()),
+                "complied": belief.complied,
+                "trials": belief.trials,
+                "prior": [known.prior[strategy].alpha, known.prior[strategy].beta],
+                "on": strategy not in known.off,
             }
-            for strategy, belief in profile.items()
+            for strategy, belief in record.beliefs.items()
         },
+        "settled": record.settled,
+        "method": {
+            **known.chosen.to_json(),
+            "own": known.own,
+            "words": known.method.words,
+        },
+        "prior": saying.prior_words(known.prior),
+        "sentence": saying.sentence(record),
+        "last_seen": record.seen and record.seen.isoformat(),
+        "games": [
+            {
+                "game": game.id,
+                "at": game.begun.isoformat(),
+                "responses": [entry_document(entry) for entry in game.entries],
+            }
+            for game in record.games
+        ],
+    }
+
+
+def entry_document(entry: Entry) -> dict[str, Any]:
+    """Describe one line of a person's history; its number is what `people void` takes."""
+    return {
+        "number": entry.number,
+        "at": entry.at.isoformat(),
+        "game": entry.game,
+        "strategy": entry.strategy,
+        "complied": entry.complied,
+        "late": entry.late,
+        "void": entry.void,
+        "why": entry.why,
+        "counts": entry.counts,
+        "open": entry.open,
     }

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
+    from tangy_tui.interaction.record import Record
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
     from tangy_tui.world import World
@@ -175,3 +176,9 @@ class House:
         from tangy_tui.interaction.memory import Memory
 
         return Memory(self.store, tuple(self.activity.strategies), self.activity.persuasion)
+
+    def records(self, *people: Person) -> list[Record]:
+        """Read what is to be told of people (of everybody, if none is named)."""
+        from tangy_tui.interaction.record import read_records
+
+        return read_records(self.store, self.memory(), people or self.people)

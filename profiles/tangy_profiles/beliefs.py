@@ -114,7 +114,14 @@ def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
     return {strategy: value / whole for strategy, value in raw.items()}
 
 
+def leading(best: Mapping[str, float]) -> str | None:
+    """Return the strategy that is most probably the best; None where no single one is."""
+    top = max(best.values(), default=0.0)
+    leaders = [strategy for strategy, share in best.items() if share > top - 1e-9]
+    return leaders[0] if len(leaders) == 1 else None
+
+
 def settled(best: Mapping[str, float]) -> str | None:
     """Return the strategy that is settled on, its P(best) being .9 or more; None: not yet."""
-    leading = max(best, key=best.__getitem__, default=None)
-    return leading if leading is not None and best[leading] >= SETTLED else None
+    first = leading(best)
+    return first if first is not None and best[first] >= SETTLED else None

@@ -13,6 +13,9 @@ from tangy_profiles.reading import Table, nearest, plain
 METHODS = ("thompson", "bayes-ucb")
 PRIORS = ("uniform", "people")
 PERIODS = ("interaction", "day")
+DEFAULT = "default"
+"""The word for the activity's own choice."""
+
 LEAST_KEPT = 0.5
 """What keeps less than half of itself each time learns nothing."""
 
@@ -93,7 +96,7 @@ def _meant(word: str) -> tuple[str, Any]:
     try:
         share = float(word)
     except ValueError:
-        known_words = (*METHODS, *PRIORS, *PERIODS)
+        known_words = (*METHODS, *PRIORS, *PERIODS, DEFAULT)
         raise ProfileError(
             plain(f"There is no method {word!r}: {nearest(word, known_words)}")
         ) from None

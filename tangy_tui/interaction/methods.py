@@ -165,7 +165,7 @@ class Forgetting:
     def words(self) -> str:
         """Its name, with how fast it forgets."""
         every = "day" if self.daily else "interaction"
-        return f"{self.inner.words}, forgetting {1 - self.keep:.3g} of it with each {every}"
+        return f"{self.inner.words}, forgetting {100 * (1 - self.keep):.3g}% with each {every}"
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
         """Do as the inner one does."""

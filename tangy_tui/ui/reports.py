@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from random import Random
 from typing import TypeVar
 
 from rich import box
@@ -13,8 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.beliefs import Beliefs, probability_best
-from tangy_profiles.person import Person
+from tangy_profiles.beliefs import Beliefs, leading, probability_best
 from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import Effects
@@ -85,38 +83,18 @@ def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> N
         console.print(Text(f"{stopped} stopped: {reason}"))
 
 
-def print_people(house: House) -> None:
-    """Print everybody with the strategies tried on them."""
-    Console(highlight=False).print(_people_table(house, house.persuasion(Random(0)).beliefs))
-
-
-def print_person(house: House, person: Person) -> None:
-    """Print one person's strategies in full."""
-    profile = house.persuasion(Random(0)).beliefs[person.id]
-    best = probability_best(profile)
-    table = _table(f"{person.name} ({person.id})", "strategy", "complied", "mean", "P(best)")
-    for strategy, belief in profile.items():
-        table.add_row(
-            strategy,
-            f"{belief.alpha - 1:.0f} of {belief.trials}",
-            f"{belief.mean:.2f}",
-            f"{best[strategy]:.2f}",
-        )
-    Console(highlight=False).print(table)
-
-
 def _people_table(house: House, beliefs: Mapping[str, Beliefs]) -> Table:
     strategies = tuple(house.activity.strategies)
     table = _table("Complied, of times tried (P(best))", "person", *strategies)
     for person, profile in beliefs.items():
         best = probability_best(profile)
-        leading = max(best, key=best.__getitem__)
+        leads = leading(best)
         table.add_row(
             Text(house.name(person)),
             *(
                 Text(
                     f"{profile[s].alpha - 1:.0f}/{profile[s].trials} ({best[s]:.2f})"
-                    + (" *" if s == leading and profile[s].trials else ""),
+                    + (" *" if s == leads and profile[s].trials else ""),
                 )
                 for s in strategies
             ),

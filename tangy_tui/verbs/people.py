@@ -1,55 +1,204 @@
-"""`tangy people`: who takes part, and what works with them."""
+"""`tangy people`: who takes part, what works with them, and what staff say about it."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, Users, open_house, print_json
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import nearest, plain
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, open_house, print_json
+
+if TYPE_CHECKING:
+    from tangy_profiles.person import Person
+    from tangy_tui.house import House
+    from tangy_tui.interaction.feedback import Entry
+    from tangy_tui.interaction.record import Record
 
 app = typer.Typer(rich_markup_mode=None, help="Who takes part, and what works with them.")
+
+Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
+Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the activity.")]
 
 
 @app.command("list")
 def people_list(
-    seed: Seed = None, data: Data = None, users: Users = 4, as_json: Json = False
-) -> None:
-    """List the people, with how often each strategy has worked."""
-    from tangy_tui.documents import person_document
-    from tangy_tui.ui import reports
-
-    with open_house(data, "bingo", users, write=False) as house:
-        if as_json:
-            print_json([person_document(house, person) for person in house.people])
-        else:
-            reports.print_people(house)
-
-
-@app.command("show")
-def people_show(
-    person: Annotated[str, typer.Argument(help="An id or a name.")],
+    activity: ActivityName = "bingo",
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
     as_json: Json = False,
 ) -> None:
-    """Show one person: every strategy with counts, mean and P(best)."""
+    """List the people, with how often each strategy has worked."""
     from tangy_tui.documents import person_document
-    from tangy_tui.ui import reports
+    from tangy_tui.ui import people_report
 
-    with open_house(data, "bingo", users, write=False) as house:
-        found = house.find_person(person)
+    with open_house(data, activity, users, write=False) as house:
+        records = house.records()
         if as_json:
-            print_json(person_document(house, found))
+            print_json([person_document(record) for record in records])
         else:
-            reports.print_person(house, found)
+            people_report.print_people(records)
+
+
+@app.command("show")
+def people_show(
+    person: Who,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Show one person: what works, how sure that is, and the history game by game."""
+    from tangy_tui.ui import people_report
+
+    with open_house(data, activity, users, write=False) as house:
+        record = _record(house, house.find_person(person))
+        if not _printed(record, as_json):
+            people_report.print_person(record)
+
+
+@app.command("history")
+def people_history(
+    person: Who,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """List what a person was asked to do, game by game, with the numbers `void` takes."""
+    from tangy_tui.documents import entry_document
+    from tangy_tui.ui import people_report
+
+    with open_house(data, activity, users, write=False) as house:
+        record = _record(house, house.find_person(person))
+        if as_json:
+            print_json([entry_document(entry) for entry in record.history])
+        else:
+            people_report.print_history(record)
+
+
+@app.command("void")
+def people_void(
+    person: Who,
+    number: Annotated[
+        int | None, typer.Argument(help="Its number in the history; without one, the last.")
+    ] = None,
+    why: Annotated[str, typer.Option(help="The reason, for the log.")] = "",
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Let a response no longer count ("that was not compliance")."""
+    with _changing(data, activity, users, person, as_json) as (house, found):
+        feedback = house.memory().feedback
+        entry = _numbered(feedback.history(found.id), number, found)
+        feedback.void(found.id, entry.seq, why)
+
+
+@app.command("feedback")
+def people_feedback(
+    person: Who,
+    strategy: Strategy,
+    complied: Annotated[str, typer.Argument(metavar="yes|no", help="Whether they complied.")],
+    of: Annotated[
+        int | None, typer.Option(help="The number in the history of the request it answers.")
+    ] = None,
+    seen: Annotated[
+        bool, typer.Option("--seen", help="Staff asked themselves: the log has no request for it.")
+    ] = False,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Say later what a person did about a request that waits for an answer."""
+    with _changing(data, activity, users, person, as_json) as (house, found):
+        feedback = house.memory().feedback
+        _known(strategy, house.activity.strategies, "strategy")
+        _known(complied, ("yes", "no"), "answer")
+        if seen and of is not None:
+            raise TangyError("Choose one: --of for a request in the history, or --seen for none.")
+        history = feedback.history(found.id)
+        request = None if seen else _awaiting(history, strategy, of, found)
+        of_seq = None if request is None else request.seq
+        feedback.give(found.id, strategy, complied == "yes", of_seq)
+
+
+@app.command("switch")
+def people_switch(
+    person: Who,
+    strategy: Strategy,
+    state: Annotated[str, typer.Argument(metavar="on|off")],
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Switch a strategy off for a person, or on again."""
+    with _changing(data, activity, users, person, as_json) as (house, found):
+        strategies = house.activity.strategies
+        _known(strategy, strategies, "strategy")
+        _known(state, ("on", "off"), "state")
+        house.memory().feedback.switch(found.id, strategy, state == "on", strategies)
+
+
+@app.command("method")
+def people_method(
+    person: Who,
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="WORDS...",
+            help="thompson or bayes-ucb; uniform or people (where beliefs begin); a share that is "
+            "kept, such as 0.98, with each interaction or day. Or: default.",
+        ),
+    ],
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Choose how Tangy persuades one person; `default` is as the activity has it."""
+    from tangy_profiles.persuading import DEFAULT, spoken_persuading
+
+    with _changing(data, activity, users, person, as_json) as (house, found):
+        chosen = None if words == [DEFAULT] else spoken_persuading(words)
+        house.memory().feedback.choose_method(found.id, chosen)
+
+
+@app.command("undo")
+def people_undo(
+    person: Who,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Take back the last of these changes to a person; again takes back the one before."""
+    from tangy_tui.interaction.saying import change_words
+
+    with _changing(data, activity, users, person, as_json) as (house, found):
+        change = house.memory().feedback.undo(found.id)
+        if not as_json:
+            print(plain(f"Taken back: {change_words(change)}."))
 
 
 @app.command("rename")
 def people_rename(
-    person: Annotated[str, typer.Argument(help="An id or a name.")],
+    person: Who,
     name: Annotated[str, typer.Argument(help="The new name.")],
     seed: Seed = None,
     data: Data = None,
@@ -64,3 +213,72 @@ def people_rename(
             print_json({"id": found.id, "name": name})
         else:
             print(f"{found.id} is now called {plain(name)}.")
+
+
+@contextmanager
+def _changing(
+    data: Path | None, activity: str, users: int, person: str, as_json: bool
+) -> Iterator[tuple[House, Person]]:
+    """Open the house for a change to a person, and say afterwards what is now known of them."""
+    from tangy_tui.interaction.saying import sentence
+
+    with open_house(data, activity, users) as house:
+        found = house.find_person(person)
+        yield house, found
+        record = _record(house, found)
+        if not _printed(record, as_json):
+            print(plain(f"Now: {sentence(record)}."))
+            off = sorted(record.known.off)
+            print(plain(f"Method: {record.known.method.words}.") + _off_words(off))
+
+
+def _off_words(off: list[str]) -> str:
+    return plain(f" Switched off: {', '.join(off)}.") if off else ""
+
+
+def _record(house: House, person: Person) -> Record:
+    (record,) = house.records(person)
+    return record
+
+
+def _printed(record: Record, as_json: bool) -> bool:
+    from tangy_tui.documents import person_document
+
+    if as_json:
+        print_json(person_document(record))
+    return as_json
+
+
+def _known(word: str, words: Iterable[str], what: str) -> None:
+    """Refuse a word that is none of these, with the nearest one."""
+    if word not in words:
+        raise TangyError(plain(f"There is no {what} {word!r}: {nearest(word, words)}"))
+
+
+def _numbered(history: list[Entry], number: int | None, person: Person) -> Entry:
+    """Return the line of a history with a number; without one, the last that counts."""
+    counting = [entry for entry in history if entry.counts]
+    if number is None and counting:
+        return counting[-1]
+    for entry in history:
+        if entry.number == number:
+            return entry
+    if number is None:
+        raise TangyError(plain(f"{person.name} has no response that counts."))
+    most = f"1 to {len(history)}" if history else "none yet"
+    raise TangyError(plain(f"{person.name} has no response number {number}: there are {most}."))
+
+
+def _awaiting(history: list[Entry], strategy: str, of: int | None, person: Person) -> Entry:
+    """Return the request that late feedback answers: the numbered one, or the last open one."""
+    if of is not None:
+        return _numbered(history, of, person)
+    waiting = [entry for entry in history if entry.open and entry.strategy == strategy]
+    if not waiting:
+        raise TangyError(
+            plain(
+                f"No request to {person.name} with {strategy} waits for an answer: void a wrong "
+                f"answer first, or add --seen if staff asked themselves."
+            )
+        )
+    return waiting[-1]

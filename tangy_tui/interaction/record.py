@@ -1,0 +1,110 @@
+"""One person's record: what is believed of them, how sure that is, and the history game by game."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from tangy_profiles.beliefs import Beliefs, leading, probability_best, settled
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_tui.interaction.facilitation import BEGUN
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.memory import Known, Memory
+
+
+@dataclass(frozen=True, slots=True)
+class Game:
+    """What one person was asked to do in one game; without an id: outside of any."""
+
+    id: str | None
+    begun: datetime
+    entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Everything that is told of one person.
+
+    `best` is, for each strategy, the probability that it is the best of those that are switched
+    on (of one that is off: 0); `settled` is the one that is as good as known. `seen` is when the
+    person last took part, and `now` when all this was read.
+    """
+
+    person: Person
+    known: Known
+    best: Mapping[str, float]
+    settled: str | None
+    history: tuple[Entry, ...]
+    games: tuple[Game, ...]
+    seen: datetime | None
+    now: datetime
+
+    @property
+    def beliefs(self) -> Beliefs:
+        """What is believed of the person now."""
+        return self.known.beliefs
+
+    @property
+    def leading(self) -> str | None:
+        """Return the strategy that is most probably the best; None where several are."""
+        return leading(self.best)
+
+
+def read_records(store: Store, memory: Memory, people: Iterable[Person]) -> list[Record]:
+    """Read the records of some people."""
+    responses = store.responses()
+    begun: dict[str, datetime] = {}
+    present: dict[str, datetime] = {}
+    for event in store.events(BEGUN):
+        at = datetime.fromisoformat(event.at)
+        begun[str(event.body.get("game"))] = at
+        present.update(dict.fromkeys(map(str, event.body.get("people", ())), at))
+    return [
+        _record(person, memory, memory.recall(person.id, responses), begun, present)
+        for person in people
+    ]
+
+
+def _record(
+    person: Person,
+    memory: Memory,
+    known: Known,
+    begun: Mapping[str, datetime],
+    present: Mapping[str, datetime],
+) -> Record:
+    history = tuple(memory.feedback.history(person.id))
+    best = best_of_those_on(known.beliefs, known.off)
+    times = [entry.at for entry in history]
+    if person.id in present:
+        times.append(present[person.id])
+    return Record(
+        person=person,
+        known=known,
+        best=best,
+        settled=settled(best),
+        history=history,
+        games=_games(history, begun),
+        seen=max(times, default=None),
+        now=memory.now(),
+    )
+
+
+def best_of_those_on(beliefs: Beliefs, off: frozenset[str] = frozenset()) -> dict[str, float]:
+    """Return P(best) of each strategy among those that are switched on; 0 for the others."""
+    on = {strategy: b for strategy, b in beliefs.items() if strategy not in off} or beliefs
+    best = probability_best(on)
+    return {strategy: best.get(strategy, 0.0) for strategy in beliefs}
+
+
+def _games(history: Sequence[Entry], begun: Mapping[str, datetime]) -> tuple[Game, ...]:
+    """Group a history by game, in the order in which the games began."""
+    found: dict[str | None, list[Entry]] = {}
+    for entry in history:
+        found.setdefault(entry.game, []).append(entry)
+    games = (
+        Game(id, begun.get(id or "", entries[0].at), tuple(entries))
+        for id, entries in found.items()
+    )
+    return tuple(sorted(games, key=lambda game: game.begun))

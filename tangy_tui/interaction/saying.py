@@ -1,0 +1,110 @@
+"""What is known of a person, in the words of somebody who works with people."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.store import VOID, Event
+from tangy_tui.interaction.feedback import FEEDBACK, METHOD, Entry
+from tangy_tui.interaction.record import Record
+
+SELDOM = 0.5
+"""A best strategy that works less often than this is not said to work."""
+
+
+def sentence(record: Record) -> str:
+    """Say in one line what works with a person, on how much that rests, and when they were seen."""
+    return _what_works(record) + (
+        f", last seen {ago(record.seen, record.now)}" if record.seen is not None else ""
+    )
+
+
+def _what_works(record: Record) -> str:
+    name, best = record.person.name, record.leading
+    responses = sum(belief.trials for belief in record.beliefs.values())
+    if best is None:
+        if not responses:
+            return f"nothing is known of {name} yet"
+        return f"not clear yet what works with {name}: {_many(responses)} so far"
+    belief = record.beliefs[best]
+    if not belief.trials:
+        if not responses:
+            return f"nothing is known of {name} yet; {best} worked best with earlier people"
+        others = sum(b.complied for b in record.beliefs.values())
+        return f"{best} is still to be tried with {name}: the others worked {others} of {responses}"
+    if record.settled != best:
+        return f"{best} may work best with {name}: {tally(belief)} so far"
+    if belief.mean < SELDOM:
+        return f"{best} works best with {name}, though seldom: {tally(belief)}"
+    return f"{best} works with {name}: {tally(belief)}"
+
+
+def tally(belief: Beta) -> str:
+    """Write the responses that a belief rests on: "7 of 9"."""
+    return f"{belief.complied} of {belief.trials}"
+
+
+def method_words(record: Record) -> str:
+    """Say how the next strategy is chosen, and for whom that holds."""
+    whose = "chosen for this person" if record.known.own else "as the activity has it"
+    return f"{record.known.method.words} ({whose})"
+
+
+def prior_words(prior: Beliefs) -> str:
+    """Say where the beliefs began, with what earlier people lend to each strategy."""
+    lent = [
+        f"{strategy} {start.alpha - 1:g} of {start.alpha + start.beta - 2:g}"
+        for strategy, start in prior.items()
+        if start.counts is not None
+    ]
+    if not lent:
+        return "begins from nothing: every strategy alike"
+    return "begins as earlier people were: " + ", ".join(lent)
+
+
+def entry_words(entry: Entry) -> str:
+    """Say what came of one request."""
+    if entry.complied is None:
+        return "answered later" if entry.settled else "no response yet"
+    words = "complied" if entry.complied else "did not comply"
+    if entry.late:
+        words += ", said later"
+    if entry.void:
+        words += f" (void: {entry.why})" if entry.why else " (void)"
+    return words
+
+
+def change_words(change: Event) -> str:
+    """Say what a change was that can be taken back."""
+    if change.kind == METHOD:
+        return "the method that was chosen"
+    if change.kind == FEEDBACK:
+        did = "complied" if change.complied else "did not comply"
+        return f"the late response: {change.strategy}, {did}"
+    if change.kind == VOID:
+        return f"that a response to {change.strategy} is void"
+    return f"that {change.strategy} was switched {'on' if change.body.get('on') else 'off'}"
+
+
+def ago(then: datetime, now: datetime) -> str:
+    """Say how long ago something was, as people do; days are those of the place we are in."""
+    days = (now.astimezone().date() - then.astimezone().date()).days
+    if days < 1:
+        return "today"
+    if days < 2:
+        return "yesterday"
+    for unit, length, most in (("day", 1, 14), ("week", 7, 60), ("month", 30.44, 700)):
+        if days < most:
+            return f"{int(days / length)} {unit}s ago"
+    return f"{max(2, round(days / 365.25))} years ago"
+
+
+def on_day(at: datetime) -> str:
+    """Write the day and the time of something, in the time of the place we are in."""
+    local = at.astimezone()
+    return f"{local.day} {local:%b %Y %H:%M}"
+
+
+def _many(responses: int) -> str:
+    return "1 response" if responses == 1 else f"{responses} responses"

@@ -1,0 +1,94 @@
+"""People on the command line: the list, one person in full, and the history game by game."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from tangy_profiles.reading import plain
+from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.saying import (
+    entry_words,
+    method_words,
+    on_day,
+    prior_words,
+    sentence,
+    tally,
+)
+
+
+def print_people(records: Sequence[Record]) -> None:
+    """Print everybody with the strategies tried on them, and what works with whom in words."""
+    console = Console(highlight=False)
+    strategies = tuple(records[0].beliefs)
+    table = _table("Complied, of times tried (P(best))", "person", *strategies)
+    for record in records:
+        cells = (_short(record, strategy) for strategy in strategies)
+        table.add_row(Text(plain(record.person.name)), *cells)
+    console.print(table)
+    for record in records:
+        console.print(Text(f"{record.person.id}: {plain(sentence(record))}"))
+
+
+def print_person(record: Record) -> None:
+    """Print one person in full."""
+    console = Console(highlight=False)
+    table = _table(
+        f"{plain(record.person.name)} ({record.person.id})",
+        "strategy", "complied", "mean", "90% interval", "P(best)", "",
+    )  # fmt: skip
+    for strategy, belief in record.beliefs.items():
+        low, high = belief.interval()
+        table.add_row(
+            strategy,
+            tally(belief),
+            f"{belief.mean:.2f}",
+            f"{low:.2f} to {high:.2f}",
+            f"{record.best[strategy]:.2f}",
+            _mark(record, strategy),
+        )
+    console.print(table)
+    console.print(Text(plain(sentence(record))))
+    console.print(Text(f"Method: {method_words(record)}; it {prior_words(record.known.prior)}."))
+    print_history(record)
+
+
+def print_history(record: Record) -> None:
+    """Print what a person was asked to do, game by game."""
+    console = Console(highlight=False)
+    table = _table("History by game", "no.", "when", "strategy", "what came of it")
+    for game in record.games:
+        where = "game of" if game.id is not None else "outside of a game,"
+        table.add_row("", Text(f"{where} {on_day(game.begun)}", style="bold"), "", "")
+        for entry in game.entries:
+            style = "" if entry.counts else "dim"
+            words = plain(entry_words(entry))
+            row = (str(entry.number), on_day(entry.at), entry.strategy, words)
+            table.add_row(*(Text(cell, style=style) for cell in row))
+    console.print(table if record.games else Text("There is no history yet."))
+
+
+def _short(record: Record, strategy: str) -> Text:
+    """Write a strategy in one cell; the star stands where one alone is most probably the best."""
+    belief = record.beliefs[strategy]
+    star = " *" if strategy == record.leading and belief.trials else ""
+    off = " off" if strategy in record.known.off else ""
+    share = f"({record.best[strategy]:.2f})"
+    return Text(f"{belief.complied}/{belief.trials} {share}{star}{off}")
+
+
+def _mark(record: Record, strategy: str) -> str:
+    if strategy in record.known.off:
+        return "switched off"
+    return "settled" if strategy == record.settled else ""
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = Table(title=Text(title), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    return table
