@@ -6,26 +6,19 @@ It drives the same sessions as the screens. One thing is said per line, and noth
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from threading import Thread
 from typing import Any
 
-from tangy_profiles.beliefs import probability_best
-from tangy_profiles.reading import plain
-from tangy_tui.interaction.facilitation import (
-    Acted,
-    Facilitation,
-    GameBegun,
-    GameEnded,
-    GameEvent,
-    Learnt,
-)
 from tangy_tui.learning.demonstrating import (
+    Again,
     Begun,
     Executed,
     Finished,
     Next,
+    Redo,
     StepUndone,
     TeacherCommand,
     Teaching,
@@ -34,13 +27,29 @@ from tangy_tui.learning.demonstrating import (
 )
 from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
-from tangy_tui.wording import Name, counted, state_words, step_words
+from tangy_tui.wording import counted, state_words, step_words, verification_lines
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
 Write = Callable[[str], None]
 
-HELP = "Commands: a behaviour in words, or one of: undo, where, help, next, quit."
+HELP = (
+    "Commands: a behaviour in words, or one of: undo, redo, again N, where, seen, why, help, next, "
+    "quit."
+)
+MEANINGS = (
+    ("undo", "take the last step back"),
+    ("redo", "do the step again that was taken back"),
+    ("again N", "go back before step N, to show it and what follows again"),
+    ("where", "say what Tangy sees"),
+    ("seen", "say which situations nobody has shown yet"),
+    ("why", "say what Tangy would do here by what it has learnt, and why"),
+    ("next", "begin another demonstration"),
+    ("quit", "leave; what you confirmed is kept"),
+)
+
+
+_AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
 
 
 class TeachingLines:
@@ -54,10 +63,13 @@ class TeachingLines:
         ears: Ears | None = None,
         *,
         scripted: bool = False,
+        seen: Callable[[], list[str]] = list,
+        why: Callable[[], list[str]] = list,
     ) -> None:
         """Make the session.
 
         Args:
+            seen, why: say what was demonstrated so far, and what Tangy would do now.
             ears: spoken commands, if there are any; their questions are answered from `read`.
             scripted: the lines are all there already, so what is spoken goes before them.
         """
@@ -66,6 +78,8 @@ class TeachingLines:
         self._read = read
         self._write = write
         self._ears = ears
+        self._seen = seen
+        self._why = why
         self._spoken: asyncio.Future[Say | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
         if ears is not None:
@@ -148,6 +162,14 @@ class TeachingLines:
                 return "quit"
             case "undo":
                 return Undo()
+            case "redo":
+                return Redo()
+            case _ if (again := _AGAIN.fullmatch(lower)) is not None:
+                return Again(self._teaching.demonstration.id, int(again[1]) - 1)
+            case "seen":
+                self._write_all(self._seen())
+            case "why":
+                self._write_all(self._why())
             case "next":
                 return Next()
             case "where":
@@ -156,9 +178,15 @@ class TeachingLines:
                 self._write(HELP)
                 for behaviour in self._teaching.activity.behaviours.values():
                     self._write(f"  {behaviour.question}: say {behaviour.phrases[0]!r}")
+                for word, meaning in MEANINGS:
+                    self._write(f"  {word}: {meaning}")
             case _:
                 return Say(text)
         return "nothing"
+
+    def _write_all(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            self._write(line)
 
     def _where(self) -> None:
         teaching = self._teaching
@@ -179,22 +207,8 @@ class TeachingLines:
 def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
     """Put one event of a teaching session into lines."""
     match event:
-        case Asked(_, question, heard, confidence, alternatives):
-            lines = [f"Did you say: {question}? Type Y to execute it or N for a new command."]
-            if confidence < 1:
-                lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
-            lines += [
-                f"  {number} instead: {teaching.activity.behaviour(other).question}"
-                for number, other in enumerate(alternatives, 1)
-            ]
-            return lines
-        case NotUnderstood(heard, suggestions):
-            near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
-            return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
-        case Refused(reason, _):
-            return [reason]
-        case Rejected(heard):
-            return [f"Not done: {plain(heard)}. Give a new command."]
+        case Asked() | NotUnderstood() | Refused() | Rejected():
+            return verification_lines(event, teaching.activity)
         case Executed(number, step, _, _, speech, _):
             return [
                 f"{number}. {step_words(teaching.activity, step, teaching.name)}",
@@ -214,59 +228,3 @@ def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
                 f"The game is over; {len(demonstration.steps)} steps were demonstrated. "
                 "Type next for another demonstration, or quit."
             ]
-
-
-def game_lines(event: GameEvent, facilitation: Facilitation, name: Name) -> list[str]:
-    """Put one event of a game into lines."""
-    activity = facilitation.world.activity
-    match event:
-        case GameBegun(_, number, _):
-            return [f"Game {number} begins."]
-        case Acted(number, state, decision, choice, action, _, _, speech):
-            target = f" ({name(action.target)})" if action.target else ""
-            how = f", {choice.strategy}" if choice else ""
-            return [
-                f"{number}. {activity.in_words(state.situation)} -> "
-                f"{action.behaviour.name}{target}{how}, {decision.share:.0%} of the votes",
-                f"   Tangy says: {speech}",
-            ]
-        case Learnt(response, belief):
-            what = "complied" if response.complied else "followed, but late"
-            profile = facilitation.persuasion.beliefs[response.person]
-            best = max(profile, key=lambda strategy: profile[strategy].mean)
-            return [
-                f"   {name(response.person)} {what} ({response.strategy} now "
-                f"{belief.alpha - 1:.0f} of {belief.trials}; best so far: {best})."
-            ]
-        case GameEnded(_, steps, stopped):
-            if stopped is not None:
-                return [f"The game stopped after {steps} steps. {stopped}"]
-            return [f"The game is over after {steps} steps."]
-
-
-def belief_lines(facilitation: Facilitation, name: Name) -> list[str]:
-    """Put what is believed of everybody into one line each."""
-    lines: list[str] = []
-    for person, profile in facilitation.persuasion.beliefs.items():
-        best = probability_best(profile)
-        parts = [
-            f"{strategy} {belief.alpha - 1:.0f}/{belief.trials} (best {best[strategy]:.0%})"
-            for strategy, belief in profile.items()
-        ]
-        lines.append(f"{name(person)}: " + ", ".join(parts))
-    return lines
-
-
-def play_by_lines(facilitation: Facilitation, games: int, name: Name, write: Write) -> None:
-    """Play games and tell everything that happens."""
-    for _ in range(games):
-        events = facilitation.begin()
-        while True:
-            for event in events:
-                for line in game_lines(event, facilitation, name):
-                    write(line)
-            if facilitation.over:
-                break
-            events = facilitation.step()
-    for line in belief_lines(facilitation, name):
-        write(line)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from tangy_tui.game_lines import belief_lines, game_lines
 from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.demonstrating import Begun, Executed, Next
@@ -13,7 +14,6 @@ from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
-from tangy_tui.lines import belief_lines, game_lines
 
 DEMONSTRATIONS = 3
 """What the paper found to be enough when situations come about by chance."""

@@ -6,8 +6,10 @@ from collections.abc import Callable
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
+from tangy_profiles.reading import plain
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Verification
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""
@@ -55,3 +57,25 @@ def card_words(activity: Activity, card: CardView) -> str:
     wrong, missing = labels(card.marked & ~card.called), labels(card.called & ~card.marked)
     parts = [f"Wrong: {wrong}." if wrong else "", f"Missed: {missing}." if missing else ""]
     return " ".join(part for part in parts if part)
+
+
+def verification_lines(said: Verification, activity: Activity) -> list[str]:
+    """Put what the verification of a command says into lines."""
+    match said:
+        case Asked(_, question, heard, confidence, alternatives):
+            lines = [f"Did you say: {question}? Type Y to execute it or N for a new command."]
+            if confidence < 1:
+                lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
+            return lines + [
+                f"  {number} instead: {activity.behaviour(other).question}"
+                for number, other in enumerate(alternatives, 1)
+            ]
+        case NotUnderstood(heard, suggestions):
+            near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
+            return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
+        case Refused(reason, _):
+            return [reason]
+        case Rejected(heard):
+            return [f"Not done: {plain(heard)}. Give a new command."]
+        case _:
+            return []

@@ -11,13 +11,18 @@ from dataclasses import dataclass
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.activity import Action, Activity
+from tangy_profiles.activity import Action, Activity, Behaviour
 from tangy_profiles.beliefs import Beta
+from tangy_profiles.demonstration import Step
+from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.persuasion import Choice, Persuasion
+from tangy_tui.learning.asking import Answers, Lesson
+from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.learning.verifying import Verifier
 from tangy_tui.world import World
 
 BEGUN = "game begun"
@@ -67,6 +72,23 @@ class Learnt:
 
 
 @dataclass(frozen=True, slots=True)
+class Unsure:
+    """Tangy does not act, it asks: a teacher is to say what to do here; `reason` says why."""
+
+    state: ActivityState
+    decision: Decision
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Taught:
+    """A teacher answered, Tangy did it, and learnt from it what to do here from now on."""
+
+    teacher: str
+    lesson: Lesson
+
+
+@dataclass(frozen=True, slots=True)
 class GameEnded:
     """The game is over: played to its end, or stopped for a reason that a person can read."""
 
@@ -75,7 +97,7 @@ class GameEnded:
     stopped: str | None
 
 
-GameEvent: TypeAlias = GameBegun | Acted | Learnt | GameEnded
+GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | GameEnded
 
 
 class Facilitation:
@@ -90,13 +112,23 @@ class Facilitation:
         *,
         names: Mapping[str, str],
         seed: int,
+        answers: Answers | None = None,
     ) -> None:
+        """Prepare to run games.
+
+        Args:
+            answers: where a teacher is present, what learns from the answers; without it, a
+                situation that Tangy is not sure about ends the game.
+        """
         self.world = world
         self.policy = policy
         self.persuasion = persuasion
         self.games = 0
         self.steps = 0
         self.over = True
+        self.question: Unsure | None = None
+        """What Tangy asks; nothing happens before it is answered, or the game given up."""
+        self._answers = answers
         self._activity = world.activity
         self._store = store
         self._names = names
@@ -110,6 +142,7 @@ class Facilitation:
         self.games += 1
         self.steps = 0
         self.over = False
+        self.question = None
         self._store.append(
             BEGUN,
             {
@@ -126,25 +159,79 @@ class Facilitation:
     def step(self) -> list[GameEvent]:
         """Do the next behaviour and return what happened.
 
-        A situation that nobody demonstrated ends the game instead, with the reason: Tangy does
-        not guess among people.
+        In a situation that nobody demonstrated, or about which demonstrations disagree, Tangy
+        does not guess among people: it asks (see `answer`), or ends the game where nobody can be
+        asked.
         """
-        if self.over:
+        if self.over or self.question is not None:
             return []
         state = self.world.observe()
         decision = self.policy.decide(state.situation)
-        if not decision.sure:
-            return [self._end(_why_not(self._activity, state, decision))]
         if self.steps >= MOST_STEPS:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
-        with self._store.transaction():
-            events = self._act(state, decision)
-        return [self._learn(e) if isinstance(e, Response) else e for e in events]
-
-    def _act(self, state: ActivityState, decision: Decision) -> list[GameEvent | Response]:
-        activity = self._activity
-        behaviour = activity.behaviours[decision.behaviour]
+        if not decision.sure:
+            reason = _why_not(self._activity, state, decision)
+            if self._answers is None:
+                return [self._end(f"{reason} {_remedy(decision)}")]
+            self.question = Unsure(state, decision, reason)
+            return [self.question]
+        behaviour = self._activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
+        with self._store.transaction():
+            done = self._act(state, decision, behaviour, target, "")
+        return self._told(done)
+
+    def verifier(self) -> Verifier:
+        """Make the door through which a teacher answers: every command is verified first."""
+        people = [Person(id, self._names.get(id, id)) for id in self.world.people]
+        phrasebook = Phrasebook(self._activity, people)
+        return Verifier(self._activity, phrasebook, self.world.observe, self._names)
+
+    def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[GameEvent]:
+        """Do what a teacher answered, learn from it, and go on by the new policy."""
+        if self.question is None or self._answers is None:
+            return []
+        state, decision = self.question.state, self.question.decision
+        with self._store.transaction():
+            done = self._act(state, decision, behaviour, target, teacher)
+            acted = done[0]
+            shown = Step(
+                behaviour.name, target, state, acted.after, completed=acted.outcome.completed
+            )
+            lesson = self._answers.learn(
+                self.policy, shown, teacher=teacher, seed=self._seed, people=self.world.people
+            )
+        self.question = None
+        self.policy = lesson.policy
+        first, *rest = self._told(done)
+        return [first, Taught(teacher, lesson), *rest]
+
+    def give_up(self) -> list[GameEvent]:
+        """End a game in which Tangy asks and nobody answers."""
+        if self.question is None:
+            return []
+        question, self.question = self.question, None
+        return [self._end(f"{question.reason} {_remedy(question.decision)}")]
+
+    def _told(self, done: tuple[Acted, Response | None, GameEnded | None]) -> list[GameEvent]:
+        """Tell what was done, and let the beliefs grow now that the response is in the log."""
+        acted, response, ended = done
+        events: list[GameEvent] = [acted]
+        if response is not None:
+            events.append(Learnt(response, self.persuasion.update(response)))
+        if ended is not None:
+            events.append(ended)
+        return events
+
+    def _act(
+        self,
+        state: ActivityState,
+        decision: Decision,
+        behaviour: Behaviour,
+        target: str | None,
+        teacher: str,
+    ) -> tuple[Acted, Response | None, GameEnded | None]:
+        activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
             choice = self.persuasion.choose(target)
@@ -154,20 +241,18 @@ class Facilitation:
         self.steps += 1
         expected = activity.expected.get(state.situation, behaviour.name)
         name = self._names.get(target, target) if target is not None else ""
-        events: list[GameEvent | Response] = [
-            Acted(
-                self.steps,
-                state,
-                decision,
-                choice,
-                action,
-                outcome,
-                after,
-                activity.fill(action.speech, name, outcome.numbers),
-                activity.fill(action.image, name, outcome.numbers),
-                outcome.completed and expected == behaviour.name,
-            )
-        ]
+        acted = Acted(
+            self.steps,
+            state,
+            decision,
+            choice,
+            action,
+            outcome,
+            after,
+            activity.fill(action.speech, name, outcome.numbers),
+            activity.fill(action.image, name, outcome.numbers),
+            outcome.completed and expected == behaviour.name,
+        )
         self._store.append(
             STEP,
             {
@@ -176,21 +261,20 @@ class Facilitation:
                 "target": target,
                 "strategy": action.strategy,
                 "share": decision.share,
+                "teacher": teacher,
                 "draws": choice and dict(choice.draws),
                 "numbers": list(outcome.numbers),
                 "completed": outcome.completed,
                 "state": state.to_json(),
+                "after": after.to_json(),
             },
         )
         if outcome.response is not None:
             self._log_response(outcome.response)
-            events.append(outcome.response)
         elif choice is not None and outcome.completed:  # what they did may be known later
             body = {"game": self._game}
             self._store.append(AWAITED, body, person=choice.person, strategy=choice.strategy)
-        if self.world.over:
-            events.append(self._end(None))
-        return events
+        return acted, outcome.response, self._end(None) if self.world.over else None
 
     def _log_response(self, response: Response) -> None:
         self._store.append(
@@ -201,10 +285,6 @@ class Facilitation:
             complied=response.complied,
         )
 
-    def _learn(self, response: Response) -> Learnt:
-        """Let the beliefs grow, now that the response is in the log."""
-        return Learnt(response, self.persuasion.update(response))
-
     def _end(self, reason: str | None) -> GameEnded:
         self.over = True
         self._store.append(ENDED, {"game": self._game, "steps": self.steps, "stopped": reason})
@@ -213,9 +293,20 @@ class Facilitation:
 
 def _why_not(activity: Activity, state: ActivityState, decision: Decision) -> str:
     situation = activity.in_words(state.situation)
+    if decision.contested:
+        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
+        return f"Demonstrations disagree about what to do here: {situation} ({answers})."
     if not decision.seen:
-        return f"Nobody has shown Tangy what to do here yet: {situation}. Demonstrate it once."
+        return f"Nobody has shown Tangy what to do here yet: {situation}."
     return (
         f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} of the votes for "
-        f"{decision.behaviour}). Demonstrate it again, or correct the demonstration that differs."
+        f"{decision.behaviour})."
     )
+
+
+def _remedy(decision: Decision) -> str:
+    if decision.contested:
+        return "Say which is right with `tangy demonstrations resolve`, and learn again."
+    if not decision.seen:
+        return "Demonstrate it once."
+    return "Demonstrate it again, or correct the demonstration that differs."

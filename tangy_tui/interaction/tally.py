@@ -9,7 +9,7 @@ from typing import Any
 
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Situation
-from tangy_tui.interaction.facilitation import Acted, GameEnded, GameEvent, Learnt
+from tangy_tui.interaction.facilitation import Acted, GameEnded, GameEvent, Learnt, Taught
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,7 @@ class Tally:
     games: int = 0
     steps: int = 0
     interactions: int = 0
+    answers: int = 0
     stopped: list[str] = field(default_factory=list)
     _done: Counter[tuple[Situation, str]] = field(default_factory=Counter)
     _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
@@ -44,6 +45,8 @@ class Tally:
                     self._right[row] += event.right
                 case Learnt():
                     self.interactions += 1
+                case Taught():
+                    self.answers += 1
                 case GameEnded():
                     self.games += 1
                     if event.stopped is not None:

@@ -1,4 +1,4 @@
-"""Why a decision: the situation, the votes, the demonstrated steps it rests on, what else there was.
+"""Why a decision: the situation, the votes, the steps it rests on, what else was considered.
 
 For every decision alike: one that Tangy takes in a game, one that it would take while it is
 taught, and one that somebody looks up.

@@ -97,6 +97,11 @@ class Policy:
         """
         return self.table[situation]
 
+    @property
+    def named_by_count(self) -> bool:
+        """Whether its name only says how many demonstrations it rests on."""
+        return self.name == _name_by_count(self.activity, self.demonstrations)
+
     def exact(self, activity: Activity) -> bool:
         """Say whether it agrees with all that is expected of a facilitator of the activity."""
         return not self.errors(activity)
@@ -198,7 +203,7 @@ def learn_policy(
         )
     ids = tuple(d.id for d in demonstrations)
     return Policy(
-        name=name or f"{activity.name}-{len(ids)}",
+        name=name or _name_by_count(activity.name, ids),
         activity=activity.name,
         demonstrations=ids,
         settings=settings,
@@ -213,6 +218,10 @@ def learn_policy(
         ),
         resolutions=tuple(resolutions),
     )
+
+
+def _name_by_count(activity: str, ids: Sequence[str]) -> str:
+    return f"{activity}-{len(ids)}"
 
 
 def encoder(activity: Activity) -> Any:

@@ -53,7 +53,7 @@ def play(
         if headless or as_json:
             _play_headless(house, facilitation, games, as_json)
         else:
-            from tangy_tui.lines import play_by_lines
+            from tangy_tui.game_lines import play_by_lines
 
             play_by_lines(facilitation, games, house.name, print)
 

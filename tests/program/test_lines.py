@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
+from tangy_tui.game_lines import belief_lines, play_by_lines
 from tangy_tui.house import House
 from tangy_tui.learning.policy import ForestSettings, learn_policy
-from tangy_tui.lines import TeachingLines, belief_lines, play_by_lines
+from tangy_tui.lines import TeachingLines
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
