@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from tangy_profiles.activity import Action, Activity
 from tangy_profiles.cards import CardState
-from tangy_profiles.state import ActivityState, Outcome
+from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.compliance import Preferences
 from tangy_sim.plan import FEWEST, LINE, Cue, Plan
 from tangy_sim.users import Player, UserModel
@@ -56,8 +56,8 @@ class GuidedWorld(SimulatedWorld):
         self._beats = self._played = 0  # calls, with or without a number; those acted upon
         self._cue: Cue | None = None
         self._next = self.plan.gap(0, self._guide())
-        winner = self._prepare_line()
-        self._turns = Counter({winner.id: 1})  # how often each has asked; the others come first
+        self._favourite = self._prepare_line().id
+        self._turns = Counter({self._favourite: 1})  # how often each asked: others come first
         self._asks_at_end = self._game % 2 == 1
         self._game += 1
         return state
@@ -163,12 +163,13 @@ class GuidedWorld(SimulatedWorld):
             wait = int(3 * self._guide()) if shows.checker == LINE else 1
             hidden = self.plan.hides(self._guide(), self.users.occluded)
             person = self._choose_person(shows)
+            self.plan.tried[shows.name] += 1
             self._cue = Cue(person.id, shows, hidden, max(self._next, self._beats + wait))
 
     def _let_people_ask(self) -> None:
         """After every behaviour: let those act, and then ask, whose cue it is."""
-        if not self.plan.drawing and not self.over:
-            self._beats += 1
+        if not self.plan.drawing and self.tracker.place == FRONT:
+            self._beats += 1  # where nothing is called, what is done at the front is counted
             self._give_cue()
         if self.plan.ended(self.tracker):
             self._ask_at_the_end()
@@ -248,9 +249,9 @@ class GuidedWorld(SimulatedWorld):
 
     def _choose_person(self, shows: CardState | None) -> Player:
         """Choose who has the next turn: who is nearest to a line, or has asked least so far."""
-        players, turns = list(self._players.values()), self._turns
+        players, turns = tuple(self._players.values()), self._turns
         if shows is not None and shows.checker == LINE:
-            return min(players, key=lambda p: (self._left_of_line(p), turns[p.id]))
+            return min(players, key=lambda p: (self._left_of_line(p), p.id != self._favourite))
         able = [p for p in players if not self._has_line(p)] or players
         fewest = min(turns[p.id] for p in able)
         return self._pick([p for p in able if turns[p.id] == fewest])

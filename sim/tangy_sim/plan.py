@@ -5,6 +5,7 @@ It knows the activity alone. Cards and people are the guided world's.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -15,6 +16,9 @@ from tangy_profiles.tracker import Tracker
 
 LINE = "complete line"
 """The checker of a card that has won; nobody's card shall before all else was shown."""
+
+DRAWN = (LINE, "missing marks")
+"""The checkers of what no card shows before a number was called."""
 
 SPAN = 18
 """Calls over which visits are spread in an activity that counts none itself."""
@@ -44,6 +48,8 @@ class Plan:
     def __init__(self, activity: Activity, uniform: Callable[[], float]) -> None:
         self.activity = activity
         self.shown: dict[Situation, None] = {}
+        self.tried: Counter[str] = Counter()
+        """How often somebody got the cue to show a user state."""
         rules = activity.stage_rules
         self._reading = {r.stage for r in rules if r.condition == "beside requester"}
         self._travel = {r.stage for r in rules if r.condition == "requested or away"}
@@ -51,9 +57,10 @@ class Plan:
         self._closing = {r.stage for r in self._ends}
         self._final = {n for r in self._ends for n in activity.behaviours[r.behaviour].needs}
         self._final.discard(activity.unread)
-        rank = {s.name: uniform() + (s.checker == LINE) for s in activity.card_states}
-        self._kinds = sorted(activity.card_states, key=lambda state: rank[state.name])
         self.drawing = {b.name for b in activity.behaviours.values() if b.effect == "draw"}
+        able = [s for s in activity.card_states if self.drawing or s.checker not in DRAWN]
+        rank = {s.name: uniform() + (s.checker == LINE) for s in able}
+        self._kinds = sorted(able, key=lambda state: rank[state.name])
         counted = [
             r.at_least for r in rules if r.condition == "count" and r.behaviour in self.drawing
         ]
@@ -76,14 +83,15 @@ class Plan:
     def visits(self) -> list[CardState]:
         """Return the states that cards are still to be seen in, in the order of showing them.
 
-        A state that can end the game is not among them; a full line comes last.
+        A state that can end the game is not among them; a full line comes last, and what was
+        tried in vain comes after the others.
         """
         lacking = {s.user_state for s in self.lacking if s.stage in self._reading}
         ordinary = [s for s in self._kinds if s.name not in self._final]
         found = [state for state in ordinary if state.name in lacking]
         if not [s for s in found if s.checker != LINE] and self._lacks_visit():
             found[:0] = ordinary[:1]  # any visit will do
-        return found
+        return sorted(found, key=lambda state: self.tried[state.name])
 
     def wanted(self, spent: bool) -> CardState | None:
         """Return what somebody's card is to show next, or None while only calls are lacking.
