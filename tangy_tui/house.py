@@ -141,10 +141,15 @@ class House:
         kind = GuidedWorld if shown.guided else SimulatedWorld
         return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
 
-    def facilitation(self, policy: Policy, seed: int | None) -> Facilitation:
-        """Make a run of simulated games with a policy and with what is believed of the people."""
+    def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
+        """Make a run of simulated games with a policy and with what is believed of the people.
+
+        Args:
+            asks: somebody is there to say what to do where Tangy is not sure.
+        """
         from tangy_sim.world import SimulatedWorld
         from tangy_tui.interaction import facilitation
+        from tangy_tui.learning.asking import Answers
 
         if seed is None:
             games = self.store.events(facilitation.BEGUN)
@@ -157,6 +162,7 @@ class House:
             self.store,
             names=self.names,
             seed=seed,
+            answers=Answers(self.store, self.activity) if asks else None,
         )
 
     def persuasion(self, rng: Random) -> Persuasion:
