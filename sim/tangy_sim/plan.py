@@ -83,15 +83,15 @@ class Plan:
     def visits(self) -> list[CardState]:
         """Return the states that cards are still to be seen in, in the order of showing them.
 
-        A state that can end the game is not among them; a full line comes last, and what was
-        tried in vain comes after the others.
+        A state that can end the game is not among them; what was tried in vain comes after the
+        others, and a full line last, because a card that has one shows nothing else any more.
         """
         lacking = {s.user_state for s in self.lacking if s.stage in self._reading}
         ordinary = [s for s in self._kinds if s.name not in self._final]
         found = [state for state in ordinary if state.name in lacking]
         if not [s for s in found if s.checker != LINE] and self._lacks_visit():
             found[:0] = ordinary[:1]  # any visit will do
-        return sorted(found, key=lambda state: self.tried[state.name])
+        return sorted(found, key=lambda state: (state.checker == LINE, self.tried[state.name]))
 
     def wanted(self, spent: bool) -> CardState | None:
         """Return what somebody's card is to show next, or None while only calls are lacking.
