@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Protocol
+from typing import Any, Protocol
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.person import Person, load_people
-from tangy_profiles.state import Situation
+from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.guide import GuidedWorld
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
+from tangy_tui.experiments.provenance import digest_of
 from tangy_tui.learning.conflicts import Resolution
 from tangy_tui.learning.demonstrating import Next, Teaching, TeachingEvent
 from tangy_tui.learning.policy import Policy, learn_policy
@@ -55,7 +55,7 @@ class MakeTeacher(Protocol):
 
 @dataclass(frozen=True)
 class Course:
-    """What is taught, to how many people, in which games."""
+    """What is taught (a shipped activity or its file), to how many people, in which games."""
 
     activity: str
     users: int
@@ -67,6 +67,16 @@ class Course:
 def activity_of(name: str) -> Activity:
     """Return an activity by name, read once in each process."""
     return load_activity(name)
+
+
+def about(name: str) -> dict[str, Any]:
+    """Return the settings of a sweep that say which activity it is about.
+
+    A file of somebody's own may change under the same name, so its content is among them.
+    """
+    if not name.endswith(".toml"):
+        return {"activity": name}
+    return {"activity": name, "content": digest_of(Path(name).read_text(encoding="utf-8"))}
 
 
 @contextmanager
@@ -119,24 +129,6 @@ def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Itera
                 )
 
 
-def people_ids(users: int) -> tuple[str, ...]:
-    """Return the ids of the sample people."""
-    return tuple(person.id for person in people_of(users))
-
-
-@cache
-def people_of(users: int) -> tuple[Person, ...]:
-    """Return the sample people."""
-    return load_people(users)
-
-
-@cache
-def reachable_situations(activity: str, users: int) -> frozenset[Situation]:
-    """Return the triples of all joint states that can come about, and no others."""
-    states = joint_states(activity_of(activity), people_ids(users))
-    return frozenset(state.situation for state in states)
-
-
 def learnt(
     activity: Activity, shown: Sequence[Demonstration], resolutions: Sequence[Resolution] = ()
 ) -> Policy:
@@ -146,9 +138,10 @@ def learnt(
 
 def is_exact(policy: Policy, activity: Activity, users: int) -> bool:
     """Say whether a policy is right on every joint state, whatever comes about or does not."""
+    people = [person.id for person in load_people(users)]
     return policy.exact(activity) and all(
-        policy.decide(situation).behaviour == activity.expected.get(situation)
-        for situation in reachable_situations(activity.name, users)
+        policy.decide(state.situation).behaviour == activity.expected.get(state.situation)
+        for state in joint_states(activity, people)
     )
 
 

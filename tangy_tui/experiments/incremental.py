@@ -16,6 +16,7 @@ from tangy_tui.experiments.classroom import (
     GUIDED,
     RANDOM,
     Course,
+    about,
     activity_of,
     is_exact,
     learnt,
@@ -41,7 +42,7 @@ def until_exact(settings: Settings, case: Case) -> dict[str, Any]:
     """
     games, users, seed = case
     activity = activity_of(settings["activity"])
-    course = Course(activity.name, users, games, seed)
+    course = Course(settings["activity"], users, games, seed)
     shown, flags = [], []
     exact = False
     for demonstration in islice(taught(course), 1 if games == GUIDED else settings["most"]):
@@ -86,7 +87,7 @@ def flagged_shares(counts: Sequence[Sequence[int]]) -> dict[str, Any]:
 
 def run(activity: str, users: Sequence[int], seeds: Sequence[int], where: Where) -> dict[str, Any]:
     """Run both ways of teaching: guided for each number of people, by chance for the paper's."""
-    settings = {"activity": activity, "most": MOST_GAMES}
+    settings = {**about(activity), "most": MOST_GAMES}
     cases = [(GUIDED, count, seed) for count in users for seed in seeds]
     guided = Sweep("guided", until_exact, settings, cases).run(where)
     chance = Sweep("random", until_exact, settings, [(RANDOM, USERS, seed) for seed in seeds]).run(
@@ -113,6 +114,9 @@ def run(activity: str, users: Sequence[int], seeds: Sequence[int], where: Where)
             },
             "demonstrations_needed": dict(sorted(Counter(str(t) for t in took).items())),
         },
-        "behaviours": summary([b for result in chance for b in result["behaviours"]]),
+        "behaviours": {
+            **summary([b for result in chance for b in result["behaviours"]]),
+            "all": [b for result in chance for b in result["behaviours"]],
+        },
         "flagged_after_each": flagged_shares([f for result in chance for f in result["flags"]]),
     }

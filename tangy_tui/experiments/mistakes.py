@@ -19,6 +19,7 @@ from tangy_profiles.state import Situation
 from tangy_tui.experiments.classroom import (
     RANDOM,
     Course,
+    about,
     activity_of,
     covered,
     is_exact,
@@ -33,6 +34,7 @@ from tangy_tui.experiments.teachers import resolved
 from tangy_tui.learning.conflicts import find_conflicts
 
 RATES = (0.01, 0.02, 0.03, 0.05)
+FIRST_COURSE = 2_000_000
 PLACES = ("anywhere", "commonest", "rarest")
 
 
@@ -48,7 +50,7 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
     rate, place, seed = case
     activity = activity_of(settings["activity"])
     clean: list[Demonstration] = []
-    for demonstration in taught(Course(activity.name, USERS, RANDOM, 50_000 + seed)):
+    for demonstration in taught(Course(settings["activity"], USERS, RANDOM, FIRST_COURSE + seed)):
         clean.append(demonstration)
         if len(clean) >= int(SCENARIO_ONE["demonstrations"]) and covered(activity, clean):
             break
@@ -128,7 +130,7 @@ def run(activity: str, seeds: Sequence[int], where: Where) -> list[dict[str, Any
     """Run every rate at every place; one row each, the first of them without a mistake."""
     kinds = [(0.0, PLACES[0]), *((rate, place) for place in PLACES for rate in RATES)]
     cases = [(rate, place, seed) for rate, place in kinds for seed in seeds]
-    results = Sweep("mistakes", with_mistakes, {"activity": activity}, cases).run(where)
+    results = Sweep("mistakes", with_mistakes, about(activity), cases).run(where)
     rows = []
     for at, (rate, place) in enumerate(kinds):
         some = results[at * len(seeds) : (at + 1) * len(seeds)]

@@ -17,7 +17,7 @@ from tangy_profiles.person import load_people
 from tangy_sim.compliance import preferences_in_turn
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
-from tangy_tui.experiments.classroom import GUIDED, Course, activity_of, learnt, taught
+from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of, learnt, taught
 from tangy_tui.experiments.estimates import summary
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.interaction.persuasion import Persuasion
@@ -59,7 +59,7 @@ def _group(settings: Settings, seed: int) -> dict[str, Any]:
     people = tuple(person.id for person in load_people(settings["users"]))
     preferences = preferences_in_turn(people, tuple(activity.strategies), load_users())
     best = {person: max(liked, key=liked.__getitem__) for person, liked in preferences.items()}
-    policy = policy_of(activity.name, settings["users"])
+    policy = policy_of(settings["activity"], settings["users"])
     world = SimulatedWorld(activity, people, seed=seed, preferences=preferences)
     persuasion = Persuasion(people, tuple(activity.strategies), Random(f"{seed}/persuasion"))
     optimal: dict[str, list[bool]] = {person: [] for person in people}
@@ -104,7 +104,7 @@ def suboptimal_before_convergence(optimal: Sequence[bool], in_a_row: int = CONVE
 
 def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict[str, Any]:
     """Play with many groups of people and say what Scenario 2 says of its four."""
-    settings = {"activity": activity, "users": users}
+    settings = {**about(activity), "users": users}
     cases = [
         (seed * 1_000_000 + at, min(GROUPS_A_PIECE, groups - at))
         for at in range(0, groups, GROUPS_A_PIECE)
@@ -140,6 +140,7 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
             **summary(converged),
             "converged_means_in_a_row": CONVERGED,
             "never": len(everybody) - len(converged),
+            "all": converged,
         },
         "four_users": summary(
             [sum(g["suboptimal"]) / users for g in groups if None not in g["suboptimal"]]

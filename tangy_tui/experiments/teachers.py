@@ -15,6 +15,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.experiments.classroom import (
     RANDOM,
     Course,
+    about,
     activity_of,
     covered,
     is_exact,
@@ -32,6 +33,9 @@ from tangy_tui.learning.policy import Policy
 
 FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
 """Games that a teacher gives at least and at most."""
+
+FIRST_COURSE = 1_000_000
+"""So that teachers have games that no other part of the experiment has."""
 
 
 def resolved(activity: Activity, shown: Sequence[Demonstration]) -> list[Resolution]:
@@ -58,7 +62,7 @@ def teach(settings: Settings, case: Case) -> dict[str, Any]:
     """
     place, seed = case
     style, activity = STYLES[place], activity_of(settings["activity"])
-    course = Course(activity.name, USERS, RANDOM, 100 + len(STYLES) * seed + place)
+    course = Course(settings["activity"], USERS, RANDOM, FIRST_COURSE + len(STYLES) * seed + place)
     made: list[StyledTeacher] = []
 
     def make(teaching: Teaching) -> StyledTeacher:
@@ -102,7 +106,7 @@ def _outcome(activity: Activity, policy: Policy) -> dict[str, Any]:
 def run(activity: str, seeds: Sequence[int], where: Where) -> dict[str, Any]:
     """Let groups of five teachers teach, a group for each seed, and compare within each group."""
     cases = [(place, seed) for seed in seeds for place in range(len(STYLES))]
-    results = Sweep("teachers", teach, {"activity": activity}, cases).run(where)
+    results = Sweep("teachers", teach, about(activity), cases).run(where)
     groups = [results[at : at + len(STYLES)] for at in range(0, len(results), len(STYLES))]
 
     def alike(group: Sequence[dict[str, Any]], when: str) -> bool:

@@ -1,0 +1,164 @@
+"""The paper's figures beside those that came out here, and in words where and why they differ.
+
+The words follow the numbers: what differs by no more than chance is said to agree, and a reason is
+given only for what differs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+SURE = 2.0
+"""Standard errors beyond which a difference is not put down to chance."""
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line: what is compared, the paper's figure, ours, and what to say about the two."""
+
+    what: str
+    paper: str
+    here: str
+    words: str
+
+
+def compare(document: Document) -> list[Row]:
+    """Return the rows for the document of either scenario."""
+    return _learning(document) if document["experiment"] == 1 else _persuasion(document)
+
+
+def number(value: float | None, digits: int = 2) -> str:
+    """Write a number, or a dash for none."""
+    return "\N{EN DASH}" if value is None else f"{value:.{digits}f}"
+
+
+def percent(share: float | None) -> str:
+    """Write a share as a percentage, or a dash for none."""
+    return "\N{EN DASH}" if share is None else f"{100 * share:.4g}%"
+
+
+def _mean(summary: Mapping[str, Any]) -> str:
+    return (
+        f"{number(summary['mean'])} \N{PLUS-MINUS SIGN} {number(summary['se'])} "
+        f"(standard error, n = {summary['n']})"
+    )
+
+
+def _beside(here: float, paper: float, error: float, why: str) -> str:
+    """Say whether a mean differs from the paper's figure by more than chance, and if so why."""
+    if abs(here - paper) <= SURE * error:
+        return "Agrees: the difference is within two standard errors."
+    return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}. {why}"
+
+
+def _one_run(here: float, paper: float, spread: float) -> str:
+    """Say whether one run of the paper's may have come out as it did where ours is the mean."""
+    chance = f"a mean of four users varies by {number(spread)} (standard deviation) between runs"
+    unknown = "What counted as convergence, and how its users complied, the paper does not say."
+    if abs(here - paper) <= SURE * spread:
+        return f"Agrees as far as one run can: {chance}. {unknown}"
+    return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}, and {chance}. {unknown}"
+
+
+def _learning(document: Document) -> list[Row]:
+    paper, behaviours = document["paper"], document["behaviours"]
+    within, guided = document["random"]["exact_within"], document["guided"]
+    three = str(paper["demonstrations"])
+    teachers, typed = document["teachers"], document["typing"]
+    alike = teachers["identical_share"]
+    return [
+        Row(
+            "Demonstrations needed, games by chance",
+            f"{three} (one teacher, one sequence of games)",
+            f"exact after 1, 2, 3, 4: {', '.join(percent(within[n]) for n in sorted(within))} "
+            f"of {document['seeds']} sequences",
+            f"{three} are enough in {percent(within[three])} of the sequences, and "
+            f"{percent(within['1'])} need only one: how many it takes is a matter of luck with "
+            "the games, so one sequence cannot say.",
+        ),
+        Row(
+            "Demonstrations needed when one shows every situation",
+            str(paper["demonstrations_all_shown"]),
+            f"exact after 1: {percent(guided['exact_after_one'])} "
+            f"({', '.join(f'{n}: {percent(s)}' for n, s in guided['by_users'].items())} by people)",
+            "Agrees." if guided["exact_after_one"] == 1 else "Some needed more: see the table.",
+        ),
+        Row(
+            "Behaviours in a demonstration",
+            str(paper["behaviours_per_demonstration"]),
+            _mean(behaviours),
+            _beside(
+                behaviours["mean"],
+                paper["behaviours_per_demonstration"],
+                behaviours["se"],
+                "How often simulated people ask for help in a teaching game was set by this "
+                "figure, so it is no test of the simulator.",
+            ),
+        ),
+        Row(
+            "Policies of five teachers",
+            "the same",
+            f"the same in {percent(alike['end'])} of {teachers['groups']} groups of "
+            f"{teachers['count']}; after exactly {three} games {percent(alike['three'])}, with "
+            f"conflicts settled {percent(alike['three_resolved'])}",
+            "The paper's teachers are not said to have erred; these get up to 5% of their "
+            "commands wrong, and go on until every situation was shown.",
+        ),
+        Row(
+            "Minutes to teach a game",
+            str(paper["minutes_to_teach"]),
+            _typed(typed),
+            "Not measured in this run (--no-typing)."
+            if typed is None
+            else "The paper's teachers were new to it, spoke, and watched a robot move; here "
+            "somebody who knows every command types it as fast as is sensible, so this is what "
+            "the program itself allows at best. "
+            f"At an ordinary pace it would be {number(typed['ordinary']['minutes'], 1)} minutes.",
+        ),
+    ]
+
+
+def _typed(typed: Mapping[str, Any] | None) -> str:
+    if typed is None:
+        return "\N{EN DASH}"
+    return (
+        f"{number(typed['minutes'])} for {typed['steps']:.0f} behaviours, of which the program "
+        f"took {number(typed['machine_minutes'])}"
+    )
+
+
+def _persuasion(document: Document) -> list[Row]:
+    paper, before = document["paper"], document["suboptimal_before_convergence"]
+    four, rate = document["four_users"], document["interactions_per_user_game"]
+    last = [user["optimal_share"][-1] for user in document["users"]]
+    never = f"; {before['never']} never converged" if before["never"] else ""
+    asked = paper["interactions_per_user_game"]
+    return [
+        Row(
+            "Sub-optimal strategies before convergence",
+            f"{paper['suboptimal_before_convergence']} (mean of four users, one run)",
+            f"{_mean(before)}, standard deviation {number(before['sd'])} between people{never}",
+            _one_run(before["mean"], paper["suboptimal_before_convergence"], four["sd"]),
+        ),
+        Row(
+            "Interactions of a user in a game",
+            str(asked),
+            f"{number(rate, 3)} ({document['games']} games)",
+            f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}. The rates of the "
+            "simulated people were fitted to the twenty games of Table II, whose own counts give "
+            "90 interactions for four people in twenty games.",
+        ),
+        Row(
+            "Optimal strategies over interactions (Fig. 5)",
+            "rises to all of them, for each user",
+            f"{', '.join(percent(share) for share in last)} of the "
+            f"{len(document['users'][0]['optimal_share'])}th interactions, by user",
+            "The same shape. The paper draws one run of each user; here it is the share of "
+            f"{document['groups']} runs. Thompson sampling never stops exploring altogether, so "
+            "the share comes near to 100% and does not stay there.",
+        ),
+    ]

@@ -1,0 +1,188 @@
+"""The reports' figures: matplotlib's objects, drawn as SVG that takes its colours from the page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from io import StringIO
+from typing import Any
+
+from tangy_tui.experiments.estimates import share_interval
+
+INKS = {
+    "#010101": "var(--ink)",
+    "#020202": "var(--dim)",
+    "#030303": "var(--line)",
+    **{f"#0{n}0{n}0{n}": f"var(--series-{n - 3})" for n in range(4, 10)},
+}
+"""Colours that stand for the page's own, so that figures are readable in light and in dark."""
+
+INK, DIM, LINE, *SERIES = INKS
+LEGEND: dict[str, Any] = {"frameon": False, "labelcolor": INK, "fontsize": 9}
+BARS: dict[str, Any] = {"ecolor": INK, "capsize": 3, "error_kw": {"elinewidth": 1}}
+
+
+class Figure:
+    """One drawing with some axes side by side; `svg` is what goes into the page."""
+
+    def __init__(self, name: str, panels: int = 1, *, height: float = 3.2, rows: int = 1) -> None:
+        from matplotlib.figure import Figure as Drawing
+
+        self._name = name
+        self._drawing = Drawing(figsize=(9.0, height), layout="constrained")
+        self._drawing.patch.set_visible(False)
+        grid = self._drawing.subplots(rows, panels, squeeze=False)
+        self.axes = [axes for line in grid for axes in line]
+        for axes in self.axes:
+            _plain(axes)
+
+    def svg(self) -> str:
+        """Return the drawing as an SVG element: no header, no outside names, ids of its own."""
+        from matplotlib import rc_context
+
+        text = StringIO()
+        with rc_context({"svg.fonttype": "none", "svg.hashsalt": self._name}):
+            self._drawing.savefig(text, format="svg", metadata={"Date": None})
+        svg = text.getvalue()
+        svg = svg[svg.index("<svg") :]
+        svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+        svg = re.sub(r' xmlns(:\w+)?="[^"]*"', "", svg).replace("xlink:href", "href")
+        svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{self._name}-", svg)
+        svg = re.sub(r'font: ([\d.]+)px [^;"]*', r"font: \1px var(--font)", svg)
+        for ink, of_page in INKS.items():
+            svg = svg.replace(ink, of_page)
+        return re.sub(r' width="[\d.]+pt" height="[\d.]+pt"', ' role="img"', svg, count=1)
+
+
+def _plain(axes: Any) -> None:
+    axes.patch.set_visible(False)
+    for side, spine in axes.spines.items():
+        spine.set_visible(side in ("left", "bottom"))
+        spine.set_color(DIM)
+    axes.tick_params(colors=DIM, labelcolor=INK, labelsize=9)
+    axes.grid(axis="y", color=LINE, linewidth=0.8)
+    axes.set_axisbelow(True)
+
+
+def _named(axes: Any, title: str, across: str, up: str) -> None:
+    axes.set_title(title, color=INK, fontsize=10, loc="left")
+    axes.set_xlabel(across, color=INK, fontsize=9)
+    axes.set_ylabel(up, color=INK, fontsize=9)
+
+
+def _papers(axes: Any, at: float, words: str) -> None:
+    axes.axvline(at, color=INK, linewidth=1.2, linestyle="--", label=words)
+    axes.legend(**LEGEND)
+
+
+def demonstrations(document: Mapping[str, Any]) -> str:
+    """Draw how many demonstrations it took, and how long they were."""
+    figure = Figure("demonstrations", 2)
+    first, second = figure.axes
+    within = document["random"]["exact_within"]
+    shares = [within[count] for count in sorted(within)]
+    spans = [share_interval(share, document["seeds"]) for share in shares]
+    errors = [
+        [share - low for share, (low, _) in zip(shares, spans, strict=True)],
+        [high - share for share, (_, high) in zip(shares, spans, strict=True)],
+    ]
+    places = range(1, len(shares) + 1)
+    first.bar(places, shares, color=SERIES[0], width=0.6, yerr=errors, label="by chance", **BARS)
+    guided = document["guided"]["exact_after_one"]
+    first.plot([1], [guided], "D", color=SERIES[1], markersize=8, label="guided", clip_on=False)
+    first.set_xticks(list(places))
+    first.set_ylim(0, 1.02)
+    _named(first, "Policy exact", "demonstrations", "share of sequences")
+    first.legend(loc="lower right", **LEGEND)
+    lengths = document["behaviours"]["all"]
+    second.hist(lengths, bins=20, color=SERIES[0])
+    _named(second, "Length of a demonstration by chance", "behaviours", "demonstrations")
+    _papers(second, document["paper"]["behaviours_per_demonstration"], "the paper's mean")
+    return figure.svg()
+
+
+def mistakes(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Draw in how many sequences the policy was exact, with wrong answers and after settling."""
+    places = list(dict.fromkeys(row["placed"] for row in rows))
+    figure = Figure("mistakes", len(places), height=2.8)
+    for axes, place in zip(figure.axes, places, strict=True):
+        some = [row for row in rows if row["placed"] == place]
+        rates = [100 * row["rate"] for row in some]
+        for key, label, ink, form in (
+            ("exact_before", "as they are", SERIES[0], "o-"),
+            ("exact_after", "conflicts settled", SERIES[1], "s--"),
+        ):
+            axes.plot(rates, [row[key] for row in some], form, color=ink, label=label)
+        axes.set_ylim(-0.03, 1.05)
+        _named(axes, f"Wrong answers: {place}", "wrong answers (%)", "policy exact")
+    figure.axes[0].legend(loc="lower left", **LEGEND)
+    return figure.svg()
+
+
+def optimal_shares(users: Sequence[Mapping[str, Any]]) -> str:
+    """Draw Fig. 5: the percentage of optimal strategies for each user, over interactions."""
+    across = min(len(users), 4)
+    rows = -(-len(users) // across)
+    figure = Figure("optimal", across, height=2.6 * rows, rows=rows)
+    for axes, user in zip(figure.axes, users, strict=False):
+        shares, one = user["optimal_share"], user["one_run"]
+        times = range(1, len(shares) + 1)
+        axes.plot(times, [100 * share for share in shares], color=SERIES[0], label="all runs")
+        running = [100 * sum(one[: n + 1]) / (n + 1) for n in range(len(one))]
+        axes.plot(
+            times, running, color=SERIES[1], linestyle="--", linewidth=1, label="one run, so far"
+        )
+        axes.set_ylim(0, 102)
+        _named(axes, f"{user['name']} ({user['best']})", "interaction", "optimal (%)")
+    for axes in figure.axes[len(users) :]:
+        axes.set_visible(False)
+    figure.axes[0].legend(loc="lower right", **LEGEND)
+    return figure.svg()
+
+
+def before_convergence(document: Mapping[str, Any]) -> str:
+    """Draw how many sub-optimal strategies came before convergence, person by person."""
+    figure = Figure("before", height=2.8)
+    (axes,) = figure.axes
+    counts = document["suboptimal_before_convergence"]["all"]
+    axes.hist(counts, bins=range(max(counts, default=0) + 2), color=SERIES[0], align="left")
+    _named(axes, "Sub-optimal strategies before convergence", "strategies", "people")
+    _papers(
+        axes, document["paper"]["suboptimal_before_convergence"], "the paper's mean of four users"
+    )
+    return figure.svg()
+
+
+def regrets(
+    crowds: Sequence[tuple[str, Mapping[str, Mapping[str, Any]]]],
+    names: Mapping[str, str],
+    log_term: Mapping[str, float],
+) -> str:
+    """Draw the regret of every method at every horizon, a panel for each crowd.
+
+    Args:
+        crowds: (title, method -> row); the first one gets the Lai-Robbins log term drawn in.
+    """
+    figure = Figure("regret", len(crowds), height=3.6)
+    for axes, (title, methods) in zip(figure.axes, crowds, strict=True):
+        for place, (name, row) in enumerate(methods.items()):
+            times = [int(horizon) for horizon in row["regret"]]
+            axes.errorbar(
+                times,
+                list(row["regret"].values()),
+                yerr=list(row["regret_se"].values()),
+                color=SERIES[place % len(SERIES)],
+                marker="osD^vP"[place % 6],
+                markersize=4,
+                label=names[name],
+            )
+        axes.set_xscale("log")
+        axes.set_xticks(times, [str(time) for time in times])
+        axes.minorticks_off()
+        _named(axes, title, "interactions", "regret")
+        axes.set_ylim(bottom=0)
+    figure.axes[0].plot(
+        [int(t) for t in log_term], list(log_term.values()), ":", color=INK, label="log term"
+    )
+    figure.axes[0].legend(loc="upper left", **{**LEGEND, "fontsize": 8})
+    return figure.svg()

@@ -1,0 +1,122 @@
+"""The two scenarios as whole documents: what came out, what the paper printed, and from what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tangy_tui.experiments import (
+    algorithms,
+    incremental,
+    mistakes,
+    persuading,
+    published,
+    teachers,
+    typing,
+)
+from tangy_tui.experiments.classroom import activity_of
+from tangy_tui.experiments.provenance import code_digest, versions
+from tangy_tui.experiments.sweep import Where
+
+SEED_SPACE = 10_000
+"""Seeds that belong to one --seed, so that two of them never share a game."""
+
+A_GROUP_OF = 5
+"""Of the seeds, one in so many has its own five teachers."""
+
+A_SHARE_OF = 4
+"""Of the seeds, one in so many is taught with every rate of mistakes in every place."""
+
+
+@dataclass(frozen=True)
+class Learning:
+    """What Scenario 1 is asked for: seeds, numbers of people in guided games, and whether to type.
+
+    `typed_steps` leaves the typed game after so many steps (None: a whole game).
+    """
+
+    activity: str
+    seeds: int
+    users: Sequence[int]
+    seed: int
+    typing: bool = True
+    typed_steps: int | None = None
+
+    @property
+    def all_seeds(self) -> range:
+        """The seeds themselves."""
+        return range(self.seed * SEED_SPACE, self.seed * SEED_SPACE + self.seeds)
+
+
+@dataclass(frozen=True)
+class Persuading:
+    """What Scenario 2 is asked for: people in a group, people in all, and the first seed."""
+
+    activity: str
+    users: int
+    people: int
+    seed: int
+
+
+def learning(asked: Learning, where: Where) -> dict[str, Any]:
+    """Run Scenario 1 and return its document (shares run from 0 to 1, times are in minutes)."""
+    seeds = asked.all_seeds
+    typed = None
+    if asked.typing:  # alone on the machine, before the cores are busy
+        typed = typing.run(asked.activity, [asked.seed], where, steps=asked.typed_steps)
+    until = incremental.run(asked.activity, asked.users, seeds, where)
+    taught = teachers.run(asked.activity, seeds[: -(-len(seeds) // A_GROUP_OF)], where)
+    wrong = mistakes.run(asked.activity, seeds[: -(-len(seeds) // A_SHARE_OF)], where)
+    return {
+        "experiment": 1,
+        "seeds": asked.seeds,
+        "guided": until["guided"],
+        "random": until["random"],
+        "behaviours_per_demonstration": until["behaviours"]["mean"],
+        "behaviours": until["behaviours"],
+        "flagged_after_each": until["flagged_after_each"],
+        "teachers": {**taught, "with_mistakes": wrong},
+        "minutes_to_teach": typed and typed["minutes"],
+        "typing": typed,
+        "paper": dict(published.SCENARIO_ONE),
+        "settings": {
+            "activity": activity_of(asked.activity).title,
+            "first seed": seeds[0],
+            "seeds": asked.seeds,
+            "people in games by chance": published.USERS,
+            "people in guided games": ", ".join(map(str, asked.users)),
+            "games by chance at most": incremental.MOST_GAMES,
+        },
+        **_provenance(),
+    }
+
+
+def persuasion(asked: Persuading, where: Where) -> dict[str, Any]:
+    """Run Scenario 2 and return its document (shares run from 0 to 1)."""
+    strategies = len(activity_of(asked.activity).strategies)
+    groups = -(-asked.people // asked.users)
+    played = persuading.run(asked.activity, asked.users, groups, asked.seed, where)
+    compared = algorithms.run(strategies, asked.people, asked.seed, where)
+    return {
+        "experiment": 2,
+        **played,
+        **compared,
+        "paper": dict(published.SCENARIO_TWO),
+        "settings": {
+            "activity": activity_of(asked.activity).title,
+            "seed": asked.seed,
+            "people": groups * asked.users,
+            "people in a group": asked.users,
+            "P(complying) with the preferred strategy": played["preferred"],
+            "P(complying) with another": played["other"],
+            "convergence": f"{persuading.CONVERGED} optimal strategies in a row",
+            "share kept by forgetting": algorithms.KEEP,
+            "earlier people": f"{algorithms.EARLIER}, met {algorithms.MET} times each",
+        },
+        **_provenance(),
+    }
+
+
+def _provenance() -> dict[str, Any]:
+    return {"versions": versions(), "code": code_digest()}

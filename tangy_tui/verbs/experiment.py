@@ -1,0 +1,140 @@
+"""`tangy experiment`: run the paper's scenarios again, and put what comes out beside the paper."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
+
+if TYPE_CHECKING:
+    from tangy_tui.experiments.sweep import Where
+
+app = typer.Typer(
+    rich_markup_mode=None, help="The paper's scenarios, run again and put beside what it printed."
+)
+
+Seed = Annotated[int, typer.Option(min=0, help="Another seed, other games.")]
+Jobs = Annotated[int, typer.Option(help="How many processes work at it; -1: one for each core.")]
+Dask = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Work on this Dask cluster instead.")
+]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Do again what was done before.")]
+Report = Annotated[
+    Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures and tables.")
+]
+
+
+@app.command("1")
+def first(
+    seeds: Annotated[int, typer.Option(min=1, help="Sequences of games.")] = 100,
+    users: Annotated[
+        int | None, typer.Option(min=1, max=8, help="People in guided games, instead of 1 to 8.")
+    ] = None,
+    no_typing: Annotated[
+        bool, typer.Option("--no-typing", help="Do not type a game in real time (minutes).")
+    ] = False,
+    report: Report = None,
+    activity: ActivityName = "bingo",
+    jobs: Jobs = -1,
+    dask: Dask = None,
+    fresh: Fresh = False,
+    seed: Seed = 0,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Learn: demonstrations until the policy is exact, five teachers, mistakes, minutes."""
+    from tangy_tui.experiments.scenarios import Learning, learning
+
+    asked = Learning(
+        activity, seeds, range(1, 9) if users is None else [users], seed, not no_typing
+    )
+    _run(lambda where: learning(asked, where), data, jobs, dask, fresh, report, as_json)
+
+
+@app.command("2")
+def second(
+    people: Annotated[int, typer.Option(min=1, help="Simulated people in all.")] = 2000,
+    users: Annotated[int, typer.Option(min=1, max=8, help="People in a group.")] = 4,
+    report: Report = None,
+    activity: ActivityName = "bingo",
+    jobs: Jobs = -1,
+    dask: Dask = None,
+    fresh: Fresh = False,
+    seed: Seed = 0,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Persuade: optimal strategies over interactions, and every way to choose one."""
+    from tangy_tui.experiments.scenarios import Persuading, persuasion
+
+    asked = Persuading(activity, users, people, seed)
+    _run(lambda where: persuasion(asked, where), data, jobs, dask, fresh, report, as_json)
+
+
+def _run(
+    scenario: Callable[[Where], dict[str, Any]],
+    data: Path | None,
+    jobs: int,
+    dask: str | None,
+    fresh: bool,
+    report: Path | None,
+    as_json: bool,
+) -> None:
+    from tangy_tui.experiments import page
+    from tangy_tui.experiments.comparison import compare
+    from tangy_tui.experiments.report import report as page_of
+    from tangy_tui.experiments.sweep import Where
+    from tangy_tui.house import data_folder
+
+    if jobs == 0 or jobs < -1:
+        raise TangyError(f"--jobs {jobs}: say how many processes, or -1 for one on each core.")
+    if report is not None:
+        page.check_place(report)
+    with _progress() as tell:
+        document = scenario(Where(data_folder(data), jobs, dask, fresh, tell))
+    if report is not None:
+        page.write(report, page_of(document))
+    if as_json:
+        print_json(document)
+        return
+    for row in compare(document):
+        print(f"{row.what}\n  paper: {row.paper}\n  here:  {row.here}\n  {row.words}")
+    if report is not None:
+        print(plain(f"The report is in {report}."))
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str, int, int], None]]:
+    """Show a bar for each sweep on stderr, where somebody can see it; say how to go on."""
+    from rich.console import Console
+    from rich.progress import Progress, TaskID
+
+    bars: dict[str, TaskID] = {}
+    done: dict[str, int] = {}
+    console = Console(stderr=True)
+    try:
+        with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+
+            def tell(name: str, count: int, total: int) -> None:
+                done[name] = count
+                if name not in bars:
+                    bars[name] = progress.add_task(name, total=total)
+                progress.update(bars[name], completed=count)
+
+            yield tell
+    except KeyboardInterrupt:
+        pieces = sum(done.values())
+        print(
+            f"tangy: Stopped; {pieces} finished pieces of work are kept. "
+            "The same command goes on from there.",
+            file=sys.stderr,
+        )
+        raise
