@@ -61,7 +61,8 @@ def _one_run(here: float, paper: float, spread: float) -> str:
     unknown = "What counted as convergence, and how its users complied, the paper does not say."
     if abs(here - paper) <= SURE * spread:
         return f"Agrees as far as one run can: {chance}. {unknown}"
-    return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}, and {chance}. {unknown}"
+    how = "Higher" if here > paper else "Lower"
+    return f"{how} by {abs(here - paper):.2g}, and {chance}. {unknown}"
 
 
 def _learning(document: Document) -> list[Row]:

@@ -36,6 +36,11 @@ class Figure:
         for axes in self.axes:
             _plain(axes)
 
+    def legend(self, *, columns: int) -> None:
+        """Name what the first axes show, below all of them."""
+        lines, names = self.axes[0].get_legend_handles_labels()
+        self._drawing.legend(lines, names, loc="outside lower center", ncols=columns, **LEGEND)
+
     def svg(self) -> str:
         """Return the drawing as an SVG element: no header, no outside names, ids of its own."""
         from matplotlib import rc_context
@@ -72,7 +77,8 @@ def _named(axes: Any, title: str, across: str, up: str) -> None:
 
 def _papers(axes: Any, at: float, words: str) -> None:
     axes.axvline(at, color=INK, linewidth=1.2, linestyle="--", label=words)
-    axes.legend(**LEGEND)
+    axes.set_ylim(top=1.2 * axes.get_ylim()[1])  # room for the legend
+    axes.legend(loc="upper right", **LEGEND)
 
 
 def demonstrations(document: Mapping[str, Any]) -> str:
@@ -91,11 +97,13 @@ def demonstrations(document: Mapping[str, Any]) -> str:
     guided = document["guided"]["exact_after_one"]
     first.plot([1], [guided], "D", color=SERIES[1], markersize=8, label="guided", clip_on=False)
     first.set_xticks(list(places))
-    first.set_ylim(0, 1.02)
+    first.set_ylim(0, 1.25)
+    first.set_yticks([0, 0.25, 0.5, 0.75, 1])
     _named(first, "Policy exact", "demonstrations", "share of sequences")
-    first.legend(loc="lower right", **LEGEND)
+    first.legend(loc="upper right", ncols=2, **LEGEND)
     lengths = document["behaviours"]["all"]
-    second.hist(lengths, bins=20, color=SERIES[0])
+    second.hist(lengths, bins=range(0, max(lengths) + 6, 5), color=SERIES[0])
+    second.set_xlim(left=max(0, min(lengths) - 5))
     _named(second, "Length of a demonstration by chance", "behaviours", "demonstrations")
     _papers(second, document["paper"]["behaviours_per_demonstration"], "the paper's mean")
     return figure.svg()
@@ -115,7 +123,7 @@ def mistakes(rows: Sequence[Mapping[str, Any]]) -> str:
             axes.plot(rates, [row[key] for row in some], form, color=ink, label=label)
         axes.set_ylim(-0.03, 1.05)
         _named(axes, f"Wrong answers: {place}", "wrong answers (%)", "policy exact")
-    figure.axes[0].legend(loc="lower left", **LEGEND)
+    figure.legend(columns=2)
     return figure.svg()
 
 
@@ -136,7 +144,7 @@ def optimal_shares(users: Sequence[Mapping[str, Any]]) -> str:
         _named(axes, f"{user['name']} ({user['best']})", "interaction", "optimal (%)")
     for axes in figure.axes[len(users) :]:
         axes.set_visible(False)
-    figure.axes[0].legend(loc="lower right", **LEGEND)
+    figure.legend(columns=2)
     return figure.svg()
 
 
@@ -184,5 +192,5 @@ def regrets(
     figure.axes[0].plot(
         [int(t) for t in log_term], list(log_term.values()), ":", color=INK, label="log term"
     )
-    figure.axes[0].legend(loc="upper left", **{**LEGEND, "fontsize": 8})
+    figure.legend(columns=4)
     return figure.svg()

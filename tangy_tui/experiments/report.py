@@ -132,7 +132,7 @@ def _mistakes(rows: Any) -> Iterator[str]:
                 row["conflicts"],
                 percent(row["conflicts_found"]),
                 row["no_right_answer_left"],
-                f"{percent(row['before']['wrong_flagged'])} of {row['before']['wrong']}",
+                _of(row["before"]["wrong_flagged"], row["before"]["wrong"]),
                 percent(row["exact_before"]),
                 percent(row["exact_after"]),
                 percent(row["after"]["right_flagged"]),
@@ -140,6 +140,10 @@ def _mistakes(rows: Any) -> Iterator[str]:
             for row in rows
         ],
     )  # fmt: skip
+
+
+def _of(share: float | None, n: int) -> str:
+    return f"{percent(share)} of {n}" if n else "none wrong"
 
 
 def _typing(typed: Document) -> Iterator[str]:
