@@ -59,6 +59,19 @@ class Transcript(ScrollView, can_focus=True):
             """The transcript that it was chosen in."""
             return self.transcript
 
+    class Moved(Message):
+        """The cursor is on another step, or (None) on none and follows the end."""
+
+        def __init__(self, transcript: Transcript, number: int | None) -> None:
+            super().__init__()
+            self.transcript = transcript
+            self.number = number
+
+        @property
+        def control(self) -> Transcript:
+            """The transcript that it moved in."""
+            return self.transcript
+
     def __init__(
         self,
         *,
@@ -109,6 +122,14 @@ class Transcript(ScrollView, can_focus=True):
         self._chosen = None
         self._show()
 
+    def point(self, number: int) -> None:
+        """Put the cursor on a step, or on the nearest one that is kept."""
+        if self._steps:
+            first = self._count - len(self._steps) + 1
+            self._chosen = min(len(self._steps) - 1, max(0, number - first))
+            self._mark()
+            self.post_message(self.Moved(self, self.chosen))
+
     def clear(self) -> None:
         """Begin again at step 1."""
         self.fill([])
@@ -121,6 +142,7 @@ class Transcript(ScrollView, can_focus=True):
         at = last + 1 + by if self._chosen is None else self._chosen + by
         self._chosen = None if at > last else max(0, at)
         self._mark()
+        self.post_message(self.Moved(self, self.chosen))
 
     def action_tell(self) -> None:
         """Post `Chosen` for the step under the cursor."""

@@ -1,0 +1,138 @@
+"""One demonstration, step by step: the situation, what was said, what was done, what followed."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.state import FRONT
+from tangy_tui.house import House
+from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.listing import heard_words, state_of
+from tangy_tui.learning.quality import quality_notes
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.local_time import local_time
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import counted, step_words
+
+
+class DemonstrationScreen(TangyScreen[None]):
+    """The steps of a demonstration, the cursor on one of them, which is told in full."""
+
+    CSS_PATH = "demonstration.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
+    AUTO_FOCUS = "#transcript"
+    TITLE = "Demonstration"
+    HELP = (
+        "One demonstration from its first step to its last. Up and down choose a step; below it "
+        "stands what was said, what was done and what followed. a shows it again from the step "
+        "that is chosen: everything before it stays as it is."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("a", "again", "Show again from this step"),
+        Binding("escape", "leave", "Back"),
+    ]
+
+    def __init__(self, house: House, id: str, number: int = 1) -> None:
+        """Make the screen.
+
+        Args:
+            id: of the demonstration.
+            number: of the step that the cursor is on, from 1.
+        """
+        super().__init__()
+        self._house = house
+        self._library: Library = read_library(house.store, house.activity.name)
+        self._entry = self._library.find(id)
+        self._number = number
+        self._heard = heard_words(house.store, self._shown)
+
+    @property
+    def _shown(self) -> Demonstration:
+        return self._entry.demonstration
+
+    def compose(self) -> ComposeResult:
+        """Lay out what is known of the whole, its steps, and the chosen step."""
+        name = self._library.name(self._shown.id)
+        yield StatusLine(Status(mode=name, note=state_of(self._entry)))
+        yield Static(self._summary(), id="summary", markup=False)
+        yield panel(Transcript(empty="It has no steps.", id="transcript"))
+        with panel(VerticalScroll(id="step"), "This step"):
+            yield Static(id="told", markup=False)
+        yield key_line(
+            ("up down", "choose a step"), ("a", "show again from here"), ("esc", "back"),
+            ("?", "help"),
+        )  # fmt: skip
+
+    def on_mount(self) -> None:
+        """Show the steps and point at the one that is wanted."""
+        steps = self.query_one(Transcript)
+        house = self._house
+        steps.fill([step_words(house.activity, s, house.name) for s in self._shown.steps])
+        self.call_after_refresh(steps.point, self._number)
+        self._tell(min(max(1, self._number), len(self._shown.steps)))
+
+    def on_transcript_moved(self, event: Transcript.Moved) -> None:
+        """Tell of the step that the cursor is on."""
+        self._tell(event.number or len(self._shown.steps))
+
+    def action_again(self) -> None:
+        """Show it again from the chosen step, if the teacher means it."""
+        self.app.run_worker(self._again(self._number))
+
+    async def _again(self, number: int) -> None:
+        name = self._library.name(self._shown.id)
+        dialog = ConfirmDialog(
+            f"Show {name} again from step {number}?",
+            "The steps before it stay as they are. It is replaced when you have shown the game to "
+            "its end, and not before.",
+            yes="show it again",
+            no="leave it as it is",
+        )
+        if await self.app.push_screen_wait(dialog):
+            program: Any = self.app
+            program.show_again(self._shown.id, number - 1)
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.dismiss(None)
+
+    def _summary(self) -> str:
+        entry, shown = self._entry, self._shown
+        notes = quality_notes(self._house.activity, entry, self._library)
+        parts = [f"by {shown.teacher}", local_time(entry.at), counted(len(shown.steps), "step")]
+        return clean(", ".join([*parts, *notes]))
+
+    def _tell(self, number: int) -> None:
+        self._number = max(1, number)
+        if 1 <= number <= len(self._shown.steps):
+            told = self.query_one("#told", Static)
+            told.update(self._step_content(number, self._shown.steps[number - 1]))
+
+    def _step_content(self, number: int, step: Step) -> Content:
+        activity, name = self._house.activity, self._house.name
+        place = "at the front" if step.state.place == FRONT else f"with {name(step.state.place)}"
+        done = step.behaviour + (f", for {name(step.target)}" if step.target else "")
+        lines = [
+            ("Step", f"{number} of {len(self._shown.steps)}"),
+            ("Situation", f"{activity.in_words(step.state.situation)}; Tangy is {place}"),
+            ("Heard", self._heard.get(number, "")),
+            ("Done", done + ("" if step.completed else " (could not be carried out)")),
+            ("Then", activity.in_words(step.after.situation)),
+        ]
+        parts: list[str | tuple[str, str]] = []
+        for label, text in lines:
+            if text:
+                parts += [(f"{label:<11}", "$ink-dim"), clean(text), "\n"]
+        return Content.assemble(*parts).rstrip()
