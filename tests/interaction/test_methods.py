@@ -1,0 +1,317 @@
+"""Each way to choose and to learn keeps its law; the paper's stays exactly the paper's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from random import Random
+from statistics import mean
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+
+from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.persuading import PAPER, Persuading, read_persuading, spoken_persuading
+from tangy_profiles.reading import Table
+from tangy_tui.interaction.memory import counted
+from tangy_tui.interaction.methods import (
+    MOST_LENT,
+    BayesUcb,
+    EarlierPeople,
+    Forgetting,
+    Method,
+    Thompson,
+    lent,
+    method_of,
+    others,
+)
+from tests.bench import persuasion as bench
+
+STRATEGIES = ("plain", "warm", "brisk")
+
+a_count = st.tuples(st.integers(0, 40), st.integers(0, 40))
+some_counts = st.lists(a_count, max_size=12)
+responses = st.lists(st.tuples(st.sampled_from(STRATEGIES), st.booleans()), max_size=40)
+methods: st.SearchStrategy[Method] = st.builds(
+    method_of,
+    st.builds(
+        Persuading,
+        st.sampled_from(["thompson", "bayes-ucb"]),
+        st.sampled_from(["uniform", "people"]),
+        st.sampled_from([1.0, 0.98, 0.6]),
+        st.sampled_from(["interaction", "day"]),
+    ),
+    st.lists(st.fixed_dictionaries(dict.fromkeys(STRATEGIES, a_count)), max_size=5),
+)
+
+
+def learn(method: Method, told: Sequence[tuple[str, bool]]) -> Beliefs:
+    beliefs = prior = method.prior(STRATEGIES)
+    for strategy, complied in told:
+        beliefs = method.updated(beliefs, prior, strategy, complied)
+    return beliefs
+
+
+# ------------------------------------------------------------------------------- the paper's
+
+
+@given(responses, st.integers())
+def test_the_default_draws_from_beta_one_plus_counts_and_nothing_else(
+    told: list[tuple[str, bool]], seed: int
+) -> None:
+    method = method_of(PAPER)
+    beliefs = learn(method, told)
+    ours, direct = Random(seed), Random(seed)
+    expected = {}
+    for strategy in STRATEGIES:
+        yes = told.count((strategy, True))
+        no = told.count((strategy, False))
+        assert beliefs[strategy] == Beta(1 + yes, 1 + no)
+        expected[strategy] = direct.betavariate(1 + yes, 1 + no)
+    assert method.scores(beliefs, ours) == expected
+    assert ours.getstate() == direct.getstate()
+    assert not method.forgets
+    assert type(method) is Thompson
+
+
+# --------------------------------------------------------------------------- laws of every one
+
+
+@given(methods, responses)
+def test_whatever_the_method_the_counts_are_those_of_the_responses(
+    method: Method, told: list[tuple[str, bool]]
+) -> None:
+    beliefs = learn(method, told)
+    for strategy in STRATEGIES:
+        belief = beliefs[strategy]
+        assert belief.complied == told.count((strategy, True))
+        assert belief.trials - belief.complied == told.count((strategy, False))
+        assert belief.alpha >= 1
+        assert belief.beta >= 1
+
+
+@given(methods, responses)
+def test_learning_changes_nothing_in_place(method: Method, told: list[tuple[str, bool]]) -> None:
+    prior = method.prior(STRATEGIES)
+    before = dict(prior)
+    beliefs = method.updated(prior, prior, STRATEGIES[0], True)
+    method.faded(beliefs, prior, 3.0)
+    assert prior == before == method.prior(STRATEGIES)
+
+
+@given(methods, responses, st.integers())
+def test_every_strategy_has_a_score_that_is_a_probability(
+    method: Method, told: list[tuple[str, bool]], seed: int
+) -> None:
+    scores = method.scores(learn(method, told), Random(seed))
+    assert tuple(scores) == STRATEGIES
+    assert all(0 <= score <= 1 for score in scores.values())
+
+
+@given(methods, responses, st.randoms(use_true_random=False))
+def test_without_forgetting_the_order_does_not_matter(
+    method: Method, told: list[tuple[str, bool]], rng: Random
+) -> None:
+    if method.forgets:
+        return
+    shuffled = list(told)
+    rng.shuffle(shuffled)
+    counts = {("p", s): (told.count((s, True)), told.count((s, False))) for s in STRATEGIES}
+    assert learn(method, told) == learn(method, shuffled)
+    assert learn(method, told) == counted(method.prior(STRATEGIES), "p", counts)
+
+
+# ------------------------------------------------------------------------------------ Bayes-UCB
+
+
+@given(responses)
+def test_bayes_ucb_scores_with_the_quantile_one_less_one_in_t_plus_one(
+    told: list[tuple[str, bool]],
+) -> None:
+    beliefs = learn(BayesUcb(), told)
+    t = len(told) + 1
+    for strategy, score in BayesUcb().scores(beliefs, Random(1)).items():
+        assert score == pytest.approx(beliefs[strategy].quantile(1 - 1 / (t + 1)))
+
+
+def test_bayes_ucb_draws_nothing() -> None:
+    rng = Random(4)
+    before = rng.getstate()
+    BayesUcb().scores(uniform_beliefs(STRATEGIES), rng)
+    assert rng.getstate() == before
+
+
+# --------------------------------------------------------------------------- earlier people
+
+
+@given(some_counts)
+def test_earlier_people_lend_at_most_four_responses_and_one_for_each_of_them(
+    counts: list[tuple[int, int]],
+) -> None:
+    prior = lent(counts)
+    worth = prior.alpha + prior.beta - 2
+    assert 0 <= worth <= min(MOST_LENT, len(counts))
+    assert prior.alpha >= 1
+    assert prior.beta >= 1
+    assert prior.trials == 0
+
+
+def test_with_nobody_to_learn_from_everything_is_as_in_the_paper() -> None:
+    assert lent([]) == Beta()
+    for people in ([], [{"plain": (0, 0)}], [{"unheard of": (3, 1)}]):
+        assert EarlierPeople(Thompson(), people).prior(STRATEGIES) == uniform_beliefs(STRATEGIES)
+
+
+@examples(max_examples=30)
+@given(some_counts.filter(bool))
+def test_no_prior_that_may_be_lent_makes_the_counts_more_probable(
+    counts: list[tuple[int, int]],
+) -> None:
+    def likelihood(alpha: float, beta: float) -> float:
+        def log_beta(a: float, b: float) -> float:
+            return math.lgamma(a) + math.lgamma(b) - math.lgamma(a + b)
+
+        return sum(log_beta(alpha + y, beta + n) - log_beta(alpha, beta) for y, n in counts)
+
+    prior, most = lent(counts), 4 * min(MOST_LENT, len(counts))
+    best = max(
+        likelihood(1 + u / 4, 1 + v / 4) for u in range(most + 1) for v in range(most + 1 - u)
+    )
+    assert likelihood(prior.alpha, prior.beta) == pytest.approx(best, abs=1e-6)
+
+
+def test_what_worked_with_all_of_them_is_expected_of_the_next() -> None:
+    people = [{"warm": (9, 1), "plain": (1, 3)} for _ in range(12)]
+    prior = EarlierPeople(BayesUcb(), people).prior(STRATEGIES)
+    assert prior["warm"].mean > 0.7
+    assert prior["plain"].mean < 0.45
+    assert prior["brisk"] == Beta()
+    assert prior["warm"].alpha + prior["warm"].beta == 2 + MOST_LENT
+
+
+def test_four_responses_of_a_persons_own_outweigh_any_prior() -> None:
+    prior = lent([(50, 0)] * 40)
+    for _ in range(5):
+        prior = prior.updated(False)
+    assert prior.mean < 0.5
+
+
+def test_a_persons_own_responses_do_not_come_back_as_a_prior() -> None:
+    counts = {("p", "warm"): (9, 0), ("q", "warm"): (1, 2), ("q", "plain"): (0, 1)}
+    assert others(counts, "p") == [{"warm": (1, 2), "plain": (0, 1)}]
+    assert others(counts, "q") == [{"warm": (9, 0)}]
+
+
+# ------------------------------------------------------------------------------- forgetting
+
+
+@given(responses)
+def test_keeping_everything_is_not_forgetting(told: list[tuple[str, bool]]) -> None:
+    kept, plain = learn(Forgetting(Thompson(), 1.0), told), learn(Thompson(), told)
+    for strategy in STRATEGIES:
+        assert kept[strategy].alpha == pytest.approx(plain[strategy].alpha)
+        assert kept[strategy].beta == pytest.approx(plain[strategy].beta)
+
+
+@given(responses, st.floats(0.5, 0.99))
+def test_what_was_learnt_weighs_less_with_every_interaction_since(
+    told: list[tuple[str, bool]], keep: float
+) -> None:
+    beliefs = learn(Forgetting(Thompson(), keep), told)
+    for strategy in STRATEGIES:
+        yes = sum(
+            keep ** (len(told) - 1 - at)
+            for at, (used, complied) in enumerate(told)
+            if used == strategy and complied
+        )
+        assert beliefs[strategy].alpha == pytest.approx(1 + yes)
+
+
+@given(st.floats(0, 500), st.floats(0, 500), st.floats(0.5, 0.99))
+def test_days_add_up_whether_or_not_somebody_looks_in_between(
+    one: float, other: float, keep: float
+) -> None:
+    method = Forgetting(Thompson(), keep, daily=True)
+    prior = method.prior(STRATEGIES)
+    beliefs = learn(method, [("warm", True)] * 6 + [("warm", False)] * 2)
+    assert beliefs["warm"].alpha == 7
+    once = method.faded(beliefs, prior, one + other)["warm"]
+    twice = method.faded(method.faded(beliefs, prior, one), prior, other)["warm"]
+    assert once.alpha == pytest.approx(twice.alpha)
+    assert once.alpha == pytest.approx(1 + 6 * keep ** (one + other))
+    assert (once.complied, once.trials) == (6, 8)
+
+
+def test_after_long_enough_only_the_prior_is_left() -> None:
+    people = [{"warm": (9, 1)} for _ in range(12)]
+    method = Forgetting(EarlierPeople(Thompson(), people), 0.9, daily=True)
+    prior = method.prior(STRATEGIES)
+    beliefs = method.updated(prior, prior, "warm", False)
+    faded = method.faded(beliefs, prior, 1000)["warm"]
+    assert (faded.alpha, faded.beta) == pytest.approx((prior["warm"].alpha, prior["warm"].beta))
+
+
+# ------------------------------------------------------------------------------------- regret
+
+
+def regret(make: object, crowd: bench.Crowd, people: int, **about: bool) -> float:
+    assert callable(make)
+    return mean(found[-1] for found in bench.regrets(make, crowd, people, 60, **about))
+
+
+def test_the_regret_of_bayes_ucb_is_at_most_65_hundredths_of_thompsons() -> None:
+    thompson = regret(bench.thompson, bench.even, 1000)
+    assert thompson == pytest.approx(6.2, abs=0.4)
+    assert regret(bench.bayes_ucb, bench.even, 1000) <= 0.65 * thompson
+
+
+def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
+    thompson = regret(bench.thompson, bench.shared, 300)
+    assert regret(bench.bayes_ucb_prior, bench.shared, 300, earlier=True) <= 0.5 * thompson
+
+
+# ---------------------------------------------------------------------------------- in words
+
+
+@pytest.mark.parametrize(
+    ("words", "chosen"),
+    [
+        ("thompson", PAPER),
+        ("bayes-ucb", Persuading("bayes-ucb")),
+        ("people", Persuading(prior="people")),
+        ("day 0.9 people Bayes-UCB", Persuading("bayes-ucb", "people", 0.9, "day")),
+        (".98", Persuading(forgetting=0.98)),
+    ],
+)
+def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: Persuading) -> None:
+    assert spoken_persuading(words.split()) == chosen
+    assert Persuading.from_json(chosen.to_json()) == chosen
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("bayes", "There is no method 'bayes': did you mean 'bayes-ucb'?"),
+        ("thompson bayes-ucb", "'bayes-ucb' says again what another word has said."),
+        ("0.2", "What is kept must be a share from 0.5 to 1, not 0.2."),
+        ("nan", "What is kept must be a share from 0.5 to 1, not nan."),
+        ("day", "'day' needs the share that is kept, for example 0.98."),
+    ],
+)
+def test_other_words_are_refused_in_a_sentence(words: str, said: str) -> None:
+    with pytest.raises(ProfileError) as refused:
+        spoken_persuading(words.split())
+    assert str(refused.value) == said
+
+
+def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
+    assert read_persuading(Table({}, "x.toml")) == PAPER
+    table = {"method": "bayes-ucb", "prior": "people", "forgetting": 0.9, "forgetting_per": "day"}
+    assert read_persuading(Table(table, "x.toml")) == Persuading("bayes-ucb", "people", 0.9, "day")
+    with pytest.raises(ProfileError, match=r"x\.toml: persuasion\.method = 'tomson'.*'thompson'"):
+        read_persuading(Table({"method": "tomson"}, "x.toml", "persuasion."))
+    with pytest.raises(ProfileError, match="is not a key here; did you mean 'forgetting'"):
+        read_persuading(Table({"forgeting": 0.9}, "x.toml"))
