@@ -15,7 +15,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui import __version__
-from tangy_tui.verbs import experiment, learn, machine, people, play, teach
+from tangy_tui.verbs import demonstrations, experiment, learn, machine, people, play, teach
 from tangy_tui.verbs.common import Ascii, Data, full_screen, open_house
 
 app = typer.Typer(
@@ -61,6 +61,7 @@ VERBS: tuple[Callable[..., None], ...] = (
 )
 for verb in VERBS:
     app.command()(verb)
+app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
 app.add_typer(experiment.app, name="experiment")
 

@@ -9,8 +9,12 @@ from tangy_tui.house import House
 from tangy_tui.interaction import saying
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.record import Record
-from tangy_tui.learning.library import effects_of
-from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.comparing import Row
+from tangy_tui.learning.conflicts import Conflict, Shown
+from tangy_tui.learning.coverage import coverage
+from tangy_tui.learning.explaining import Why, why_words
+from tangy_tui.learning.library import effects_of, read_library
+from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.reachable import joint_states
 
 
@@ -21,6 +25,9 @@ def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
         "teacher": demonstration.teacher,
         "seed": demonstration.seed,
         "finished": demonstration.finished,
+        "guided": demonstration.guided,
+        "origin": demonstration.origin,
+        "of": list(demonstration.of),
         "steps": len(demonstration.steps),
         "trajectory": [
             {
@@ -54,6 +61,8 @@ def policy_document(house: House, policy: Policy) -> dict[str, Any]:
                 "share": decision.share,
                 "seen": decision.seen,
                 "votes": dict(decision.votes),
+                "sure": decision.sure,
+                "contested": decision.contested,
             }
             for situation in activity.situations
             for decision in [policy.decide(situation)]
@@ -64,6 +73,93 @@ def policy_document(house: House, policy: Policy) -> dict[str, Any]:
             behaviour: {variable: sorted(values) for variable, values in variables.items()}
             for behaviour, variables in effects.values.items()
         },
+        **library_document(house),
+    }
+
+
+def library_document(house: House) -> dict[str, Any]:
+    """Describe what the finished demonstrations cover, and what they disagree about."""
+    activity = house.activity
+    library = read_library(house.store, activity.name)
+    found = coverage(activity, library.finished)
+    return {
+        "coverage": {
+            "seen": len(found.seen),
+            "situations": len(found.times),
+            "missing": [
+                {"situation": list(situation), "words": activity.not_yet(situation)}
+                for situation in found.missing
+            ],
+        },
+        "conflicts": [conflict_document(house, conflict) for conflict in library.conflicts],
+    }
+
+
+def conflict_document(house: House, conflict: Conflict) -> dict[str, Any]:
+    """Describe a conflict: the situation, and the answers with their steps."""
+    return {
+        "situation": list(conflict.situation),
+        "words": house.activity.in_words(conflict.situation),
+        "answers": [
+            {"behaviour": behaviour, "steps": [shown_document(shown) for shown in steps]}
+            for behaviour, steps in conflict.answers.items()
+        ],
+    }
+
+
+def shown_document(shown: Shown) -> dict[str, Any]:
+    """Describe where a demonstrated step stands."""
+    return {
+        "demonstration": shown.demonstration,
+        "teacher": shown.teacher,
+        "number": shown.number,
+        "behaviour": shown.step.behaviour,
+        "situation": list(shown.step.state.situation),
+    }
+
+
+def decision_document(decision: Decision) -> dict[str, Any]:
+    """Describe a decision and the votes behind it."""
+    return {
+        "behaviour": decision.behaviour,
+        "share": decision.share,
+        "votes": dict(decision.votes),
+        "seen": decision.seen,
+        "sure": decision.sure,
+        "contested": decision.contested,
+        "right": list(decision.right),
+    }
+
+
+def why_document(house: House, why: Why) -> dict[str, Any]:
+    """Describe the grounds of a decision."""
+    return {
+        "situation": list(why.situation),
+        **decision_document(why.decision),
+        "rests_on": [shown_document(shown) for shown in why.rests_on],
+        "against": [shown_document(shown) for shown in why.against],
+        "near": [shown_document(shown) for shown in why.near],
+        "sentences": why_words(house.activity, why),
+    }
+
+
+def comparison_document(house: House, a: Policy, b: Policy, rows: list[Row]) -> dict[str, Any]:
+    """Describe where two policies differ."""
+    return {
+        "a": {"name": a.name, "digest": a.digest, "demonstrations": list(a.demonstrations)},
+        "b": {"name": b.name, "digest": b.digest, "demonstrations": list(b.demonstrations)},
+        "same": all(row.same for row in rows),
+        "different": sum(not row.same for row in rows),
+        "rows": [
+            {
+                "situation": list(row.situation),
+                "words": house.activity.in_words(row.situation),
+                "a": decision_document(row.a),
+                "b": decision_document(row.b),
+                "same": row.same,
+            }
+            for row in rows
+        ],
     }
 
 

@@ -15,6 +15,7 @@ from tangy_tui.interaction.facilitation import (
     Taught,
     Unsure,
 )
+from tangy_tui.interaction.scripted_answers import answer_by_script
 from tangy_tui.learning.verifying import Reply, Say, Verified
 from tangy_tui.wording import Name, verification_lines
 
@@ -76,13 +77,14 @@ def play_by_lines(
     games: int,
     name: Name,
     write: Write,
-    read: Read = lambda: None,
+    read: Read | None = None,
     teacher: str = "",
 ) -> None:
     """Play games and tell everything that happens.
 
     Args:
         read: the lines of a teacher, who answers where Tangy asks; at their end it gives up.
+            Without it a scripted teacher answers.
         teacher: who that is.
     """
     for _ in range(games):
@@ -93,7 +95,9 @@ def play_by_lines(
                     write(line)
             if facilitation.over:
                 break
-            if facilitation.question is not None:
+            if facilitation.question is not None and read is None:
+                events = answer_by_script(facilitation)
+            elif facilitation.question is not None and read is not None:
                 events = _ask(facilitation, name, write, read, teacher)
             else:
                 events = facilitation.step()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
-    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.demonstrating import Again, Teaching
     from tangy_tui.learning.policy import Policy
     from tangy_tui.world import World
 
@@ -110,11 +110,19 @@ class House:
         """The names of those who take part, by id."""
         return {person.id: person.name for person in self.people}
 
-    def teaching(self, teacher: str, seed: int | None, *, guided: bool = False) -> Teaching:
+    def teaching(
+        self,
+        teacher: str,
+        seed: int | None,
+        *,
+        guided: bool = False,
+        again: Again | None = None,
+    ) -> Teaching:
         """Make a teaching session; `begin` it to take up what was unfinished.
 
         Without a seed the games count on from the demonstrations there are, so that no two are
-        alike and each can be had again. A guided game brings about every situation.
+        alike and each can be had again. A guided game brings about every situation. `again`
+        names a demonstration that is to be shown again from some step on.
         """
         from tangy_tui.learning import library
         from tangy_tui.learning.demonstrating import Teaching
@@ -130,6 +138,7 @@ class House:
             teacher=teacher,
             seed=seed,
             guided=guided,
+            again=again,
         )
 
     def teaching_world(self, shown: Demonstration) -> World:

@@ -9,7 +9,12 @@ from tangy_profiles.demonstration import Step
 from tangy_profiles.reading import plain
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.learning.conflicts import Conflict, Resolution
+from tangy_tui.learning.library import Edit, Library
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Verification
+
+MOST_STEPS = 3
+"""Steps that are named for each answer of a conflict."""
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""
@@ -79,3 +84,36 @@ def verification_lines(said: Verification, activity: Activity) -> list[str]:
             return [f"Not done: {plain(heard)}. Give a new command."]
         case _:
             return []
+
+
+def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> list[str]:
+    """Put a conflict into lines: the situation, and each answer with where it was given."""
+    lines = [f"Demonstrations disagree: {activity.in_words(conflict.situation)}."]
+    for number, (behaviour, steps) in enumerate(conflict.answers.items(), 1):
+        lines.append(f"  {number}. {behaviour}, shown {counted(len(steps), 'time')}:")
+        lines += [
+            plain(f"       step {s.number} of {library.name(s.demonstration)}, by {s.teacher}")
+            for s in steps[:MOST_STEPS]
+        ]
+        if len(steps) > MOST_STEPS:
+            lines.append(f"       and {counted(len(steps) - MOST_STEPS, 'more step')}")
+    return lines
+
+
+def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
+    """Say what a change of the library did."""
+    names = ", ".join(library.name(id) for id in edit.ids)
+    made = " and ".join(library.name(str(id)) for id in edit.body.get("made", ()))
+    match edit.what:
+        case "delete":
+            return f"{names}: deleted, and no longer learnt from."
+        case "restore":
+            return f"{names}: in use again."
+        case "merge":
+            return f"{names}: merged into {made}."
+        case "split":
+            return f"{names}: split after step {edit.body['kept']} into {made}."
+        case _:
+            right = " or ".join(edit.body["right"])
+            said = Resolution.from_json(edit.body)
+            return f"{activity.in_words(said.situation)}: {right} is right."

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from tangy_profiles.activity import Action, Activity, Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.state import Outcome
 from tangy_profiles.store import Store
@@ -128,12 +129,14 @@ class Teaching:
         teacher: str,
         seed: int,
         guided: bool = False,
+        again: Again | None = None,
     ) -> None:
         """Prepare a session; `begin` it.
 
         Args:
             seed: of the first new game; the next games count on.
             guided: new games are arranged so that one of them brings about every situation.
+            again: begin by showing a demonstration again from some step on.
         """
         self.activity = activity
         self.phrasebook = Phrasebook(activity, people)
@@ -141,6 +144,7 @@ class Teaching:
         self.demonstration: Demonstration
         self.world: World
         self.guided = guided
+        self._first = again
         self._verifier: Verifier
         self._undone: list[Step] = []
         self._names = {person.id: person.name for person in people}
@@ -174,7 +178,15 @@ class Teaching:
         An unfinished one is replayed in a world of the same seed. If that does not lead to the
         states that were logged (the simulator has changed since), it stays as it is in the log,
         and a new one is begun.
+
+        Raises:
+            TangyError: the demonstration that is to be shown again cannot be.
         """
+        if self._first is not None:
+            events = self._begin_again(self._first)
+            if isinstance(events[0], Refused):
+                raise TangyError(events[0].reason)
+            return events
         if resume:
             entries = read_library(self._store, self.activity.name).entries.values()
             for entry in reversed(entries):
@@ -211,8 +223,10 @@ class Teaching:
                 if self.demonstration.finished:
                     return self._begin_new()
                 return [Refused("This demonstration is not finished yet.")]
-            case Again(id, kept):
-                return self._again(id, kept)
+            case Again(id, kept) if id == self.demonstration.id:
+                return self._go_back(kept)
+            case Again():
+                return self._begin_again(command)
 
     def _begin_new(self) -> list[TeachingEvent]:
         people = tuple(self._names)
@@ -224,18 +238,24 @@ class Teaching:
         self._logged = False
         return [Begun(new, resumed=False)]
 
-    def _again(self, id: str, kept: int) -> list[TeachingEvent]:
-        if id == self.demonstration.id:
-            if not 0 <= kept < len(self.demonstration.steps):
-                return [Refused(f"There is no step {kept + 1} to show again.")]
-            events: list[TeachingEvent] = []
-            while len(self.demonstration.steps) > kept:
-                events += self._undo()
-                if isinstance(events[-1], Refused):
-                    break
-            return events
-        entry = read_library(self._store, self.activity.name).find(id)
-        source = entry.demonstration
+    def _go_back(self, kept: int) -> list[TeachingEvent]:
+        """Undo the last steps of the present demonstration, all of them or none."""
+        steps = len(self.demonstration.steps)
+        if not 0 <= kept < steps:
+            return [Refused(f"There is no step {kept + 1} to show again.")]
+        before, undone = (self.demonstration, self.world), self._undone
+        try:
+            with self._store.transaction():
+                return [event for _ in range(steps - kept) for event in self._undo()]
+        except BaseException:  # nothing of it is in the log
+            self._enter(*before)
+            self._undone = undone
+            raise
+
+    def _begin_again(self, again: Again) -> list[TeachingEvent]:
+        library = read_library(self._store, self.activity.name)
+        source = library.find(again.demonstration).demonstration
+        kept = again.kept
         if not source.replayable:
             return [Refused("It was not shown in one game, so there is no game to go back to.")]
         if not 0 <= kept < len(source.steps):

@@ -15,6 +15,7 @@ from types import MappingProxyType
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.learning.conflicts import Resolution
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +53,23 @@ class Effects:
         ]
 
 
-def learn_effects(activity: Activity, demonstrations: Iterable[Demonstration]) -> Effects:
-    """Collect, for each behaviour, the values that each variable took after it."""
+def learn_effects(
+    activity: Activity,
+    demonstrations: Iterable[Demonstration],
+    resolutions: Iterable[Resolution] = (),
+) -> Effects:
+    """Collect, for each behaviour, the values that each variable took after it.
+
+    What follows a behaviour that the world could not carry out, or that a teacher called wrong
+    there, is no effect to be expected of it.
+    """
+    settled = {r.situation: r for r in resolutions}
     values: dict[str, dict[str, set[str]]] = {}
     for demonstration in demonstrations:
         for step in demonstration.steps:
+            said = settled.get(step.state.situation)
+            if not step.completed or (said is not None and said.sets_aside(step)):
+                continue
             of_behaviour = values.setdefault(step.behaviour, {})
             for variable, value in transition(step.state, step.after, activity).items():
                 of_behaviour.setdefault(variable, set()).add(value)

@@ -6,14 +6,16 @@ taught, and one that somebody looks up.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import Shown, shown_steps
-from tangy_tui.learning.policy import SURE, Decision, Policy
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import SURE, Decision, Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +62,23 @@ def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: 
     )
 
 
+def foresee(store: Store, activity: Activity, present: Demonstration | None) -> Policy:
+    """Learn what Tangy would do by now: from what is finished, and from what is being shown.
+
+    Nothing of it is kept.
+
+    Raises:
+        NothingToLearnFrom: nobody has shown anything yet.
+    """
+    library = read_library(store, activity.name)
+    shown = {d.id: d for d in library.finished}
+    if present is not None and present.steps:
+        for id in present.of:
+            shown.pop(id, None)
+        shown[present.id] = present
+    return learn_policy(activity, list(shown.values()), resolutions=library.resolutions)
+
+
 def why_words(activity: Activity, why: Why) -> list[str]:
     """Put the grounds of a decision into sentences, the most important first."""
     decision = why.decision
@@ -93,11 +112,14 @@ def why_words(activity: Activity, why: Why) -> list[str]:
     return sentences
 
 
-def shown_words(shown: Shown) -> str:
-    """Name a demonstrated step: what, where it stands, by whom."""
-    return (
-        f"{shown.step.behaviour}, step {shown.number} of {shown.demonstration} by {shown.teacher}"
-    )
+def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
+    """Name a demonstrated step: what, where it stands, by whom.
+
+    Args:
+        name: what to call a demonstration, by its id.
+    """
+    where = f"step {shown.number} of {name(shown.demonstration)}"
+    return f"{shown.step.behaviour}: {where}, by {shown.teacher}"
 
 
 def _either(answers: Sequence[str]) -> str:

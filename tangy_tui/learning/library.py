@@ -103,6 +103,11 @@ class Library:
         """What the finished demonstrations disagree about, and nobody has settled."""
         return find_conflicts(self.finished, self.resolutions)
 
+    @property
+    def all_conflicts(self) -> list[Conflict]:
+        """The same, unfinished demonstrations included."""
+        return find_conflicts(self.demonstrations, self.resolutions)
+
     def find(self, wanted: str) -> Entry:
         """Return a demonstration by its number in the list (from 1), its id, or how that begins.
 
@@ -127,8 +132,12 @@ class Library:
         )
 
     def number(self, id: str) -> int:
-        """Return the number in the list, from 1, of a demonstration."""
-        return list(self.entries).index(id) + 1
+        """Return the number in the list, from 1, of a demonstration (0: it is not there)."""
+        return list(self.entries).index(id) + 1 if id in self.entries else 0
+
+    def name(self, id: str) -> str:
+        """Return what a demonstration is called in front of people."""
+        return f"demonstration {self.number(id) or id}"
 
 
 def read_library(store: Store, activity: str) -> Library:
@@ -174,7 +183,7 @@ def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
 
     entries = read_library(store, activity.name).entries
     used = [entries[id].demonstration for id in policy.demonstrations if id in entries]
-    return learn_effects(activity, used)
+    return learn_effects(activity, used, policy.resolutions)
 
 
 # ------------------------------------------------------------------------ the chain of steps

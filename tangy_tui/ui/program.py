@@ -123,11 +123,22 @@ class Program(TangyApp):
         if policy is not None:
             await self._open_policy(policy)
 
-    async def play(self, games: int = 1, speed: float = PLAYING, seed: int | None = None) -> None:
-        """Open the playing screen with the policy that was learnt last."""
+    async def play(
+        self,
+        games: int = 1,
+        speed: float = PLAYING,
+        seed: int | None = None,
+        wanted: str = "",
+        teacher: str = "",
+    ) -> None:
+        """Open the playing screen with a policy, the last one unless another is wanted.
+
+        Args:
+            teacher: who answers where Tangy asks.
+        """
         from tangy_tui.ui.screens.play import PlayScreen
 
-        policy = await self._load_policy()
+        policy = await self._load_policy(wanted)
         if policy is not None:
             facilitation = self.house.facilitation(policy, seed)
             await self.push_screen(PlayScreen(self.house, facilitation, games=games, speed=speed))
@@ -140,12 +151,12 @@ class Program(TangyApp):
         screen = PolicyScreen(house, policy, effects, leave_after)
         await self.push_screen_wait(screen)
 
-    async def _load_policy(self) -> Policy | None:
+    async def _load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""
         house = self.house
         loaded = await self._in_thread(
             "Tangy is recalling what it learnt ...",
-            lambda: policies.load_policy(house.store, house.activity),
+            lambda: policies.load_policy(house.store, house.activity, wanted),
         )
         if loaded is None:
             return None
@@ -262,10 +273,19 @@ def run_teaching(
 
 
 def run_playing(
-    house: House, *, games: int, speed: float, seed: int | None, ascii_only: bool
+    house: House,
+    *,
+    games: int,
+    speed: float,
+    seed: int | None,
+    policy: str,
+    teacher: str,
+    ascii_only: bool,
 ) -> int:
     """Open the playing screen; return the exit status."""
-    return _run(house, lambda program: program.play(games, speed, seed), ascii_only)
+    return _run(
+        house, lambda program: program.play(games, speed, seed, policy, teacher), ascii_only
+    )
 
 
 def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import TypeVar
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from typing import Any, TypeVar
 
 from rich import box
 from rich.console import Console
@@ -13,11 +14,15 @@ from rich.text import Text
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, leading, probability_best
+from tangy_profiles.reading import plain
 from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.learning.comparing import Row
 from tangy_tui.learning.effects import Effects
-from tangy_tui.learning.policy import Policy
-from tangy_tui.wording import counted
+from tangy_tui.learning.library import Library
+from tangy_tui.learning.listing import ListRow
+from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.wording import conflict_lines, counted
 
 T = TypeVar("T")
 
@@ -31,23 +36,32 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
         yield from track(items, description=what, console=console, transient=True)
 
 
-def print_policy(activity: Activity, policy: Policy, effects: Effects) -> None:
-    """Print the decision for every situation, and the learnt effects of every behaviour."""
+def print_policy(activity: Activity, policy: Policy, effects: Effects, library: Library) -> None:
+    """Print the decision for every situation, the learnt effects, and what to mind."""
     console = Console(highlight=False)
     exact = "as expected everywhere" if policy.exact(activity) else "not as expected everywhere"
     table = _table(
-        f"Policy {policy.name} ({counted(len(policy.demonstrations), 'demonstration')}, {exact})",
-        "situation", "behaviour", "votes", "shown",
+        f"Policy {policy.name} ({counted(len(policy.demonstrations), 'demonstration')}, {exact}; "
+        f"digest {policy.digest[:8]})",
+        "", "situation", "behaviour", "votes", "shown",
     )  # fmt: skip
-    for situation in activity.situations:
+    for number, situation in enumerate(activity.situations, 1):
         decision = policy.decide(situation)
+        contested = Text("contested", style="bold red")
         table.add_row(
+            str(number),
             activity.in_words(situation),
             Text(decision.behaviour, style="" if decision.sure else "bold red"),
-            f"{decision.share:.2f}",
+            contested if decision.contested else f"{decision.share:.2f}",
             str(decision.seen) if decision.seen else Text("never", style="bold red"),
         )
     console.print(table)
+    for situation in activity.situations:
+        if not policy.decide(situation).seen:
+            console.print(Text(f"Not shown: {activity.not_yet(situation)}."))
+    for conflict in library.conflicts:
+        for line in conflict_lines(activity, library, conflict):
+            console.print(Text(line))
     table = _table("What follows", "behaviour", "what was seen afterwards")
     for behaviour in activity.behaviours:
         variables = effects.values.get(behaviour)
@@ -59,6 +73,57 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects) -> None:
             "\n".join(f"{v}: {' or '.join(sorted(seen))}" for v, seen in variables.items()),
         )
     console.print(table)
+
+
+def print_policies(kept: Sequence[Mapping[str, Any]]) -> None:
+    """Print the policies that were learnt, the latest last."""
+    table = _table("Policies", "name", "learnt", "demonstrations", "digest")
+    for one in kept:
+        count = str(len(one["demonstrations"]))
+        table.add_row(Text(plain(one["name"])), local_time(one["at"]), count, one["digest"][:8])
+    Console(highlight=False).print(table)
+
+
+def print_demonstrations(rows: Sequence[ListRow]) -> None:
+    """Print the demonstrations, one row each, with what to mind of them."""
+    console = Console(highlight=False)
+    if not rows:
+        console.print("There are no demonstrations yet: begin with `tangy teach`.")
+        return
+    table = _table("Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes")
+    for row in rows:
+        style = "" if row.state == "in use" else "dim"
+        table.add_row(
+            str(row.number), Text(plain(row.teacher)), local_time(row.at), str(row.steps),
+            f"{row.seen}/{row.situations}", row.state, Text("; ".join(row.notes)), style=style,
+        )  # fmt: skip
+    console.print(table)
+
+
+def print_comparison(activity: Activity, a: Policy, b: Policy, rows: Sequence[Row]) -> None:
+    """Print two policies side by side, and mark the rows that differ."""
+    console = Console(highlight=False)
+    table = _table("", "", "situation", plain(a.name), plain(b.name))
+    for row in rows:
+        style = "" if row.same else "bold red"
+        mark = Text("" if row.same else "!", style=style)
+        answers = (Text(_does(decision), style=style) for decision in (row.a, row.b))
+        table.add_row(mark, activity.in_words(row.situation), *answers)
+    console.print(table)
+    different = sum(not row.same for row in rows)
+    console.print(f"{different} of {counted(len(rows), 'row')} differ.")
+
+
+def _does(decision: Decision) -> str:
+    if decision.sure:
+        return f"{decision.behaviour} ({decision.share:.0%})"
+    why = "contested" if decision.contested else "never shown" if not decision.seen else "unsure"
+    return f"asks ({why})"
+
+
+def local_time(at: str) -> str:
+    """Write a UTC time of the log as people here would."""
+    return f"{datetime.fromisoformat(at).astimezone():%Y-%m-%d %H:%M}"
 
 
 def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:

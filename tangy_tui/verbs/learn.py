@@ -1,13 +1,14 @@
-"""`tangy learn` and `tangy policy`: make a policy from demonstrations, and show it."""
+"""`tangy learn` and `tangy policy`: make a policy from demonstrations, show it, compare two."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import sys
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
+from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import (
     ActivityName,
     Data,
@@ -18,6 +19,12 @@ from tangy_tui.verbs.common import (
     say_notices,
 )
 
+if TYPE_CHECKING:
+    from tangy_profiles.demonstration import Demonstration
+    from tangy_profiles.state import Situation
+    from tangy_tui.house import House
+    from tangy_tui.learning.policy import Policy
+
 
 def learn(
     activity: ActivityName = "bingo",
@@ -26,75 +33,242 @@ def learn(
     unfinished: Annotated[
         bool, typer.Option("--unfinished", help="Learn from unfinished demonstrations too.")
     ] = False,
+    teacher: Annotated[
+        str | None, typer.Option(help="Learn from the demonstrations of one teacher only.")
+    ] = None,
     seed: Annotated[int, typer.Option(help="The seed of the forest.")] = 0,
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Learn a policy from the demonstrations."""
+    """Learn a policy from the demonstrations, after settling what they disagree about."""
     from dataclasses import replace
 
-    from tangy_profiles.reading import nearest
     from tangy_tui.documents import policy_document
-    from tangy_tui.learning.library import read_demonstrations
+    from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import keep_policy
     from tangy_tui.learning.policy import FORESTS, learn_policy
-    from tangy_tui.wording import counted
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
     with open_house(data, activity, 4) as house:
-        shown = read_demonstrations(house.store, house.activity.name)
+        if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
+            _settle_conflicts(house)
+        library = read_library(house.store, house.activity.name)
+        shown = library.demonstrations
+        if teacher is not None:
+            shown = _of_teacher(shown, teacher)
         used = [d for d in shown if d.finished or (unfinished and d.steps)]
-        left_out = sum(1 for d in shown if d.steps and d not in used)
         policy = learn_policy(
             house.activity,
             used,
+            resolutions=library.resolutions,
             settings=replace(FORESTS[forest], seed=seed),
             name=plain(name)[:40],
         )
         keep_policy(house.store, policy)
-        seen = [s for s in house.activity.situations if policy.decide(s).seen]
-        if as_json:
-            print_json(
-                {
-                    **policy_document(house, policy),
-                    "steps": sum(len(d.steps) for d in used),
-                    "left_out": left_out,
-                }
-            )
-            return
         steps = sum(len(d.steps) for d in used)
-        print(
-            f"Learnt {policy.name!r} from {counted(len(used), 'demonstration')} ({steps} steps): "
-            f"{len(seen)} of {len(house.activity.situations)} situations were shown."
-        )
-        for situation in house.activity.situations:
-            if situation not in seen:
-                print(f"  not shown yet: {house.activity.in_words(situation)}")
-        if left_out:
-            print(
-                f"{counted(left_out, 'unfinished demonstration')} left out; "
-                "--unfinished learns from them too."
-            )
+        left_out = sum(1 for d in shown if d.steps and d not in used)
+        if as_json:
+            found = policy_document(house, policy)
+            print_json({**found, "steps": steps, "left_out": left_out})
+        else:
+            _tell_learnt(house, policy, steps, left_out)
 
 
 def policy(
     activity: ActivityName = "bingo",
+    name: Annotated[
+        str, typer.Option(help="A policy by its name or digest, or last~1; default the last.")
+    ] = "last",
+    compare: Annotated[
+        tuple[str, str] | None,
+        typer.Option(help="Two policies (name, digest, last~1) or teachers, row by row."),
+    ] = None,
+    why: Annotated[
+        str | None, typer.Option(help="Why in this situation: its number in the table, or words.")
+    ] = None,
+    list_all: Annotated[bool, typer.Option("--list", help="List all policies learnt.")] = False,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Show what was learnt: every situation, what Tangy does there, and what follows."""
+    """Show what was learnt: every situation, what Tangy does there, and why; or compare two."""
+    with open_house(data, activity, 4, write=False) as house:
+        if list_all:
+            _list_policies(house, as_json)
+        elif compare is not None:
+            _compare(house, *compare, as_json)
+        elif why is not None:
+            _why(house, name, why, as_json)
+        else:
+            _show(house, name, as_json)
+
+
+# ------------------------------------------------------------------------------------ learning
+
+
+def _settle_conflicts(house: House) -> None:
+    """Put each conflict to the person at the terminal, before anything is learnt."""
+    from tangy_tui.learning.editing import Editor
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.wording import conflict_lines
+
+    library = read_library(house.store, house.activity.name)
+    editor = Editor(house.store, house.activity)
+    for conflict in library.conflicts:
+        for line in conflict_lines(house.activity, library, conflict):
+            print(line)
+        answers = list(conflict.answers)
+        while True:
+            try:
+                said = input("Which is right? A number, b for all of them, Enter to leave it: ")
+            except EOFError:
+                print()
+                return
+            word = said.strip().lower()
+            if word == "":
+                print("Left open: Tangy will ask when it comes about.")
+                break
+            if word == "b":
+                editor.resolve(conflict, *answers)
+                break
+            if word.isdecimal() and 1 <= int(word) <= len(answers):
+                editor.resolve(conflict, answers[int(word) - 1])
+                break
+
+
+def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]:
+    teachers = dict.fromkeys(d.teacher for d in shown)
+    if teacher not in teachers:
+        raise TangyError(plain(f"--teacher {teacher}: {nearest(teacher, teachers)}"))
+    return [d for d in shown if d.teacher == teacher]
+
+
+def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> None:
+    from tangy_tui.wording import counted
+
+    activity = house.activity
+    unseen = [s for s in activity.situations if not policy.decide(s).seen]
+    contested = [s for s in activity.situations if policy.decide(s).contested]
+    seen = len(activity.situations) - len(unseen)
+    print(
+        f"Learnt {policy.name!r} from {counted(len(policy.demonstrations), 'demonstration')} "
+        f"({steps} steps): {seen} of {len(activity.situations)} situations were shown."
+    )
+    for situation in unseen:
+        print(f"  {activity.not_yet(situation)} ({activity.in_words(situation)})")
+    if contested:
+        print(f"Demonstrations disagree about {counted(len(contested), 'situation')}:")
+        for situation in contested:
+            answers = " or ".join(b for b, _ in policy.decide(situation).votes)
+            print(f"  {activity.in_words(situation)}: {answers}")
+        print(
+            "Tangy will not act there, but ask. `tangy demonstrations conflicts` shows the steps, "
+            "`tangy demonstrations resolve` settles it; then learn again."
+        )
+    if left_out:
+        print(
+            f"{counted(left_out, 'unfinished demonstration')} left out; "
+            "--unfinished learns from them too."
+        )
+
+
+# ------------------------------------------------------------------------------------- showing
+
+
+def _find(house: House, name: str) -> Policy:
+    from tangy_tui.learning.comparing import find_policy
+    from tangy_tui.learning.policies import need_policy
+
+    need_policy(house.store, house.activity)
+    found, notices = find_policy(house.store, house.activity, name)
+    say_notices(notices)
+    return found
+
+
+def _show(house: House, name: str, as_json: bool) -> None:
     from tangy_tui.documents import policy_document
-    from tangy_tui.learning.library import effects_of
-    from tangy_tui.learning.policies import load_policy
+    from tangy_tui.learning.library import effects_of, read_library
     from tangy_tui.ui import reports
 
-    with open_house(data, activity, 4, write=False) as house:
-        learnt, notices = load_policy(house.store, house.activity)
-        say_notices(notices)
-        if as_json:
-            print_json(policy_document(house, learnt))
-        else:
-            effects = effects_of(house.store, house.activity, learnt)
-            reports.print_policy(house.activity, learnt, effects)
+    learnt = _find(house, name)
+    if as_json:
+        print_json(policy_document(house, learnt))
+        return
+    library = read_library(house.store, house.activity.name)
+    effects = effects_of(house.store, house.activity, learnt)
+    reports.print_policy(house.activity, learnt, effects, library)
+
+
+def _list_policies(house: House, as_json: bool) -> None:
+    from tangy_tui.learning.policies import kept_policies
+    from tangy_tui.ui import reports
+
+    kept = kept_policies(house.store, house.activity.name)
+    if as_json:
+        print_json(
+            [
+                {key: one[key] for key in ("name", "at", "digest", "demonstrations", "versions")}
+                for one in kept
+            ]
+        )
+    else:
+        reports.print_policies(kept)
+
+
+def _compare(house: House, a: str, b: str, as_json: bool) -> None:
+    from tangy_tui.documents import comparison_document
+    from tangy_tui.learning.comparing import compare, find_policy
+    from tangy_tui.ui import reports
+
+    first, notices = find_policy(house.store, house.activity, a)
+    second, more = find_policy(house.store, house.activity, b)
+    say_notices([*notices, *more])
+    rows = compare(house.activity, first, second)
+    if as_json:
+        print_json(comparison_document(house, first, second, rows))
+    else:
+        reports.print_comparison(house.activity, first, second, rows)
+
+
+def _why(house: House, name: str, wanted: str, as_json: bool) -> None:
+    from tangy_tui.documents import why_document
+    from tangy_tui.learning.explaining import explain, shown_words, why_words
+    from tangy_tui.learning.library import read_library
+
+    policy = _find(house, name)
+    library = read_library(house.store, house.activity.name)
+    situation = _situation(house, wanted)
+    shown = [entry.demonstration for entry in library.entries.values()]
+    why = explain(policy, shown, situation)
+    if as_json:
+        print_json(why_document(house, why))
+        return
+    for sentence in why_words(house.activity, why):
+        print(sentence)
+    for title, steps in (
+        ("It rests on", why.rests_on), ("Against it", why.against), ("Nearby", why.near),
+    ):  # fmt: skip
+        if steps:
+            print(f"{title}:")
+            for step in steps:
+                print(plain(f"  {shown_words(step, library.name)}"))
+
+
+def _situation(house: House, wanted: str) -> Situation:
+    """Return the situation of a number, of its parts, or of its words."""
+    activity = house.activity
+    situations = list(activity.situations)
+    if wanted.isdecimal() and 1 <= int(wanted) <= len(situations):
+        return situations[int(wanted) - 1]
+    names = {activity.in_words(s).casefold(): s for s in situations}
+    names |= {" / ".join(s).casefold(): s for s in situations}
+    names |= {"/".join(s).casefold(): s for s in situations}
+    simple = " ".join(wanted.casefold().split())
+    if simple in names:
+        return names[simple]
+    within = [s for words, s in names.items() if simple and simple in words]
+    if len(set(within)) == 1:
+        return within[0]
+    known = [activity.in_words(s) for s in situations]
+    raise TangyError(plain(f"There is no situation {wanted!r}: {nearest(wanted, known)}"))

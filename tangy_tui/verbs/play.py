@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import (
     ActivityName,
     Ascii,
@@ -18,6 +19,7 @@ from tangy_tui.verbs.common import (
     full_screen,
     open_house,
     print_json,
+    print_line,
     say_notices,
 )
 
@@ -30,32 +32,56 @@ def play(
     users: Users = 4,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
     activity: ActivityName = "bingo",
+    policy: Annotated[
+        str, typer.Option(help="The policy to play by: a name or a digest; default the last.")
+    ] = "",
+    teacher: Annotated[
+        str | None, typer.Option(help="Who answers where Tangy asks; 'scripted' knows the game.")
+    ] = None,
     speed: Annotated[float, typer.Option(min=1, max=1000, help="Times life, 1 to 1000.")] = 10,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
     ascii_only: Ascii = False,
 ) -> None:
-    """Let Tangy facilitate games in simulation, by the policy it has learnt."""
+    """Let Tangy facilitate games in simulation, by the policy it has learnt.
+
+    Where nobody has shown it what to do, it asks a teacher, and goes on with the answer. Without
+    one (--headless or --json) the game stops there.
+    """
+    from tangy_tui.house import teacher_name
     from tangy_tui.learning.policies import load_policy, need_policy
 
+    who = plain(teacher or teacher_name())[:40]
     with open_house(data, activity, users) as house:
-        need_policy(house.store, house.activity)
+        need_policy(house.store, house.activity, policy)
         if not (headless or as_json) and full_screen():
             from tangy_tui.ui.program import run_playing
 
             raise typer.Exit(
-                run_playing(house, games=games, speed=speed, seed=seed, ascii_only=ascii_only)
+                run_playing(
+                    house,
+                    games=games,
+                    speed=speed,
+                    seed=seed,
+                    policy=policy,
+                    teacher=who,
+                    ascii_only=ascii_only,
+                )
             )
-        learnt, notices = load_policy(house.store, house.activity)
+        learnt, notices = load_policy(house.store, house.activity, policy)
         say_notices(notices)
-        facilitation = house.facilitation(learnt, seed)
-        if headless or as_json:
+        by_lines = not (headless or as_json)
+        scripted = who == "scripted"
+        facilitation = house.facilitation(learnt, seed, asks=by_lines or scripted)
+        if not by_lines:
             _play_headless(house, facilitation, games, as_json)
-        else:
-            from tangy_tui.game_lines import play_by_lines
+            return
+        from tangy_tui.game_lines import play_by_lines
+        from tangy_tui.inputs import line_reader
 
-            play_by_lines(facilitation, games, house.name, print)
+        read = None if scripted else line_reader(None)
+        play_by_lines(facilitation, games, house.name, print_line, read, who)
 
 
 def demo(
@@ -85,6 +111,7 @@ def demo(
 
 
 def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:
+    from tangy_tui.interaction.scripted_answers import answer_by_script
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.ui import reports
 
@@ -94,6 +121,8 @@ def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -
             tally.add(facilitation.begin())
             while not facilitation.over:
                 tally.add(facilitation.step())
+                if facilitation.question is not None:
+                    tally.add(answer_by_script(facilitation))
     beliefs = facilitation.persuasion.beliefs
     if as_json:
         print_json(tally.to_json(house.activity.situations, beliefs))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import (
     ActivityName,
@@ -26,7 +27,7 @@ from tangy_tui.verbs.common import (
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
-    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.demonstrating import Again, Teaching
     from tangy_tui.learning.ears import Ears
 
 
@@ -48,6 +49,13 @@ def teach(
         typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, x times life."),
     ] = None,
     users: Users = 4,
+    guided: Annotated[
+        bool, typer.Option("--guided", help="A game in which every situation comes about.")
+    ] = False,
+    again: Annotated[
+        str | None,
+        typer.Option(metavar="N@STEP", help="Show demonstration N again from a step on."),
+    ] = None,
     new: Annotated[bool, typer.Option("--new", help="Leave an unfinished game as it is.")] = False,
     seed: Seed = None,
     data: Data = None,
@@ -56,13 +64,15 @@ def teach(
 ) -> None:
     """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
     from tangy_tui.house import teacher_name
+    from tangy_tui.inputs import keys_from_terminal
 
     who = plain(teacher or teacher_name())[:40]
-    from tangy_tui.inputs import keys_from_terminal
+    if who == "scripted" and script is not None:
+        raise TangyError("--teacher scripted gives its own lines: leave out --script.")
 
     sound = keys_from_terminal(script) if mic == "-" else 0
     with open_house(data, activity, users) as house:
-        teaching = house.teaching(who, seed)
+        teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         ears = _ears(mic, teaching, sound, house)
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
@@ -75,7 +85,19 @@ def teach(
             )  # fmt: skip
             raise typer.Exit(status)
         else:
-            _teach_by_lines(teaching, script, ears, as_json, resume=not new)
+            _teach_by_lines(house, teaching, script, ears, as_json, resume=not new)
+
+
+def _again(wanted: str | None) -> Again | None:
+    """Read N@STEP: a demonstration, and the first step that is to be shown again."""
+    if wanted is None:
+        return None
+    from tangy_tui.learning.demonstrating import Again
+
+    demonstration, at, step = wanted.rpartition("@")
+    if not at or not demonstration or not step.isdecimal() or step == "0":
+        raise TangyError(plain(f"--again {wanted}: write it as N@STEP, for example 2@15."))
+    return Again(demonstration, int(step) - 1)
 
 
 def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
@@ -105,14 +127,28 @@ def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
 
 
 def _teach_by_lines(
-    teaching: Teaching, script: Path | None, ears: Ears | None, as_json: bool, *, resume: bool
+    house: House,
+    teaching: Teaching,
+    script: Path | None,
+    ears: Ears | None,
+    as_json: bool,
+    *,
+    resume: bool,
 ) -> None:
     from tangy_tui.documents import demonstration_document
     from tangy_tui.inputs import line_reader
     from tangy_tui.lines import TeachingLines
 
     write: Callable[[str], None] = (lambda _: None) if as_json else print_line
-    lines = TeachingLines(teaching, line_reader(script), write, ears, scripted=script is not None)
+    lines = TeachingLines(
+        teaching,
+        line_reader(script),
+        write,
+        ears,
+        scripted=script is not None,
+        seen=lambda: _seen(house, teaching),
+        why=lambda: _why(house, teaching),
+    )
     asyncio.run(lines.run(resume=resume))
     if as_json:
         print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
@@ -124,3 +160,33 @@ def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears
     from tangy_tui.learning.ears import Ears
 
     return Ears(mic, teaching.phrasebook, stdin=sound, log=house.store.folder / "speech.log")
+
+
+def _seen(house: House, teaching: Teaching) -> list[str]:
+    """Say which situations were shown, in what is finished and in the present demonstration."""
+    from tangy_tui.learning.coverage import coverage, missing_words
+    from tangy_tui.learning.library import read_library
+
+    present = teaching.demonstration
+    library = read_library(house.store, house.activity.name)
+    shown = [d for d in library.finished if d.id != present.id]
+    found = coverage(house.activity, [*shown, present])
+    lines = [f"{len(found.seen)} of {len(found.times)} situations were shown."]
+    return lines + [f"  {words}" for words in missing_words(house.activity, found)]
+
+
+def _why(house: House, teaching: Teaching) -> list[str]:
+    """Say what Tangy would do now by what it has been shown, and why."""
+    from tangy_tui.learning.explaining import explain, foresee, why_words
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.learning.policy import NothingToLearnFrom
+
+    present = teaching.demonstration
+    try:
+        policy = foresee(house.store, house.activity, present)
+    except NothingToLearnFrom:
+        return ["Nobody has shown Tangy anything yet."]
+    library = read_library(house.store, house.activity.name)
+    shown = [d for d in library.demonstrations if d.id != present.id]
+    why = explain(policy, [*shown, present], teaching.world.observe().situation)
+    return why_words(house.activity, why)

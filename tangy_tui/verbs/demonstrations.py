@@ -1,0 +1,224 @@
+"""`tangy demonstrations`: what was shown, and what is done to it afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, open_house, print_json
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.learning.editing import Editor
+    from tangy_tui.learning.library import Edit
+
+app = typer.Typer(
+    rich_markup_mode=None, help="What was demonstrated: list, edit, and settle what disagrees."
+)
+
+One = Annotated[str, typer.Argument(metavar="N", help="Its number in the list, or its id.")]
+Unfinished = Annotated[bool, typer.Option("--unfinished", help="Of unfinished demonstrations too.")]
+Some = Annotated[list[str], typer.Argument(metavar="N...", help="Numbers in the list, or ids.")]
+
+
+@app.command("list")
+def list_them(
+    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+) -> None:
+    """List the demonstrations: teacher, date, length, coverage, and what to mind of them."""
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.learning.listing import list_rows
+    from tangy_tui.ui import reports
+
+    with open_house(data, activity, 4, write=False) as house:
+        rows = list_rows(house.activity, read_library(house.store, house.activity.name))
+        if as_json:
+            print_json([row.to_json() for row in rows])
+        else:
+            reports.print_demonstrations(rows)
+
+
+@app.command()
+def show(
+    demonstration: One,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Show one demonstration, step by step."""
+    from tangy_tui.documents import demonstration_document
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.wording import step_words
+
+    with open_house(data, activity, 8, write=False) as house:
+        library = read_library(house.store, house.activity.name)
+        entry = library.find(demonstration)
+        shown = entry.demonstration
+        if as_json:
+            print_json({**demonstration_document(shown), "state": entry.hidden or "in use"})
+            return
+        print(plain(f"{library.name(shown.id)} ({shown.id}) by {shown.teacher}:"))
+        for number, step in enumerate(shown.steps, 1):
+            print(plain(f"{number:4}. {step_words(house.activity, step, house.name)}"))
+
+
+@app.command()
+def delete(
+    demonstrations: Some,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Put demonstrations away; they are not learnt from until they are restored."""
+    _change(data, activity, as_json, lambda editor: editor.delete(*demonstrations))
+
+
+@app.command()
+def restore(
+    demonstrations: Some,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Take demonstrations into use again that were deleted, or shown again."""
+    _change(data, activity, as_json, lambda editor: editor.restore(*demonstrations))
+
+
+@app.command()
+def merge(
+    demonstrations: Some,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Make one demonstration of several, in the given order."""
+    _change(data, activity, as_json, lambda editor: editor.merge(*demonstrations))
+
+
+@app.command()
+def split(
+    demonstration: One,
+    step: Annotated[int, typer.Argument(help="The first part ends with this step.")],
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Make two demonstrations of one: up to a step, and from the next one on."""
+    _change(data, activity, as_json, lambda editor: editor.split(demonstration, step))
+
+
+@app.command()
+def undo(
+    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+) -> None:
+    """Take back the last of these changes."""
+    _change(data, activity, as_json, lambda editor: editor.undo(), "Taken back: ")
+
+
+@app.command()
+def redo(
+    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+) -> None:
+    """Make the change again that was taken back last."""
+    _change(data, activity, as_json, lambda editor: editor.redo(), "Done again: ")
+
+
+@app.command()
+def conflicts(
+    unfinished: Unfinished = False,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Show the situations to which demonstrations give different answers, side by side."""
+    from tangy_tui.documents import conflict_document
+    from tangy_tui.learning.library import read_library
+    from tangy_tui.wording import conflict_lines
+
+    with open_house(data, activity, 4, write=False) as house:
+        library = read_library(house.store, house.activity.name)
+        found = library.all_conflicts if unfinished else library.conflicts
+        if as_json:
+            print_json([conflict_document(house, c) for c in found])
+            return
+        for number, conflict in enumerate(found, 1):
+            first, *rest = conflict_lines(house.activity, library, conflict)
+            print(f"Conflict {number}. {first}")
+            for line in rest:
+                print(line)
+        if found:
+            print("Settle one: tangy demonstrations resolve 1 --right BEHAVIOUR, or --both.")
+        else:
+            print("The demonstrations agree in every situation.")
+
+
+@app.command()
+def resolve(
+    conflict: Annotated[int, typer.Argument(metavar="N", min=1, help="The conflict's number.")],
+    right: Annotated[
+        list[str] | None, typer.Option(help="The behaviour that is right; may be repeated.")
+    ] = None,
+    both: Annotated[bool, typer.Option("--both", help="All answers are right.")] = False,
+    unfinished: Unfinished = False,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Say which answer to a situation is right; the others are not learnt from."""
+
+    def settle(editor: Editor) -> Edit:
+        library = editor.library
+        found = library.all_conflicts if unfinished else library.conflicts
+        if conflict > len(found):
+            there = f"there are {len(found)}" if len(found) != 1 else "there is one"
+            raise TangyError(f"There is no conflict {conflict}: {there}.")
+        chosen = found[conflict - 1]
+        if bool(right) == both:
+            raise TangyError("Say which answer is right: --right BEHAVIOUR, or --both.")
+        return editor.resolve(chosen, *(chosen.answers if both else right or ()))
+
+    _change(data, activity, as_json, settle)
+
+
+def _change(
+    data: Path | None,
+    activity: str,
+    as_json: bool,
+    change: Callable[[Editor], Edit],
+    before: str = "",
+) -> None:
+    """Make a change of the library and say what it was."""
+    from tangy_tui.learning.editing import Editor
+
+    with open_house(data, activity, 4) as house:
+        editor = Editor(house.store, house.activity)
+        edit = change(editor)
+        if as_json:
+            print_json(_edit_document(edit))
+            return
+        print(plain(f"{before}{_edit_words(house, editor, edit)}"))
+        if not before:
+            print("`tangy demonstrations undo` takes it back.")
+
+
+def _edit_document(edit: Edit) -> dict[str, Any]:
+    body = {key: value for key, value in edit.body.items() if key != "activity"}
+    return {"edit": edit.seq, "at": edit.at, **body}
+
+
+def _edit_words(house: House, editor: Editor, edit: Edit) -> str:
+    from tangy_tui.wording import edit_words
+
+    return edit_words(house.activity, editor.library, edit)
