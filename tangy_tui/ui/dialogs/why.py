@@ -1,0 +1,208 @@
+"""Why this? The grounds of one decision: votes, demonstrated steps, and the draws of a strategy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+
+from tangy_profiles.beliefs import Beta
+from tangy_tui.house import House
+from tangy_tui.interaction.persuasion import Choice
+from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.explaining import Why, why_words
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import SURE
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.policy_table import bar
+from tangy_tui.ui.widgets.posteriors import curve
+from tangy_tui.ui.widgets.rows import Span, fit, shorten
+from tangy_tui.wording import counted
+
+LONGEST_BAR = 20
+LONGEST_CURVE = 16
+SHORTEST_CURVE = 4
+
+
+class WhyDialog(Dialog[None]):
+    """The situation, the votes, the steps that it rests on, and the draws behind a strategy.
+
+    Up and down go from step to step and scroll; Enter opens the step where it was demonstrated.
+    """
+
+    DEFAULT_CSS = """
+    WhyDialog > .box { width: 78; padding: 0 1; }
+    WhyDialog Page { height: auto; max-height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,q,w", "close", "Close", key_display="esc"),
+    ]
+    HELP = (
+        "What this decision rests on: how the trees voted, which demonstrated steps say so or say "
+        "otherwise, and for a way of speaking the number that was drawn from what is believed of "
+        "each. Up and down choose a step and scroll; Enter opens it where it was demonstrated."
+    )
+
+    def __init__(
+        self,
+        house: House,
+        why: Why,
+        choice: Choice | None = None,
+        *,
+        title: str = "Why this?",
+        remarks: Sequence[str] = (),
+    ) -> None:
+        """Make the dialog.
+
+        Args:
+            choice: the strategy that was chosen with the decision, if one was.
+            title: what stands in the frame.
+            remarks: sentences that go before the others, such as who answered what.
+        """
+        super().__init__(None)
+        self._house = house
+        self._why = why
+        self._choice = choice
+        self._title = clean(title)
+        self._remarks = tuple(remarks)
+        library = read_library(house.store, house.activity.name)
+        self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
+
+    @property
+    def why(self) -> Why:
+        """What is explained."""
+        return self._why
+
+    def compose(self) -> ComposeResult:
+        """Lay out the page."""
+        box = Vertical(Page(self._write), id="why", classes="box")
+        box.border_title = Content(self._title)
+        box.border_subtitle = "enter opens a step   esc closes" if self._why.steps else "esc closes"
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the arrows choose."""
+        self.query_one(Page).focus()
+
+    def action_close(self) -> None:
+        """Go back."""
+        self.answer(None)
+
+    def on_page_chosen(self, event: Page.Chosen) -> None:
+        """Open a step in its demonstration."""
+        from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+
+        event.stop()
+        shown = self._why.steps[event.index]
+        self.app.push_screen(DemonstrationScreen(self._house, shown.demonstration, shown.number))
+
+    def _write(self, width: int) -> list[Line]:
+        lines: list[Line] = []
+        for sentence in (*self._remarks, *why_words(self._house.activity, self._why)):
+            lines += paragraph(clean(sentence), width)
+        lines += vote_lines(self._why, width)
+        if self._choice is not None:
+            lines += choice_lines(self._choice, self._house.name(self._choice.person), width)
+        return lines + self._step_lines(width)
+
+    def _step_lines(self, width: int) -> list[Line]:
+        why = self._why
+        lines: list[Line] = []
+        number = 0
+        for title, steps in (
+            ("It rests on", why.rests_on),
+            ("Shown here as well", why.against),
+            ("Shown nearby", why.near),
+        ):
+            if steps:
+                lines += heading(f"{title} {counted(len(steps), 'step')}")
+            for shown in steps:
+                lines.append(Line(self._step(shown, bool(why.near), width), number))
+                number += 1
+        return lines
+
+    def _step(self, shown: Shown, elsewhere: bool, width: int) -> tuple[Span, ...]:
+        """Write a step: what, where it stands, by whom; of a near one its situation too."""
+        number = self._numbers.get(shown.demonstration)
+        where = f"demonstration {number}" if number else shown.demonstration
+        behaviour = clean(shown.step.behaviour)
+        if elsewhere:
+            situation = self._house.activity.in_words(shown.step.state.situation)
+            behaviour = f"{clean(situation)} -> {behaviour}"
+        tail = f"  step {shown.number} of {where}, {clean(shown.teacher)}"
+        head = shorten(behaviour, max(12, width - 2 - cell_len(tail)))
+        return (
+            ("  ", "text"),
+            (head, "strong"),
+            (shorten(tail, width - 2 - cell_len(head)), "text"),
+        )
+
+
+def vote_lines(why: Why, width: int) -> list[Line]:
+    """Draw the votes as bars, most first."""
+    votes = why.decision.votes
+    label = min(max(cell_len(clean(b)) for b, _ in votes), max(8, width - 12))
+    points = min(LONGEST_BAR, max(0, width - label - 9))
+    lines = heading("Votes of the trees")
+    for behaviour, share in votes:
+        decided = behaviour == why.decision.behaviour
+        ink = "curve" if share >= SURE else "warn"
+        lines.append(
+            Line(
+                (
+                    ("  ", "text"),
+                    (fit(clean(behaviour), label), "strong" if decided else "text"),
+                    ("  ", "text"),
+                    (bar(share, points), ink),
+                    (f" {share:>4.0%}", "text" if share >= SURE else "warn"),
+                )
+            )
+        )
+    return lines
+
+
+def choice_lines(choice: Choice, name: str, width: int) -> list[Line]:
+    """Tell how a strategy was chosen: the number of each, and the belief that it came from."""
+    lines = heading(f"How to say it to {clean(name)}: {clean(choice.strategy)}")
+    if choice.method:
+        lines += paragraph(f"Chosen by {clean(choice.method)}: the highest number is used.", width)
+    label = min(14, max(cell_len(clean(strategy)) for strategy in choice.draws))
+    points = min(LONGEST_CURVE, width - label - 34)
+    head = f"  {fit('', label)}  number  done/asked  mean"
+    lines.append(Line(((head, "dim"),)))
+    off = [strategy for strategy in choice.beliefs if strategy not in choice.draws]
+    for strategy, number in sorted(choice.draws.items(), key=lambda draw: -draw[1]):
+        used = strategy == choice.strategy
+        mark = "★ " if used else "  "
+        row: list[Span] = [
+            (mark, "good"),
+            (fit(clean(strategy), label), "strong" if used else "text"),
+            (f"  {number:>6.3f}", "strong" if used else "text"),
+            *_belief(choice.beliefs, strategy, points),
+        ]
+        lines.append(Line(tuple(row)))
+    if off:
+        lines += paragraph(f"Switched off: {', '.join(map(clean, off))}.", width, "dim")
+    return lines
+
+
+def _belief(beliefs: Mapping[str, Beta], strategy: str, points: int) -> tuple[Span, ...]:
+    """Write what was believed of a strategy; nothing where that was not noted."""
+    belief = beliefs.get(strategy)
+    if belief is None:
+        return ()
+    counts = f"{belief.complied}/{belief.trials}"
+    drawn = curve(belief, points) if points >= SHORTEST_CURVE else ""
+    return (
+        (f"  {counts:>10}", "text"),
+        (f"  {belief.mean:.2f}", "text"),
+        ("  ", "text"),
+        (drawn, "curve"),
+    )

@@ -1,0 +1,101 @@
+"""Lines of which one can be chosen: what all lists with a cursor share."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Rows
+
+
+class Choosable(ScrollView, can_focus=True):
+    """A scrolled list with a cursor: up and down move it, Enter tells of what it is on.
+
+    A list says how many choices it has (`_length`), which lines each stands on (`_places`), how
+    they are written (`_show`), and what is told of one (`_tell`).
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    Choosable { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "choose(-1)", "One up", show=False),
+        Binding("down,j", "choose(1)", "One down", show=False),
+        Binding("pageup", "choose(-10)", "Ten up", show=False),
+        Binding("pagedown", "choose(10)", "Ten down", show=False),
+        Binding("home", "choose(-1000000)", "The first", show=False),
+        Binding("end", "choose(1000000)", "The last", show=False),
+        Binding("enter", "tell", "Tell of it", show=False),
+    ]
+    FOLLOWS: ClassVar[bool] = False
+    """Whether the cursor lets go past the end, so that the newest line is followed again."""
+
+    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._cursor: int | None = None
+        self._rows = Rows(self)
+
+    def action_choose(self, by: int) -> None:
+        """Move the cursor."""
+        count = self._length()
+        if not count:
+            return
+        at = self._cursor
+        if at is None:
+            at = count if self.FOLLOWS or by < 0 else -1
+        at += by
+        past = None if self.FOLLOWS else count - 1
+        self._cursor = past if at >= count else max(0, at)
+        self._mark()
+
+    def action_tell(self) -> None:
+        """Tell of what the cursor is on."""
+        if self._cursor is not None:
+            self._tell(self._cursor)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out anew."""
+        self._show()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _length(self) -> int:
+        """Return how many choices there are."""
+        raise NotImplementedError
+
+    def _places(self, index: int) -> range:
+        """Return the lines that a choice stands on."""
+        return range(index, index + 1)
+
+    def _show(self) -> None:
+        """Write all lines, and mark them."""
+        raise NotImplementedError
+
+    def _tell(self, index: int) -> None:
+        """Post the message of a choice."""
+        raise NotImplementedError
+
+    def _mark(self) -> None:
+        """Mark the line that the cursor is on, and let it be seen."""
+        places = range(0) if self._cursor is None else self._places(self._cursor)
+        self._rows.mark(dict.fromkeys(places, "cursor"))
+        self._reveal(places)
+
+    def _reveal(self, places: range) -> None:
+        """Scroll as little as needed for lines to be seen; the first one brings the head along."""
+        if places:
+            self._rows.show(0 if self._cursor == 0 else places[0])
+            self._rows.show(places[-1])

@@ -1,0 +1,129 @@
+"""A page to read in which some lines can be chosen, as links are in a text browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from textual.geometry import Size
+from textual.message import Message
+
+from tangy_tui.ui.widgets.choosable import Choosable
+from tangy_tui.ui.widgets.rows import Row
+from tangy_tui.ui.widgets.wrapping import wrap
+
+PAGE = 10
+"""Steps of the cursor that are a page."""
+
+
+class Line(NamedTuple):
+    """One line, and the choice that it belongs to (from 0), if it does to any."""
+
+    row: Row = ()
+    choice: int | None = None
+
+
+Write = Callable[[int], Sequence[Line]]
+"""Writes the page for so many columns; the choices come in order."""
+
+
+def paragraph(text: str, width: int, ink: str = "text") -> list[Line]:
+    """Write a sentence on as many lines as it needs."""
+    return [Line(((line, ink),)) for line in wrap(text, width)]
+
+
+def heading(text: str) -> list[Line]:
+    """Write a heading with an empty line above it."""
+    return [Line(), Line(((text, "robot"),))]
+
+
+class Page(Choosable):
+    """Up and down go to the next choice, and scroll where it is out of sight; Enter tells of it."""
+
+    class Chosen(Message):
+        """A line was chosen with Enter; `index` says which of the choices."""
+
+        def __init__(self, page: Page, index: int) -> None:
+            super().__init__()
+            self.page = page
+            self.index = index
+
+        @property
+        def control(self) -> Page:
+            """The page that it was chosen on."""
+            return self.page
+
+    def __init__(
+        self, write: Write | None = None, *, id: str | None = None, classes: str | None = None
+    ) -> None:
+        super().__init__(id=id, classes=classes)
+        self._write = write
+        self._lines: dict[int, range] = {}
+
+    @property
+    def chosen(self) -> int | None:
+        """The choice that the cursor is on."""
+        return self._cursor
+
+    def show(self, write: Write, cursor: int | None = 0) -> None:
+        """Show another page, the cursor on one of its choices."""
+        self._write = write
+        self._cursor = cursor
+        self._show()
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        """Ask for as many lines as there are."""
+        return len(self._write(width)) if self._write is not None and width > 0 else 0
+
+    def action_choose(self, by: int) -> None:
+        """Move the cursor to a choice that is in sight; otherwise scroll towards it."""
+        if abs(by) > PAGE:
+            super().action_choose(by)
+            self.scroll_to(y=0 if by < 0 else self.max_scroll_y, animate=False, force=True)
+            return
+        step = by if abs(by) < PAGE else (1 if by > 0 else -1) * max(1, self._rows.height - 1)
+        wanted = (-1 if self._cursor is None else self._cursor) + by
+        places = self._lines.get(min(max(wanted, 0), len(self._lines) - 1))
+        top = self.scroll_offset.y
+        seen = range(top - abs(step), top + self._rows.height + abs(step))
+        if places and wanted in self._lines and places[0] in seen and places[-1] in seen:
+            super().action_choose(by)
+        else:
+            self.scroll_to(y=top + step, animate=False, force=True)
+            if abs(by) == PAGE:
+                self._follow(step)
+
+    def _follow(self, step: int) -> None:
+        """Bring the cursor along after a page was turned."""
+        top = self.scroll_offset.y
+        seen = range(top, top + self._rows.height)
+        found = [n for n, places in self._lines.items() if places[0] in seen]
+        if found:
+            self._cursor = found[-1] if step > 0 else found[0]
+            self._rows.mark(dict.fromkeys(self._places(self._cursor), "cursor"))
+
+    def _length(self) -> int:
+        return len(self._lines)
+
+    def _places(self, index: int) -> range:
+        return self._lines.get(index, range(0))
+
+    def _tell(self, index: int) -> None:
+        if index in self._lines:
+            self.post_message(self.Chosen(self, index))
+
+    def _show(self) -> None:
+        width = self._rows.width
+        if not self.is_attached or width <= 0 or self._write is None:
+            return
+        lines = self._write(width)
+        self._lines = {}
+        for y, line in enumerate(lines):
+            if line.choice is not None:
+                first = self._lines.get(line.choice, range(y, y))
+                self._lines[line.choice] = range(first.start, y + 1)
+        if self._cursor is None or self._cursor >= len(self._lines):
+            self._cursor = 0 if self._lines else None
+        self._rows.put([line.row for line in lines])
+        places = range(0) if self._cursor is None else self._places(self._cursor)
+        self._rows.mark(dict.fromkeys(places, "cursor"))

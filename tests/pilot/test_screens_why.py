@@ -1,0 +1,139 @@
+"""Why this?: the grounds of a decision, read and opened with keys, at both sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.beliefs import Beta
+from tangy_profiles.state import Situation
+from tangy_tui.house import House
+from tangy_tui.interaction.persuasion import Choice
+from tangy_tui.learning.explaining import Why, explain
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.widgets.page import Page
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
+
+TINY = (60, 18)
+
+
+@pytest.fixture
+def house(taught: Path) -> Iterator[House]:
+    """A house in which three demonstrations were given and learnt from."""
+    opened = House(taught)
+    yield opened
+    opened.close()
+
+
+def why_of(house: House, behaviour: str) -> Why:
+    """Return the grounds of the first situation in which something is done."""
+    policy, _ = load_policy(house.store, house.activity)
+    shown = read_library(house.store, house.activity.name).demonstrations
+    expected = house.activity.expected
+    situation = next(s for s in house.activity.situations if expected[s] == behaviour)
+    return explain(policy, shown, situation)
+
+
+def a_choice(house: House) -> Choice:
+    """Return a choice among all strategies, as Thompson sampling makes it."""
+    rng = Random(3)
+    beliefs = {s: Beta(2.0 + n, 1.0 + n / 2) for n, s in enumerate(house.activity.strategies)}
+    draws = {s: rng.betavariate(b.alpha, b.beta) for s, b in beliefs.items()}
+    return Choice("user2", max(draws, key=lambda s: draws[s]), draws, beliefs, "Thompson sampling")
+
+
+def showing(house: House, why: Why, choice: Choice | None = None) -> Program:
+    """Make the program with the dialog open."""
+
+    async def start(program: Program) -> None:
+        await program.push_screen(WhyDialog(house, why, choice))
+
+    return Program(house, start, clock=StillClock())
+
+
+def persuading(house: House) -> str:
+    """Return a behaviour that persuades."""
+    return next(b.name for b in house.activity.behaviours.values() if b.persuades)
+
+
+@pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
+async def test_votes_come_first_and_then_the_draws(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    why, choice = why_of(house, persuading(house)), a_choice(house)
+    async with run(app=showing(house, why, choice), size=size) as pilot:
+        await pilot.pause()
+        seen = screen_text(pilot.app)
+        for _ in range(30):
+            await pilot.press("down")
+            seen += screen_text(pilot.app)
+        assert house.activity.in_words(why.situation).partition(" · ")[0] in seen
+        assert "Votes of the trees" in seen
+        assert "Thompson sampling" in seen
+        for strategy, number in choice.draws.items():
+            assert strategy in seen
+            assert f"{number:.3f}" in seen
+        assert f"It rests on {len(why.rests_on)} step" in seen
+
+
+async def test_enter_opens_the_step_where_it_was_demonstrated(run: Run, house: House) -> None:
+    why = why_of(house, persuading(house))
+    async with run(app=showing(house, why)) as pilot:
+        await pilot.press("down", "enter")
+        await pilot.pause()
+        screen: Any = pilot.app.screen
+        assert isinstance(screen, DemonstrationScreen)
+        page = pilot.app.screen_stack[-2].query_one(Page)
+        assert page.chosen is not None
+        step = why.steps[page.chosen]
+        assert screen.query_one(Transcript).chosen == step.number
+        assert f"{step.number} {house.activity.in_words(why.situation)}" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
+    run: Run, house: House
+) -> None:
+    policy, _ = load_policy(house.store, house.activity)
+    shown = read_library(house.store, house.activity.name).demonstrations
+    never = next(s for s, d in policy.table.items() if not d.seen and s.stage == "help")
+    why = explain(policy, shown, Situation(*never))
+    async with run(app=showing(house, why), size=LARGE) as pilot:
+        await pilot.pause()
+        assert "Nobody has shown Tangy what to do here" in screen_text(pilot.app)
+        assert "Shown nearby" in screen_text(pilot.app)
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_it_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    why = why_of(house, persuading(house))
+    async with run(app=showing(house, why, a_choice(house)), size=size) as pilot:
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_it_can_be_read_in_plain_letters(run: Run, house: House) -> None:
+    app = showing(house, why_of(house, persuading(house)), a_choice(house))
+    ascii_app = Program(house, app._start, clock=StillClock(), kind=TerminalKind(ascii=True))
+    async with run(app=ascii_app) as pilot:
+        await pilot.pause()
+        assert pilot.text().isascii()
