@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -46,9 +48,15 @@ class House:
     """One activity with its robot, room and people, and the data folder they are kept in."""
 
     def __init__(
-        self, folder: Path, *, activity: str = "bingo", users: int = 4, write: bool = True
+        self,
+        folder: Path,
+        *,
+        activity: str = "bingo",
+        users: int = 4,
+        write: bool = True,
+        now: Callable[[], datetime] | None = None,
     ) -> None:
-        """Read the profiles and open the store.
+        """Read the profiles and open the store, whose clock is `now` (default: the machine's).
 
         Raises:
             ProfileError: a profile has a mistake, or there is no such activity.
@@ -61,7 +69,7 @@ class House:
         self.robot.check(self.activity)
         self.room: Room = load_room()
         people = load_people(users)
-        self.store = Store.open(folder, write=write)
+        self.store = Store.open(folder, write=write, now=now)
         names = self.store.names()
         self.people = tuple(Person(p.id, names.get(p.id, p.name)) for p in people)
 
