@@ -188,10 +188,14 @@ class Facilitation:
         return Verifier(self._activity, phrasebook, self.world.observe, self._names)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[GameEvent]:
-        """Do what a teacher answered, learn from it, and go on by the new policy."""
+        """Do what a teacher answered, learn from it, and go on by the new policy.
+
+        An answer that cannot be kept is an exception: nothing of it stays in the log, policy and
+        beliefs are as before, and the next `step` looks anew where the game is.
+        """
         if self.question is None or self._answers is None:
             return []
-        state, decision = self.question.state, self.question.decision
+        (state, decision), self.question = (self.question.state, self.question.decision), None
         with self._store.transaction():
             done = self._act(state, decision, behaviour, target, teacher)
             acted = done[0]
@@ -201,7 +205,6 @@ class Facilitation:
             lesson = self._answers.learn(
                 self.policy, shown, teacher=teacher, seed=self._seed, people=self.world.people
             )
-        self.question = None
         self.policy = lesson.policy
         first, *rest = self._told(done)
         return [first, Taught(teacher, lesson), *rest]
@@ -212,6 +215,13 @@ class Facilitation:
             return []
         question, self.question = self.question, None
         return [self._end(f"{question.reason} {_remedy(question.decision)}")]
+
+    def leave(self) -> list[GameEvent]:
+        """End a game that is going on because whoever watches it leaves."""
+        if self.over:
+            return []
+        self.question = None
+        return [self._end("It was left before its end.")]
 
     def _told(self, done: tuple[Acted, Response | None, GameEnded | None]) -> list[GameEvent]:
         """Tell what was done, and let the beliefs grow now that the response is in the log."""

@@ -1,0 +1,286 @@
+"""Asking: where Tangy is not sure it does nothing but ask, and learns the answer at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.interaction.facilitation import (
+    ENDED,
+    STEP,
+    Acted,
+    Facilitation,
+    GameEnded,
+    GameEvent,
+    Taught,
+    Unsure,
+)
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.learning.asking import Answers
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policies import POLICY, load_policy
+from tangy_tui.learning.policy import PAPER, SURE, Policy
+from tangy_tui.learning.verifying import Asked, Reply, Say, Verified
+from tests.interaction.conftest import FEW, acts
+from tests.shown import learnt, otherwise, without
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+
+IDS = ("user1", "user2")
+
+
+def asking(store: Store, activity: Activity, policy: Policy, seed: int = 1) -> Facilitation:
+    """Make a run of games in which a teacher can be asked."""
+    return Facilitation(
+        SimulatedWorld(activity, IDS, seed=seed),
+        policy,
+        Persuasion(IDS, tuple(activity.strategies), Random(seed)),
+        store,
+        names={"user1": "Rosa"},
+        seed=seed,
+        answers=Answers(store, activity),
+    )
+
+
+def until_asked(facilitation: Facilitation, games: int = 20) -> Unsure:
+    """Play until Tangy asks."""
+    for _ in range(games):
+        facilitation.begin()
+        while not facilitation.over:
+            for event in facilitation.step():
+                if isinstance(event, Unsure):
+                    return event
+    raise AssertionError("Tangy did not ask")
+
+
+def reply(facilitation: Facilitation, activity: Activity, teacher: str = "ann") -> list[GameEvent]:
+    """Answer as the activity expects."""
+    question = facilitation.question
+    assert question is not None
+    behaviour = activity.behaviours[activity.expected[question.state.situation]]
+    target = question.state.attended if behaviour.attends else None
+    return facilitation.answer(behaviour, target, teacher)
+
+
+def found(activity: Activity, behaviour: str) -> Situation:
+    """Return the situation in which something is expected."""
+    return next(s for s in activity.situations if activity.expected[s] == behaviour)
+
+
+@pytest.fixture
+def facilitation(store: Store, activity: Activity, cover: Cover) -> Facilitation:
+    """A run by a policy that was never shown how a game begins."""
+    gap = found(activity, "greeting")
+    shown = [without(d, gap) for d in cover("bingo", 1, 4)]
+    return asking(store, activity, learnt(store, activity, shown, FEW))
+
+
+def test_what_nobody_showed_is_asked_and_nothing_happens_before_the_answer(
+    facilitation: Facilitation, store: Store
+) -> None:
+    question = until_asked(facilitation)
+    assert "Nobody has shown Tangy" in question.reason
+    before = facilitation.world.observe()
+    events = [event.seq for event in store.events()]
+    for _ in range(3):
+        assert facilitation.step() == []
+    assert facilitation.world.observe() == before == question.state
+    assert [event.seq for event in store.events()] == events
+    assert not facilitation.over
+
+
+def test_demonstrations_that_disagree_are_asked_about(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    shown = cover("bingo", 1, 4)
+    where = found(activity, "encourage")
+    source = next(d for d in shown if any(s.state.situation == where for s in d.steps))
+    other = otherwise(source, where, "joke", "ben")
+    facilitation = asking(store, activity, learnt(store, activity, [*shown, other], FEW))
+    question = until_asked(facilitation)
+    assert question.state.situation == where
+    assert "disagree" in question.reason
+    _, taught, *_ = reply(facilitation, activity)
+    assert isinstance(taught, Taught)
+    assert taught.lesson.replay.overruled > 0
+    assert "set aside" in taught.lesson.replay.words()
+    assert facilitation.policy.decide(where).sure
+
+
+def test_a_vote_below_the_threshold_is_asked_about(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    policy = learnt(store, activity, cover("bingo", 1, 4), PAPER)
+    low = [s for s in activity.situations if policy.decide(s).share < SURE]
+    assert low, "the paper's bagging leaves rare situations unsure"
+    facilitation = asking(store, activity, policy)
+    question = until_asked(facilitation)
+    assert question.state.situation in low
+    assert question.decision.seen
+    assert "% of the votes" in question.reason
+    reply(facilitation, activity)
+    assert facilitation.policy.settings == PAPER
+
+
+def test_an_answer_becomes_a_demonstration_and_a_policy(
+    facilitation: Facilitation, store: Store, activity: Activity
+) -> None:
+    question = until_asked(facilitation)
+    before = facilitation.policy
+    acted, taught, *_ = reply(facilitation, activity)
+    assert isinstance(acted, Acted)
+    assert isinstance(taught, Taught)
+    made = read_library(store, activity.name).finished[-1]
+    assert (made.origin, made.teacher, made.people) == ("asked", "ann", IDS)
+    assert [(s.state, s.behaviour, s.after) for s in made.steps] == [
+        (question.state, acted.action.behaviour.name, acted.after)
+    ]
+    assert made == taught.lesson.demonstration
+    assert facilitation.policy is taught.lesson.policy
+    assert facilitation.policy.demonstrations == (*before.demonstrations, made.id)
+    assert facilitation.policy.decide(question.state.situation).sure
+    again, notices = load_policy(store, activity)
+    assert (again.digest, notices) == (facilitation.policy.digest, [])
+
+
+def test_the_replay_goes_through_every_earlier_step(
+    facilitation: Facilitation, store: Store, activity: Activity
+) -> None:
+    earlier = sum(len(d.steps) for d in read_library(store, activity.name).finished)
+    until_asked(facilitation)
+    _, taught, *_ = reply(facilitation, activity)
+    assert isinstance(taught, Taught)
+    replay = taught.lesson.replay
+    assert (replay.steps, replay.changed, replay.overruled) == (earlier, (), 0)
+    assert "nothing else changed" in replay.words()
+
+
+def test_the_game_goes_on_to_its_end_and_does_not_ask_twice(
+    facilitation: Facilitation, store: Store, activity: Activity
+) -> None:
+    until_asked(facilitation)
+    events = reply(facilitation, activity)
+    while not facilitation.over:
+        events += facilitation.step()
+    assert not any(isinstance(event, Unsure) for event in events)
+    assert isinstance(events[-1], GameEnded)
+    assert events[-1].stopped is None
+    steps = list(store.events(STEP))
+    assert len(steps) == len(acts(events))
+    assert [bool(step.body["teacher"]) for step in steps] == [True] + [False] * (len(steps) - 1)
+
+
+def test_a_command_is_verified_before_it_is_an_answer(
+    facilitation: Facilitation, activity: Activity
+) -> None:
+    until_asked(facilitation)
+    door = facilitation.verifier()
+    phrase = activity.behaviours["greeting"].phrases[0]
+    assert isinstance(door.say(Say(phrase)), Asked)
+    assert facilitation.question is not None
+    said = door.reply(Reply(yes=True))
+    assert isinstance(said, Verified)
+    assert said.behaviour.name == "greeting"
+    assert facilitation.steps == 0
+
+
+def test_giving_up_ends_the_game_and_teaches_nothing(
+    facilitation: Facilitation, store: Store, activity: Activity
+) -> None:
+    question = until_asked(facilitation)
+    before = read_library(store, activity.name).entries
+    (ended,) = facilitation.give_up()
+    assert isinstance(ended, GameEnded)
+    assert ended.stopped is not None
+    assert question.reason in ended.stopped
+    assert facilitation.over
+    assert facilitation.give_up() == []
+    assert read_library(store, activity.name).entries == before
+    assert facilitation.answer(activity.behaviours["greeting"], None, "ann") == []
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_leaving_ends_the_game_in_the_log(
+    facilitation: Facilitation, store: Store, activity: Activity, asked: bool
+) -> None:
+    until_asked(facilitation)
+    if not asked:
+        reply(facilitation, activity)
+    (ended,) = facilitation.leave()
+    assert isinstance(ended, GameEnded)
+    kept = store.last(ENDED)
+    assert kept is not None
+    assert kept.body["stopped"] == ended.stopped == "It was left before its end."
+    assert (facilitation.over, facilitation.question) == (True, None)
+    assert facilitation.leave() == facilitation.step() == []
+
+
+@pytest.mark.parametrize("fails", [STEP, POLICY, "demonstration step"])
+def test_an_answer_that_cannot_be_kept_loses_nothing(
+    facilitation: Facilitation,
+    store: Store,
+    activity: Activity,
+    monkeypatch: pytest.MonkeyPatch,
+    fails: str,
+) -> None:
+    until_asked(facilitation)
+    policy, beliefs = facilitation.policy, deepcopy(facilitation.persuasion.beliefs)
+    events = [event.seq for event in store.events()]
+    append = store.append
+
+    def refuse(kind: str, *rest: object, **more: object) -> int:
+        if kind == fails:
+            raise OSError("full")
+        return append(kind, *rest, **more)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as broken:
+        broken.setattr(store, "append", refuse)
+        with pytest.raises(OSError, match="full"):
+            reply(facilitation, activity)
+    assert [event.seq for event in store.events()] == events
+    assert facilitation.policy is policy
+    assert facilitation.persuasion.beliefs == beliefs
+    assert not facilitation.over
+    while not facilitation.over:  # the log can be written again, and the game goes on
+        facilitation.step()
+        if facilitation.question is not None:
+            reply(facilitation, activity)
+
+
+@settings(max_examples=12)
+@given(data=st.data(), seed=st.integers(1, 10_000))
+def test_whatever_was_left_out_is_asked_once_and_known_from_then_on(
+    activity: Activity, cover: Cover, data: st.DataObject, seed: int
+) -> None:
+    gaps = data.draw(st.sets(st.sampled_from(activity.situations), min_size=1, max_size=5))
+    with TemporaryDirectory() as folder, Store.open(Path(folder)) as store:
+        shown = [without(d, *gaps) for d in cover("bingo", 1, 4)]
+        facilitation = asking(store, activity, learnt(store, activity, shown, FEW), seed)
+        asked: list[Situation] = []
+        facilitation.begin()
+        while not facilitation.over:
+            if facilitation.question is None:
+                facilitation.step()
+                continue
+            asked.append(facilitation.question.state.situation)
+            _, taught, *_ = reply(facilitation, activity)
+            assert isinstance(taught, Taught)
+            assert taught.lesson.replay.changed == ()
+        assert len(asked) == len(set(asked))
+        assert set(asked) <= gaps
+        for situation in set(activity.situations) - (gaps - set(asked)):
+            decision = facilitation.policy.decide(situation)
+            assert decision.sure
+            assert decision.behaviour == activity.expected[situation]
