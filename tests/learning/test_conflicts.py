@@ -1,0 +1,191 @@
+"""Conflicts are all found, across demonstrations and teachers, and settled by one answer."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import count
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_tui.learning.conflicts import (
+    Resolution,
+    find_conflicts,
+    shown_steps,
+    training_rows,
+)
+from tangy_tui.learning.effects import learn_effects
+from tangy_tui.learning.policy import ForestSettings, learn_policy
+from tangy_tui.learning.reachable import joint_states
+
+Demonstrate = Callable[[str, int, int], Demonstration]
+BINGO = load_activity("bingo")
+FEW = ForestSettings(trees=5)
+
+
+def showing(
+    *rows: tuple[Situation, str], teacher: str = "Ada", id: str = "made", first: int = 1
+) -> Demonstration:
+    """Make a demonstration of just these rows, with steps numbered from `first`."""
+    steps = []
+    for number, (situation, behaviour) in enumerate(rows, first):
+        state = ActivityState(number, situation, FRONT, None, ())
+        steps.append(Step(behaviour, None, state, state, id=number))
+    return Demonstration(id, "bingo", teacher, 1, (), tuple(steps), finished=True)
+
+
+def numbered(shown: list[Demonstration]) -> list[Demonstration]:
+    """Give every step a number of its own, as the log does."""
+    ids = count(1)
+    return [replace(d, steps=tuple(replace(s, id=next(ids)) for s in d.steps)) for d in shown]
+
+
+def spoil(
+    activity: Activity, shown: list[Demonstration], where: list[int], rng: Random
+) -> list[Demonstration]:
+    """Let the teacher err in the steps of these numbers (counted through all demonstrations)."""
+    place, spoilt = count(), []
+    for demonstration in shown:
+        steps = []
+        for step in demonstration.steps:
+            if next(place) in where:
+                wrong = rng.choice([b for b in activity.behaviours if b != step.behaviour])
+                step = replace(step, behaviour=wrong)
+            steps.append(step)
+        spoilt.append(replace(demonstration, steps=tuple(steps)))
+    return spoilt
+
+
+def rows_of(shown: list[Demonstration]) -> list[tuple[Situation, str]]:
+    return [(s.step.state.situation, s.step.behaviour) for s in shown_steps(shown)]
+
+
+@pytest.mark.parametrize("rarest", [False, True])
+@pytest.mark.parametrize("seed", range(5))
+def test_three_in_a_hundred_wrong_answers_are_all_found_and_once_resolved_the_policy_is_exact(
+    seed: int, rarest: bool, demonstrate: Demonstrate
+) -> None:
+    clean = numbered([demonstrate("bingo", 100 * seed + game, 4) for game in range(5)])
+    rows = rows_of(clean)
+    often = Counter(situation for situation, _ in rows)
+    rng = Random(seed)
+    order = sorted(range(len(rows)), key=lambda n: (often[rows[n][0]], rng.random()))
+    spared: dict[
+        Situation, int
+    ] = {}  # one right answer to each situation: without one there is nothing to disagree
+    for number in order:
+        spared.setdefault(rows[number][0], number)
+    free = [n for n in (order if rarest else order[::-1]) if n not in spared.values()]
+    where = free[: round(0.03 * len(rows))]
+    shown = spoil(BINGO, clean, where, rng)
+
+    found = find_conflicts(shown)
+    assert {c.situation for c in found} == {rows[number][0] for number in where}
+    assert not any(learn_policy(BINGO, shown, settings=FEW).decide(c.situation).sure for c in found)
+
+    resolutions = [c.resolved(BINGO.expected[c.situation]) for c in found]
+    assert find_conflicts(shown, resolutions) == []
+    policy = learn_policy(BINGO, shown, resolutions=resolutions, settings=FEW)
+    for state in joint_states(BINGO, clean[0].people):
+        decision = policy.decide(state.situation)
+        assert decision.behaviour == BINGO.expected[state.situation]
+        assert decision.sure
+
+
+def test_teachers_who_differ_are_told_apart(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    ada = showing((where, "move card closer"), (where, "move card closer"))
+    bea = showing((where, "encourage"), teacher="Bea", id="other", first=3)
+    (conflict,) = find_conflicts([bea, ada])
+    assert list(conflict.answers) == ["move card closer", "encourage"]  # most often shown first
+    told = {b: [(s.teacher, s.number) for s in steps] for b, steps in conflict.answers.items()}
+    assert told == {"move card closer": [("Ada", 1), ("Ada", 2)], "encourage": [("Bea", 1)]}
+
+
+def test_the_same_wrong_answer_given_again_later_is_a_conflict_again(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    early = showing((where, "move card closer"), (where, "encourage"))
+    said = find_conflicts([early])[0].resolved("move card closer")
+    assert find_conflicts([early], [said]) == []
+    late = showing((where, "encourage"), id="later", first=3)
+    (conflict,) = find_conflicts([early, late], [said])
+    assert [s.demonstration for s in conflict.answers["encourage"]] == ["later"]
+    again = conflict.resolved("encourage")
+    assert find_conflicts([early, late], [said, again]) == []
+    settled = learn_policy(activity, [early, late], resolutions=[said, again], settings=FEW)
+    assert settled.decide(where).behaviour == "encourage"
+
+
+def test_both_may_be_right_but_not_a_third(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    shown = showing((where, "move card closer"), (where, "encourage"))
+    both = find_conflicts([shown])[0].resolved("move card closer", "encourage")
+    decision = learn_policy(activity, [shown], resolutions=[both], settings=FEW).decide(where)
+    assert decision.sure
+    assert not decision.contested
+    third = showing((where, "joke"), id="third", first=3)
+    assert len(find_conflicts([shown, third], [both])) == 1
+
+
+def test_an_answer_that_nobody_showed_can_be_the_right_one(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    shown = showing((where, "joke"), (where, "encourage"))
+    said = find_conflicts([shown])[0].resolved("move card closer")
+    assert training_rows([shown], [said]) == [(where, "move card closer")]
+    decision = learn_policy(activity, [shown], resolutions=[said], settings=FEW).decide(where)
+    assert (decision.behaviour, decision.sure, decision.seen) == ("move card closer", True, 1)
+
+
+def test_copies_of_a_step_do_not_disagree_with_themselves(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    one = showing((where, "encourage"))
+    copy = replace(one, id="copy")
+    assert [s.demonstration for s in shown_steps([one, copy])] == ["made"]
+
+
+def test_what_follows_a_wrong_or_failed_step_is_not_expected(demonstrate: Demonstrate) -> None:
+    (shown,) = numbered([demonstrate("bingo", 1, 4)])
+    first = shown.steps[0]
+    stray = replace(first, behaviour="call number", id=10_000)
+    spoilt = replace(shown, steps=(stray, *shown.steps))
+    (conflict,) = find_conflicts([spoilt])
+    clean = learn_effects(BINGO, [shown])
+    assert learn_effects(BINGO, [spoilt]) != clean
+    assert learn_effects(BINGO, [spoilt], [conflict.resolved(first.behaviour)]) == clean
+    failed = replace(spoilt, steps=(replace(stray, completed=False), *shown.steps))
+    assert learn_effects(BINGO, [failed]) == clean
+
+
+SITUATIONS = st.sampled_from(BINGO.situations)
+BEHAVIOURS = st.sampled_from(sorted(BINGO.behaviours))
+
+
+@given(st.lists(st.tuples(SITUATIONS, BEHAVIOURS), min_size=1, max_size=30), st.data())
+def test_after_every_conflict_is_settled_there_is_none_and_nothing_else_is_lost(
+    rows: list[tuple[Situation, str]], data: st.DataObject
+) -> None:
+    shown = showing(*rows)
+    found = find_conflicts([shown])
+    answers: dict[Situation, set[str]] = {}
+    for situation, behaviour in rows:
+        answers.setdefault(situation, set()).add(behaviour)
+    assert {c.situation for c in found} == {s for s, b in answers.items() if len(b) > 1}
+    said = [
+        c.resolved(*data.draw(st.lists(BEHAVIOURS, min_size=1, max_size=3, unique=True)))
+        for c in found
+    ]
+    assert find_conflicts([shown], said) == []
+    right = {r.situation: set(r.right) for r in said}
+    learnt = training_rows([shown], said)
+    assert {s for s, _ in learnt} == set(answers)
+    assert all(b in right.get(s, answers[s]) for s, b in learnt)
+    assert [r for r in learnt if r[0] not in right] == [r for r in rows if r[0] not in right]
+    for resolution in said:
+        assert Resolution.from_json(resolution.to_json()) == resolution
