@@ -147,12 +147,9 @@ class GuidedWorld(SimulatedWorld):
     def _give_cue(self) -> None:
         """Tell somebody what to show next, as soon as it is time and nobody asks."""
         cue, tracker = self._cue, self.tracker
-        if cue is not None:
-            if cue.asked and cue.person not in tracker.queue:
-                self._cue = None
-                self._next = self._beats - 1 + self.plan.gap(self._beats - 1, self._guide())
-            elif not cue.asked and self._hopeless(cue):
-                self._cue = None  # somebody else has to
+        if cue is not None and cue.asked and cue.person not in tracker.queue:
+            self._cue = None
+            self._next = self._beats - 1 + self.plan.gap(self._beats - 1, self._guide())
         if self._cue or tracker.queue or self._beats < self._next - 1:
             return
         if not tracker.begun() or self.plan.ended(tracker):
@@ -198,8 +195,7 @@ class GuidedWorld(SimulatedWorld):
                 if not self._shows(cue) and self._beats >= cue.asks_at:
                     self._take_off(player)  # no number of theirs was left to be overlooked
             case "wrong marks":
-                if not self._has_line(player):
-                    self._mark_as(player, player.called)
+                self._mark_as(player, player.called)
                 self._slip(player)
             case _:
                 self._mark_as(player, player.called)
@@ -258,11 +254,6 @@ class GuidedWorld(SimulatedWorld):
 
     def _shows(self, cue: Cue) -> bool:
         return self._players[cue.person].judged(self.activity.card_states) == cue.shows.name
-
-    def _hopeless(self, cue: Cue) -> bool:
-        """Say whether a person can win only, though they were to show something else."""
-        player = self._players[cue.person]
-        return cue.shows.checker != LINE and self._has_line(player) and not self._spent()
 
     def _nearest_line(self, player: Player) -> int:
         lines = self.activity.deck.lines

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import given
@@ -19,6 +20,7 @@ from tangy_profiles.person import load_people
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT, Outcome, Situation
 from tangy_sim.guide import GuidedWorld
+from tangy_sim.plan import Plan
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
 from tangy_tui.learning.policy import learn_policy
@@ -253,6 +255,19 @@ def test_one_person_asks_at_a_time_and_two_calls_pass_between() -> None:
 
 
 @pytest.mark.xdist_group("guide")
+def test_visits_are_spread_over_the_calls_to_the_joke() -> None:
+    gaps = []
+    for turns in games():
+        names = [t.step.behaviour for t in turns]
+        early = names[: names.index("joke")]
+        assert early.count("navigate to user") == 3
+        stretches = " ".join("|" if n == "navigate to user" else n[0] for n in early).split("|")
+        gaps += [stretch.count("c") for stretch in stretches[:3]]
+    assert 3.5 <= sum(gaps) / len(gaps) <= 5
+    assert {3, 4, 5, 6} <= set(gaps) <= set(range(2, 9))
+
+
+@pytest.mark.xdist_group("guide")
 def test_others_ask_before_anybody_asks_again_and_somebody_else_wins_as_a_rule() -> None:
     for users in range(1, 9):
         others = 0
@@ -409,6 +424,59 @@ def test_a_teacher_who_only_calls_numbers_sees_no_win_and_one_request(users: int
             assert before.asking <= after.asking
         assert not any(BINGO.deck.wins(p.marked) for p in world._players.values())
         list(play(world))  # and even now the game can be brought to an end
+
+
+@pytest.mark.parametrize("users", [1, 2, 4, 8])
+@pytest.mark.parametrize("early", [20, 40, 55])
+def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: int) -> None:
+    """Nobody asks before the greeting, and what was called by then cannot be missed any more."""
+    call = BINGO.action(BINGO.behaviours["call number"], None, None)
+    for seed in range(12):
+        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+        for _ in range(early):
+            assert not turn(world, call).asking
+        seen = set()
+        while not world.over:
+            seen.add(world.observe().situation)
+            check_order(world)
+            world.execute(expected(world))
+        assert seen == set(BINGO.situations), seed
+        assert len(world.scene().called) <= max(early + 15, 23)
+
+
+@pytest.mark.parametrize("users", [1, 4])
+def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
+    """While somebody waits, 30 numbers are called; then their card must be as it was wanted."""
+    call = BINGO.action(BINGO.behaviours["call number"], None, None)
+    for seed in range(30):
+        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+        while not world.scene().requests:
+            world.execute(expected(world))
+        for _ in range(30):
+            world.execute(call)
+        (asking,) = world.scene().requests
+        assert world._cue is not None
+        card = world._players[asking]
+        assert card.judged(BINGO.card_states) == world._cue.shows.name
+        assert not BINGO.deck.wins(card.called)
+
+
+def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
+    plan = Plan(LANTERNS, Random(1).random)
+    for _ in range(4):
+        order = [state.name for state in plan.visits()]
+        assert len(order) == 4 and order[-1] == "corners lit"
+        plan.tried[order[0]] += 1
+        assert [state.name for state in plan.visits()][2] == order[0]
+    assert Plan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
+
+
+def test_people_ask_even_where_cards_are_not_looked_at() -> None:
+    rules = tuple(r for r in BINGO.stage_rules if r.condition != "beside requester")
+    world = GuidedWorld(replace(BINGO, stage_rules=rules), IDS[:4], seed=1)
+    for _ in range(10):
+        world.execute(expected(world))
+    assert len(world.scene().requests) == 1
 
 
 def test_a_winner_who_was_sent_on_without_a_celebration_comes_back() -> None:
