@@ -69,7 +69,7 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
     library = read_library(store, activity.name)
     shown = [d for d in library.finished if d.teacher == name]
     if kind == "policy" or not shown:
-        words = [*known, *(d.teacher for d in library.finished), "last"]
+        words = {*known, *(d.teacher for d in library.finished), "last"}
         raise TangyError(plain(f"There is no policy or teacher {wanted!r}: {nearest(name, words)}"))
     return learn_policy(activity, shown, resolutions=library.resolutions, name=name), []
 

@@ -1,0 +1,263 @@
+"""Steps are done again after undo, games shown again from a step, and guided games cover all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import StoreError, TangyError
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.learning.demonstrating import (
+    Again,
+    Begun,
+    Executed,
+    Redo,
+    StepUndone,
+    Teaching,
+    Undo,
+)
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import learn_policy
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.verifying import Refused, Reply, Say
+
+YES = Reply(yes=True)
+
+
+@contextmanager
+def opened(folder: Path, users: int = 4) -> Iterator[House]:
+    house = House(folder, users=users)
+    try:
+        with house.store.transaction():  # wait for the disk only once
+            yield house
+    finally:
+        house.close()
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with an empty data folder."""
+    with opened(tmp_path / "data") as made:
+        yield made
+
+
+def begun(house: House, teacher: str = "Ada", again: Again | None = None) -> Teaching:
+    teaching = house.teaching(teacher, None, again=again)
+    teaching.begin()
+    return teaching
+
+
+def steps(teaching: Teaching, count: int) -> None:
+    teacher = ScriptedTeacher(teaching)
+    while len(teaching.demonstration.steps) < count:
+        teaching.apply(teacher.command())
+
+
+def kept(house: House, id: str) -> Demonstration:
+    return read_library(house.store, house.activity.name).entries[id].demonstration
+
+
+def test_what_was_undone_is_done_again_just_as_it_was(house: House) -> None:
+    teaching = begun(house)
+    steps(teaching, 5)
+    before = teaching.demonstration
+    teaching.apply(Undo())
+    teaching.apply(Undo())
+    assert teaching.undone == 2
+    (done,) = teaching.apply(Redo())
+    assert isinstance(done, Executed)
+    assert done.step == before.steps[3]
+    teaching.apply(Redo())
+    assert teaching.demonstration == before == kept(house, before.id)
+    assert [s.id for s in teaching.demonstration.steps] == [s.id for s in before.steps]
+    assert isinstance(teaching.apply(Redo())[0], Refused)
+
+
+def test_a_new_step_ends_what_could_be_done_again(house: House) -> None:
+    teaching = begun(house)
+    steps(teaching, 3)
+    teaching.apply(Undo())
+    steps(teaching, 3)
+    assert isinstance(teaching.apply(Redo())[0], Refused)
+
+
+def test_a_finished_game_is_finished_again_by_redo(house: House) -> None:
+    teaching = begun(house)
+    list(ScriptedTeacher(teaching).demonstrate())
+    whole = teaching.demonstration
+    teaching.apply(Undo())
+    assert not kept(house, whole.id).finished
+    teaching.apply(Redo())
+    assert teaching.demonstration == whole == kept(house, whole.id)
+
+
+def test_what_can_be_done_again_is_known_after_a_break(tmp_path: Path) -> None:
+    with opened(tmp_path / "data") as house:
+        teaching = begun(house)
+        steps(teaching, 4)
+        whole = teaching.demonstration
+        teaching.apply(Undo())
+        teaching.apply(Undo())
+    with opened(tmp_path / "data") as house:
+        teaching = begun(house)
+        teaching.apply(Redo())
+        teaching.apply(Redo())
+        assert teaching.demonstration == whole
+
+
+def test_redo_waits_for_an_open_question(house: House) -> None:
+    teaching = begun(house)
+    steps(teaching, 1)
+    teaching.apply(Undo())
+    teaching.apply(Say("greet everyone"))
+    assert isinstance(teaching.apply(Redo())[0], Refused)
+    teaching.apply(YES)
+    assert len(teaching.demonstration.steps) == 1
+
+
+def test_going_back_in_the_present_game_undoes_and_can_be_done_again(house: House) -> None:
+    teaching = begun(house)
+    steps(teaching, 6)
+    whole = teaching.demonstration
+    events = teaching.apply(Again(whole.id, 2))
+    assert [type(e) for e in events] == [StepUndone] * 4
+    assert teaching.demonstration.steps == whole.steps[:2]
+    for _ in range(4):
+        teaching.apply(Redo())
+    assert teaching.demonstration == whole
+    assert isinstance(teaching.apply(Again(whole.id, 6))[0], Refused)
+
+
+def test_a_game_shown_again_from_a_step_gives_way_when_the_new_one_is_complete(
+    house: House,
+) -> None:
+    first = begun(house)
+    list(ScriptedTeacher(first).demonstrate())
+    old = first.demonstration
+    again = begun(house, "Bea", Again("1", 10))
+    assert again.demonstration.steps == old.steps[:10]
+    assert len(read_library(house.store, "bingo").entries) == 1  # looking in leaves nothing
+    list(ScriptedTeacher(again).demonstrate())
+    new = again.demonstration
+    assert (new.origin, new.of, new.teacher, new.seed) == ("again", (old.id,), "Bea", old.seed)
+    library = read_library(house.store, "bingo")
+    assert library.finished == [new]
+    assert library.entries[old.id].hidden == "shown again"
+    again.apply(Undo())  # no longer complete
+    assert read_library(house.store, "bingo").finished == [old]
+
+
+def test_steps_of_the_old_game_can_be_undone_in_the_new_one(house: House) -> None:
+    first = begun(house)
+    steps(first, 5)
+    again = begun(house, "Bea", Again("1", 3))
+    again.apply(Undo())
+    assert kept(house, again.demonstration.id).steps == first.demonstration.steps[:2]
+    assert kept(house, first.demonstration.id) == first.demonstration
+    resumed = house.teaching("Bea", None)
+    (event,) = resumed.begin()
+    assert isinstance(event, Begun)
+    assert event.resumed
+    assert resumed.demonstration == again.demonstration
+
+
+@pytest.mark.parametrize("again", [Again("7", 1), Again("1", 99), Again("1", -1)])
+def test_what_cannot_be_shown_again_is_refused_in_a_sentence(again: Again, house: House) -> None:
+    steps(begun(house), 2)
+    with pytest.raises(TangyError, match=r"demonstration|step"):
+        begun(house, "Bea", again)
+
+
+def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    house = House(tmp_path / "data")
+    teaching = begun(house)
+    steps(teaching, 4)
+    before, state = teaching.demonstration, teaching.world.observe()
+    append, calls = Store.append, iter(range(3))
+
+    def failing(self: Store, *arguments: object, **options: object) -> int:
+        if next(calls) == 1:
+            raise StoreError("the disk is full")
+        return append(self, *arguments, **options)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patch, pytest.raises(StoreError):
+        patch.setattr(Store, "append", failing)
+        teaching.apply(Again(before.id, 1))
+    assert teaching.demonstration == before == kept(house, before.id)
+    assert teaching.world.observe() == state
+    house.close()
+
+
+@given(st.lists(st.sampled_from(("step", "undo", "redo", "back")), max_size=14), st.integers(1, 9))
+@settings(max_examples=25)
+def test_the_log_agrees_with_the_session_after_any_steps_undos_and_redos(
+    commands: list[str], seed: int
+) -> None:
+    with TemporaryDirectory() as folder, opened(Path(folder)) as house:
+        teaching = house.teaching("Ada", seed)
+        teaching.begin()
+        trail: list[Demonstration] = []  # what redo must lead to
+        for command in commands:
+            before = teaching.demonstration
+            match command:
+                case "step":
+                    steps(teaching, len(before.steps) + 1)
+                    trail.clear()
+                case "undo" if before.steps:
+                    teaching.apply(Undo())
+                    trail.append(before)
+                case "redo" if trail:
+                    teaching.apply(Redo())
+                    assert teaching.demonstration == trail.pop()
+                case "back" if len(before.steps) > 1:
+                    shorter = [replace(before, steps=before.steps[:n]) for n in (1, 2)]
+                    teaching.apply(Again(before.id, 1))
+                    trail += [
+                        replace(before, steps=before.steps[:n])
+                        for n in range(len(before.steps), 1, -1)
+                    ]
+                    assert teaching.demonstration == shorter[0]
+            if before.steps or teaching.demonstration.steps:
+                assert kept(house, teaching.demonstration.id) == teaching.demonstration
+            if teaching.demonstration.steps:
+                assert teaching.world.observe() == teaching.demonstration.steps[-1].after
+
+
+@pytest.mark.parametrize("users", [1, 4, 8])
+def test_one_guided_game_teaches_the_whole_policy(users: int, tmp_path: Path) -> None:
+    with opened(tmp_path / "data", users) as house:
+        teaching = house.teaching("Ada", 5, guided=True)
+        teaching.begin()
+        list(ScriptedTeacher(teaching).demonstrate())
+        (shown,) = read_library(house.store, "bingo").finished
+        assert shown.guided
+        policy = learn_policy(house.activity, [shown])
+        assert policy.exact(house.activity)
+        assert all(policy.decide(s).sure for s in house.activity.situations)
+
+
+def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path: Path) -> None:
+    with opened(tmp_path / "data") as house:
+        teaching = house.teaching("Ada", 5, guided=True)
+        teaching.begin()
+        steps(teaching, 20)
+        whole = teaching.demonstration
+        teaching.apply(Undo())
+    with opened(tmp_path / "data") as house:
+        resumed = house.teaching("Ada", None)
+        (event,) = resumed.begin()
+        assert isinstance(event, Begun)
+        assert event.resumed
+        resumed.apply(Redo())
+        assert resumed.demonstration == whole

@@ -1,0 +1,221 @@
+"""Why a decision is taken, what was not shown yet, and where two policies differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.learning.comparing import choices, compare, find_policy
+from tangy_tui.learning.conflicts import find_conflicts
+from tangy_tui.learning.coverage import coverage, missing_words
+from tangy_tui.learning.explaining import explain, foresee, shown_words, why_words
+from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
+from tangy_tui.learning.policies import keep_policy
+from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
+
+Demonstrate = Callable[[str, int, int], Demonstration]
+FEW = ForestSettings(trees=5)
+WRONG = Situation("help", "AR", "incorrectly marked")
+
+
+@pytest.fixture
+def shown(demonstrate: Demonstrate) -> list[Demonstration]:
+    """Two demonstrations with numbered steps."""
+    ids = count(1)
+    given = [demonstrate("bingo", seed, 4) for seed in (1, 2)]
+    return [replace(d, steps=tuple(replace(s, id=next(ids)) for s in d.steps)) for d in given]
+
+
+def log(store: Store, shown: Demonstration, teacher: str) -> None:
+    """Log a demonstration as a teaching session does."""
+    name = {"demonstration": shown.id}
+    store.append(
+        BEGUN,
+        {**name, "activity": shown.activity, "teacher": teacher, "seed": 1, "people": ["user1"]},
+    )
+    for step in shown.steps:
+        store.append(STEP, {**name, **step.to_json()})
+    store.append(FINISHED, name)
+
+
+def without(shown: Demonstration, situation: Situation) -> Demonstration:
+    steps = tuple(s for s in shown.steps if s.state.situation != situation)
+    return replace(shown, steps=steps)
+
+
+# ---------------------------------------------------------------------------------------- why
+
+
+def test_a_decision_rests_on_exactly_the_steps_shown_in_its_situation(
+    shown: list[Demonstration], activity: Activity
+) -> None:
+    policy = learn_policy(activity, shown, settings=FEW)
+    for situation in activity.situations:
+        why = explain(policy, shown, situation)
+        there = [
+            (d.id, n)
+            for d in shown
+            for n, s in enumerate(d.steps, 1)
+            if s.state.situation == situation
+        ]
+        assert [(s.demonstration, s.number) for s in why.rests_on] == there
+        assert why.decision.seen == len(there)
+        assert why.against == ()
+        assert bool(why.near) == (not there)
+
+
+def test_only_what_the_policy_was_learnt_from_counts(
+    shown: list[Demonstration], activity: Activity
+) -> None:
+    policy = learn_policy(activity, shown[:1], settings=FEW)
+    why = explain(policy, shown, activity.situations[0])
+    assert {s.demonstration for s in why.steps} == {shown[0].id}
+
+
+def test_what_was_never_shown_is_said_and_where_the_trees_guess_from(
+    shown: list[Demonstration], activity: Activity
+) -> None:
+    poorer = [without(d, WRONG) for d in shown]
+    policy = learn_policy(activity, poorer, settings=FEW)
+    why = explain(policy, poorer, WRONG)
+    assert why.rests_on == ()
+    assert {s.step.state.situation for s in why.near} <= {
+        s for s in activity.situations if sum(a != b for a, b in zip(s, WRONG, strict=True)) == 1
+    }
+    words = " ".join(why_words(activity, why))
+    assert "Nobody has shown Tangy what to do here" in words
+    assert "help · wrong marks" in words
+    assert f"{why.decision.behaviour} {why.decision.share:.0%}" in words
+
+
+def test_a_conflict_and_its_settlement_are_told(
+    shown: list[Demonstration], activity: Activity
+) -> None:
+    first = shown[0].steps[0]
+    stray = replace(first, behaviour="joke", id=9_999)
+    other = replace(shown[1], teacher="Bea", steps=(stray, *shown[1].steps))
+    both = [shown[0], other]
+    open_why = explain(learn_policy(activity, both, settings=FEW), both, first.state.situation)
+    assert "Demonstrations disagree" in " ".join(why_words(activity, open_why))
+    (conflict,) = find_conflicts(both)
+    said = conflict.resolved(first.behaviour)
+    policy = learn_policy(activity, both, resolutions=[said], settings=FEW)
+    why = explain(policy, both, first.state.situation)
+    assert [(s.teacher, s.step.behaviour) for s in why.against] == [("Bea", "joke")]
+    assert "A teacher said that 'greeting' is right" in " ".join(why_words(activity, why))
+    assert shown_words(why.against[0], lambda id: f"game {id}") == (
+        f"joke: step 1 of game {other.id}, by Bea"
+    )
+
+
+def test_what_tangy_would_do_by_now_counts_the_present_demonstration(
+    store: Store, shown: list[Demonstration], activity: Activity
+) -> None:
+    with pytest.raises(NothingToLearnFrom):
+        foresee(store, activity, None)
+    begun = replace(shown[0], steps=shown[0].steps[:2], finished=False)
+    assert foresee(store, activity, begun).decide(activity.situations[0]).seen == 1
+    log(store, shown[1], "Ada")
+    now = foresee(store, activity, begun)
+    assert now.demonstrations == (shown[1].id, begun.id)
+    again = replace(begun, of=(shown[1].id,), origin="again")
+    assert foresee(store, activity, again).demonstrations == (begun.id,)
+
+
+# ----------------------------------------------------------------------------------- coverage
+
+
+def test_coverage_counts_the_steps_of_each_situation(
+    shown: list[Demonstration], activity: Activity
+) -> None:
+    poorer = [without(d, WRONG) for d in shown]
+    found = coverage(activity, poorer)
+    assert list(found.times) == list(activity.situations)
+    assert sum(found.times.values()) == sum(len(d.steps) for d in poorer)
+    assert WRONG in found.missing
+    assert not found.complete
+    assert set(found.seen) | set(found.missing) == set(activity.situations)
+    assert "nobody has had a wrong mark yet" in missing_words(activity, found)
+
+
+def test_an_activity_without_such_words_is_told_of_in_its_own(lanterns: Activity) -> None:
+    found = coverage(lanterns, [])
+    for situation, words in zip(found.missing, missing_words(lanterns, found), strict=True):
+        assert lanterns.in_words(situation) in words
+
+
+def test_every_situation_of_the_shipped_activity_has_words(activity: Activity) -> None:
+    words = missing_words(activity, coverage(activity, []))
+    assert len(set(words)) == len(activity.situations)
+    assert not any("not shown yet:" in sentence for sentence in words)
+
+
+# ---------------------------------------------------------------------------------- comparing
+
+
+@pytest.fixture
+def two_teachers(store: Store, shown: list[Demonstration], activity: Activity) -> Store:
+    """A log in which Ada shows what is expected and Bea jokes where marks are wrong."""
+    steps = tuple(
+        replace(s, behaviour="joke") if s.state.situation == WRONG else s for s in shown[1].steps
+    )
+    with store.transaction():
+        log(store, shown[0], "Ada")
+        log(store, replace(shown[1], steps=steps), "Bea")
+        library = read_library(store, "bingo")
+        for name, used in (("early", library.finished[:1]), ("late", library.finished)):
+            keep_policy(store, learn_policy(activity, used, settings=FEW, name=name))
+    return store
+
+
+def test_teacher_against_teacher_row_by_row(two_teachers: Store, activity: Activity) -> None:
+    ada, _ = find_policy(two_teachers, activity, "Ada")
+    bea, _ = find_policy(two_teachers, activity, "teacher:Bea")
+    rows = compare(activity, ada, bea)
+    assert [row.situation for row in rows] == list(activity.situations)
+    differ = {row.situation for row in rows if not row.same}
+    assert WRONG in differ
+    assert all((r.a.behaviour, r.a.sure) != (r.b.behaviour, r.b.sure) for r in rows if not r.same)
+    assert all(row.same for row in compare(activity, ada, ada))
+
+
+def test_before_against_after(two_teachers: Store, activity: Activity) -> None:
+    before, _ = find_policy(two_teachers, activity, "last~1")
+    after, _ = find_policy(two_teachers, activity, "last")
+    assert (before.name, after.name) == ("early", "late")
+    (row,) = [r for r in compare(activity, before, after) if r.situation == WRONG]
+    assert row.b.contested
+    assert not row.same
+
+
+def test_a_policy_is_found_by_name_and_digest(two_teachers: Store, activity: Activity) -> None:
+    early, notices = find_policy(two_teachers, activity, "early")
+    assert (early.name, notices) == ("early", [])
+    assert find_policy(two_teachers, activity, early.digest[:8])[0] == early
+    assert choices(two_teachers, activity) == ["late", "early", "Ada", "Bea"]
+
+
+@pytest.mark.parametrize("wanted", ["Cleo", "last~7", "policy:Ada", "teacher:late", "", "la"])
+def test_what_cannot_be_found_is_said_with_what_there_is(
+    wanted: str, two_teachers: Store, activity: Activity
+) -> None:
+    with pytest.raises(TangyError, match=r"did you mean|choose one of|were learnt"):
+        find_policy(two_teachers, activity, wanted)
+
+
+def test_a_house_opens_all_of_it_by_name(tmp_path: Path) -> None:
+    house = House(tmp_path / "data")
+    try:
+        assert choices(house.store, house.activity) == []
+    finally:
+        house.close()
