@@ -1,125 +1,38 @@
-"""One guided game shows everything, to a good teacher and, in the end, to a confused one."""
+"""One guided game shows everything, at a pace that a person can teach at."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
-from random import Random
 
 import pytest
 from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import Action, Activity, load_activity, read_activity
-from tangy_profiles.demonstration import Demonstration, Step
-from tangy_profiles.person import load_people
-from tangy_profiles.scene import Scene
-from tangy_profiles.state import FRONT, Outcome, Situation
+from tangy_profiles.activity import Activity
+from tangy_profiles.state import FRONT
 from tangy_sim.guide import GuidedWorld
-from tangy_sim.plan import Plan
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
 from tangy_tui.learning.policy import learn_policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.world import World
-
-BINGO = load_activity("bingo")
-LANTERNS = read_activity(Path(__file__).parents[1] / "lanterns.toml")
-IDS = tuple(person.id for person in load_people(8))
-SEEDS = range(100)
-LEAVING = {s for s in LANTERNS.situations if s.stage == "leaving"}
-
-
-@dataclass(frozen=True)
-class Turn:
-    """One step of a game: what was done, what came of it, and what there was to see then."""
-
-    step: Step
-    outcome: Outcome
-    scene: Scene
-
-    @property
-    def asking(self) -> set[str]:
-        return set(self.scene.requests)
-
-
-def expected(world: World) -> Action:
-    state = world.observe()
-    behaviour = world.activity.behaviours[world.activity.expected[state.situation]]
-    return world.activity.action(behaviour, state.attended if behaviour.attends else None, None)
-
-
-def turn(world: GuidedWorld, action: Action) -> Turn:
-    before = world.observe()
-    outcome = world.execute(action)
-    step = Step(action.behaviour.name, action.target, before, world.observe())
-    return Turn(step, outcome, world.scene())
-
-
-def play(world: GuidedWorld, most: int = 200) -> Iterator[Turn]:
-    """Play to the end as the activity expects it."""
-    for _ in range(most):
-        if world.over:
-            return
-        yield turn(world, expected(world))
-    raise AssertionError(f"the game does not end: {world.plan.lacking}")
-
-
-@cache
-def guided(activity: str, seed: int, users: int) -> tuple[Turn, ...]:
-    described = BINGO if activity == "bingo" else LANTERNS
-    return tuple(play(GuidedWorld(described, IDS[:users], seed=seed)))
-
-
-def shown(turns: Sequence[Turn]) -> set[Situation]:
-    return {t.step.state.situation for t in turns}
-
-
-def demonstration(activity: str, seed: int, users: int) -> Demonstration:
-    steps = tuple(t.step for t in guided(activity, seed, users))
-    return Demonstration(f"{seed}", activity, "test", seed, IDS[:users], steps, True)
-
-
-def games(activity: str = "bingo", seeds: int = 100) -> Iterator[tuple[Turn, ...]]:
-    for users in range(1, 9):
-        for seed in range(seeds):
-            yield guided(activity, seed, users)
-
-
-Mistake = tuple[int, int, int]
-"""Steps done right before it, which behaviour it is, and to whom it is done."""
-
-MISTAKES = st.lists(
-    st.tuples(st.integers(0, 6), st.integers(0, 99), st.integers(0, 99)), max_size=30
+from tests.sim.guided import (
+    BINGO,
+    IDS,
+    LANTERNS,
+    LEAVING,
+    MISTAKES,
+    SEEDS,
+    Mistake,
+    demonstration,
+    games,
+    guided,
+    mistaken,
+    play,
+    shown,
 )
-
-
-def mistaken(world: GuidedWorld, mistakes: Sequence[Mistake], *but: str) -> Iterator[Action]:
-    """Yield the actions of a teacher who makes these mistakes, and then none, to the end.
-
-    A mistake is any behaviour `but` some, and but those with which the game ends.
-    """
-    activity, people = world.activity, world.people
-    ends = {rule.behaviour for rule in activity.stage_rules if rule.condition == "after"}
-    ends.update(but, (b.name for b in activity.behaviours.values() if b.effect == "finish"))
-    choices = [b for b in activity.behaviours.values() if b.name not in ends]
-    for right, which, whom in mistakes:
-        for _ in range(right):
-            if not world.over:
-                yield expected(world)
-        behaviour = choices[which % len(choices)]
-        if not world.plan.ended(world.tracker):
-            target = people[whom % len(people)] if behaviour.attends else None
-            yield activity.action(behaviour, target, None)
-    for _ in range(200):
-        if not world.over:
-            yield expected(world)
-    assert world.over, world.plan.lacking
-
 
 # --------------------------------------------------------------------- what one game is enough for
 
@@ -367,142 +280,3 @@ def test_a_guided_world_is_a_world_and_takes_what_a_simulated_one_takes() -> Non
     assert {t.outcome.seconds for t in turns} == {31.0, 310.0}
     responses = [t.outcome.response for t in turns if t.outcome.response is not None]
     assert responses and not any(r.complied for r in responses)
-
-
-# ------------------------------------------------------------------------- whatever a teacher does
-
-
-NUMBERS_LEFT = 7
-"""Five numbers of a card touch all its lines; with fewer left than these all cards have one."""
-
-
-def check_order(world: GuidedWorld) -> None:
-    """Check that no card is seen to win while anything else lacks and can be shown."""
-    left = 75 - len(world.scene().called)
-    if world.observe().situation.user_state == "bingo" and left >= NUMBERS_LEFT:
-        lacking = [s for s in world.plan.lacking if s.stage != "end" and s.user_state != "bingo"]
-        assert not lacking, lacking
-
-
-@examples(max_examples=100)
-@given(st.integers(0, 999), st.integers(1, 8), MISTAKES)
-def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
-    seed: int, users: int, mistakes: list[Mistake]
-) -> None:
-    world = GuidedWorld(BINGO, IDS[:users], seed=seed)
-    seen: set[Situation] = set()
-    for action in mistaken(world, mistakes):
-        seen.add(world.observe().situation)
-        check_order(world)
-        world.execute(action)
-    if 75 - len(world.scene().called) >= NUMBERS_LEFT:  # endless jokes can use them up
-        assert seen == set(BINGO.situations)
-    assert world.observe().step < 60 + 8 * len(mistakes)
-
-
-@examples(max_examples=40)
-@given(st.integers(0, 99), st.integers(1, 8), MISTAKES)
-def test_mistakes_do_no_harm_to_a_made_up_activity_either(
-    seed: int, users: int, mistakes: list[Mistake]
-) -> None:
-    world = GuidedWorld(LANTERNS, IDS[:users], seed=seed)
-    for action in mistaken(world, mistakes, "draw lantern", "breathe"):  # they are numbered
-        world.execute(action)
-    assert set(world.plan.lacking) < LEAVING
-
-
-@pytest.mark.parametrize("users", [1, 4, 8])
-def test_a_teacher_who_only_calls_numbers_sees_no_win_and_one_request(users: int) -> None:
-    for seed in range(10):
-        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
-        world.execute(expected(world))
-        call = BINGO.action(BINGO.behaviours["call number"], None, None)
-        called = [turn(world, call) for _ in range(80)]
-        assert max(len(t.asking) for t in called) == 1
-        assert [len(t.outcome.numbers) for t in called] == [1] * 75 + [0] * 5
-        for before, after in pairwise(called):
-            assert before.asking <= after.asking
-        assert not any(BINGO.deck.wins(p.marked) for p in world._players.values())
-        list(play(world))  # and even now the game can be brought to an end
-
-
-@pytest.mark.parametrize("users", [1, 2, 4, 8])
-@pytest.mark.parametrize("early", [20, 40, 55])
-def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: int) -> None:
-    """Nobody asks before the greeting, and what was called by then cannot be missed any more."""
-    call = BINGO.action(BINGO.behaviours["call number"], None, None)
-    for seed in range(12):
-        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
-        for _ in range(early):
-            assert not turn(world, call).asking
-        seen = set()
-        while not world.over:
-            seen.add(world.observe().situation)
-            check_order(world)
-            world.execute(expected(world))
-        assert seen == set(BINGO.situations), seed
-        assert len(world.scene().called) <= max(early + 15, 23)
-
-
-@pytest.mark.parametrize("users", [1, 4])
-def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
-    """While somebody waits, 30 numbers are called; then their card must be as it was wanted."""
-    call = BINGO.action(BINGO.behaviours["call number"], None, None)
-    for seed in range(30):
-        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
-        while not world.scene().requests:
-            world.execute(expected(world))
-        for _ in range(30):
-            world.execute(call)
-        (asking,) = world.scene().requests
-        assert world._cue is not None
-        card = world._players[asking]
-        assert card.judged(BINGO.card_states) == world._cue.shows.name
-        assert not BINGO.deck.wins(card.called)
-
-
-def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
-    plan = Plan(LANTERNS, Random(1).random)
-    for _ in range(4):
-        order = [state.name for state in plan.visits()]
-        assert len(order) == 4 and order[-1] == "corners lit"
-        plan.tried[order[0]] += 1
-        assert [state.name for state in plan.visits()][2] == order[0]
-    assert Plan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
-
-
-def test_people_ask_even_where_cards_are_not_looked_at() -> None:
-    rules = tuple(r for r in BINGO.stage_rules if r.condition != "beside requester")
-    world = GuidedWorld(replace(BINGO, stage_rules=rules), IDS[:4], seed=1)
-    for _ in range(10):
-        world.execute(expected(world))
-    assert len(world.scene().requests) == 1
-
-
-def test_a_winner_who_was_sent_on_without_a_celebration_comes_back() -> None:
-    for seed in range(20):
-        world = GuidedWorld(BINGO, IDS[:4], seed=seed)
-        encourage = BINGO.behaviours["encourage"]
-        missed = 0
-        while not world.over:
-            state = world.observe()
-            if state.situation.user_state == "bingo" and missed < 3:
-                missed += 1
-                world.execute(BINGO.action(encourage, state.attended, None))
-            else:
-                world.execute(expected(world))
-        assert missed == 3
-        assert world.observe().step < 70
-
-
-def test_an_activity_in_which_nothing_is_drawn_is_guided_as_far_as_cards_go() -> None:
-    behaviours = {
-        name: replace(b, effect="none") if b.effect == "draw" else b
-        for name, b in BINGO.behaviours.items()
-    }
-    world = GuidedWorld(replace(BINGO, behaviours=behaviours), IDS[:4], seed=2)
-    for _ in range(60):
-        world.execute(expected(world))
-    lacking = {s.user_state for s in world.plan.lacking if s.stage != "end"}
-    assert lacking == {"bingo", "missing numbers"}
-    assert not world.scene().requests

@@ -1,0 +1,163 @@
+"""Whatever a teacher does, a guided game goes on offering what was not shown yet."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+
+from tangy_profiles.state import Situation
+from tangy_sim.guide import GuidedWorld
+from tangy_sim.plan import Plan
+from tests.sim.guided import (
+    BINGO,
+    IDS,
+    LANTERNS,
+    LEAVING,
+    MISTAKES,
+    Mistake,
+    expected,
+    mistaken,
+    play,
+    turn,
+)
+
+NUMBERS_LEFT = 7
+"""Five numbers of a card touch all its lines; with fewer left than these all cards have one."""
+
+
+def check_order(world: GuidedWorld) -> None:
+    """Check that no card is seen to win while anything else lacks and can be shown."""
+    left = 75 - len(world.scene().called)
+    if world.observe().situation.user_state == "bingo" and left >= NUMBERS_LEFT:
+        lacking = [s for s in world.plan.lacking if s.stage != "end" and s.user_state != "bingo"]
+        assert not lacking, lacking
+
+
+@examples(max_examples=100)
+@given(st.integers(0, 999), st.integers(1, 8), MISTAKES)
+def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
+    seed: int, users: int, mistakes: list[Mistake]
+) -> None:
+    world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+    seen: set[Situation] = set()
+    for action in mistaken(world, mistakes):
+        seen.add(world.observe().situation)
+        check_order(world)
+        world.execute(action)
+    if 75 - len(world.scene().called) >= NUMBERS_LEFT:  # endless jokes can use them up
+        assert seen == set(BINGO.situations)
+    assert world.observe().step < 60 + 8 * len(mistakes)
+
+
+@examples(max_examples=40)
+@given(st.integers(0, 99), st.integers(1, 8), MISTAKES)
+def test_mistakes_do_no_harm_to_a_made_up_activity_either(
+    seed: int, users: int, mistakes: list[Mistake]
+) -> None:
+    world = GuidedWorld(LANTERNS, IDS[:users], seed=seed)
+    for action in mistaken(world, mistakes, "draw lantern", "breathe"):  # they are numbered
+        world.execute(action)
+    assert set(world.plan.lacking) < LEAVING
+
+
+@pytest.mark.parametrize("users", [1, 4, 8])
+def test_a_teacher_who_only_calls_numbers_sees_no_win_and_one_request(users: int) -> None:
+    for seed in range(10):
+        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+        world.execute(expected(world))
+        call = BINGO.action(BINGO.behaviours["call number"], None, None)
+        called = [turn(world, call) for _ in range(80)]
+        assert max(len(t.asking) for t in called) == 1
+        assert [len(t.outcome.numbers) for t in called] == [1] * 75 + [0] * 5
+        for before, after in pairwise(called):
+            assert before.asking <= after.asking
+        assert not any(BINGO.deck.wins(p.marked) for p in world._players.values())
+        list(play(world))  # and even now the game can be brought to an end
+
+
+@pytest.mark.parametrize("users", [1, 2, 4, 8])
+@pytest.mark.parametrize("early", [20, 40, 55])
+def test_many_numbers_called_too_early_leave_enough_to_show(users: int, early: int) -> None:
+    """Nobody asks before the greeting, and what was called by then cannot be missed any more."""
+    call = BINGO.action(BINGO.behaviours["call number"], None, None)
+    for seed in range(12):
+        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+        for _ in range(early):
+            assert not turn(world, call).asking
+        seen = set()
+        while not world.over:
+            seen.add(world.observe().situation)
+            check_order(world)
+            world.execute(expected(world))
+        assert seen == set(BINGO.situations), seed
+        assert len(world.scene().called) <= max(early + 15, 23)
+
+
+@pytest.mark.parametrize("users", [1, 4])
+def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
+    """While somebody waits, 30 numbers are called; then their card must be as it was wanted."""
+    call = BINGO.action(BINGO.behaviours["call number"], None, None)
+    for seed in range(30):
+        world = GuidedWorld(BINGO, IDS[:users], seed=seed)
+        while not world.scene().requests:
+            world.execute(expected(world))
+        for _ in range(30):
+            world.execute(call)
+        (asking,) = world.scene().requests
+        assert world._cue is not None
+        card = world._players[asking]
+        assert card.judged(BINGO.card_states) == world._cue.shows.name
+        assert not BINGO.deck.wins(card.called)
+
+
+def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
+    plan = Plan(LANTERNS, Random(1).random)
+    for _ in range(4):
+        order = [state.name for state in plan.visits()]
+        assert len(order) == 4 and order[-1] == "corners lit"
+        plan.tried[order[0]] += 1
+        assert [state.name for state in plan.visits()][2] == order[0]
+    assert Plan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
+
+
+def test_people_ask_even_where_cards_are_not_looked_at() -> None:
+    rules = tuple(r for r in BINGO.stage_rules if r.condition != "beside requester")
+    world = GuidedWorld(replace(BINGO, stage_rules=rules), IDS[:4], seed=1)
+    for _ in range(10):
+        world.execute(expected(world))
+    assert len(world.scene().requests) == 1
+
+
+def test_a_winner_who_was_sent_on_without_a_celebration_comes_back() -> None:
+    for seed in range(20):
+        world = GuidedWorld(BINGO, IDS[:4], seed=seed)
+        encourage = BINGO.behaviours["encourage"]
+        missed = 0
+        while not world.over:
+            state = world.observe()
+            if state.situation.user_state == "bingo" and missed < 3:
+                missed += 1
+                world.execute(BINGO.action(encourage, state.attended, None))
+            else:
+                world.execute(expected(world))
+        assert missed == 3
+        assert world.observe().step < 70
+
+
+def test_an_activity_in_which_nothing_is_drawn_is_guided_as_far_as_cards_go() -> None:
+    behaviours = {
+        name: replace(b, effect="none") if b.effect == "draw" else b
+        for name, b in BINGO.behaviours.items()
+    }
+    world = GuidedWorld(replace(BINGO, behaviours=behaviours), IDS[:4], seed=2)
+    for _ in range(60):
+        world.execute(expected(world))
+    lacking = {s.user_state for s in world.plan.lacking if s.stage != "end"}
+    assert lacking == {"bingo", "missing numbers"}
+    assert not world.scene().requests
