@@ -116,7 +116,7 @@ class EarlierPeople:
     @property
     def words(self) -> str:
         """Its name, with whom it begins from."""
-        return f"{self.inner.words}, beginning from earlier people"
+        return f"{self.inner.words} from earlier people"
 
     @property
     def forgets(self) -> bool:
@@ -164,8 +164,8 @@ class Forgetting:
     @property
     def words(self) -> str:
         """Its name, with how fast it forgets."""
-        every = "day" if self.daily else "interaction"
-        return f"{self.inner.words}, forgetting {100 * (1 - self.keep):.3g}% with each {every}"
+        every = "a day" if self.daily else "an interaction"
+        return f"{self.inner.words}, forgetting {100 * (1 - self.keep):.3g}% {every}"
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
         """Do as the inner one does."""

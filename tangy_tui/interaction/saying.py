@@ -32,7 +32,7 @@ def _what_works(record: Record) -> str:
         if not responses:
             return f"nothing is known of {name} yet; {best} worked best with earlier people"
         others = sum(b.complied for b in record.beliefs.values())
-        return f"{best} is still to be tried with {name}: the others worked {others} of {responses}"
+        return f"{best} is yet to be tried with {name}: others {others} of {responses}"
     if record.settled != best:
         return f"{best} may work best with {name}: {tally(belief)} so far"
     if belief.mean < SELDOM:
@@ -47,7 +47,7 @@ def tally(belief: Beta) -> str:
 
 def method_words(record: Record) -> str:
     """Say how the next strategy is chosen, and for whom that holds."""
-    whose = "chosen for this person" if record.known.own else "as the activity has it"
+    whose = "for this person" if record.known.own else "as the activity has it"
     return f"{record.known.method.words} ({whose})"
 
 
@@ -60,7 +60,7 @@ def prior_words(prior: Beliefs) -> str:
     ]
     if not lent:
         return "begins from nothing: every strategy alike"
-    return "begins as earlier people were: " + ", ".join(lent)
+    return "begins with what earlier people lend: " + ", ".join(lent)
 
 
 def entry_words(entry: Entry) -> str:

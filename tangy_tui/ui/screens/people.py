@@ -1,57 +1,244 @@
-"""The people screen: what is believed about which persuasive strategy works with whom."""
+"""The people screen: what works with whom, how sure that is, and what staff say about it."""
 
 from __future__ import annotations
 
-from random import Random
+from collections.abc import Callable
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.widgets import Static
+from textual.containers import Container
 
+from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.saying import change_words, entry_words, on_day
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.panels import key_line, panel
-from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.answer import AnswerDialog
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.person_lines import (
+    history_lines,
+    people_lines,
+    strategy_hint,
+    strategy_lines,
+)
+from tangy_tui.ui.widgets.choice_list import ChoiceList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+NOT_COMPLIANCE = "that was not compliance"
 
 
 class PeopleScreen(TangyScreen[None]):
-    """Everybody's posteriors."""
+    """Everybody in a sentence; of the chosen person the strategies and the history."""
 
     CSS_PATH = "people.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
     HELP = (
-        "For each person and way of speaking: how often they complied of how often it was "
-        "tried, the curve of what Tangy believes, and the probability that it is the best. "
+        "Above, everybody with what works in a sentence. Below, of the person that is chosen, "
+        "each way of asking and the history game by game. tab goes from one panel to the next. "
+        "Every change is asked about first, and u takes the last one back. "
         "Names are given on the command line: tangy people rename."
     )
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,enter", "leave", "Back")]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("v", "void", "The chosen response does not count"),
+        Binding("f", "feedback", "Say what the person did about the chosen request"),
+        Binding("x", "switch", "Switch the chosen strategy off or on"),
+        Binding("m", "method", "Choose how Tangy persuades this person"),
+        Binding("u", "undo", "Take the last change back"),
+        Binding("escape", "leave", "Back"),
+    ]
 
     def __init__(self, house: House, leave_after: float | None = None) -> None:
         """Make the screen; `leave_after` so many seconds it closes by itself."""
         super().__init__()
         self._house = house
         self._leave_after = leave_after
+        self._feedback = house.memory().feedback
+        self._records: dict[str, Record] = {}
 
     def compose(self) -> ComposeResult:
-        """Lay out the posteriors."""
-        yield StatusLine(Status(mode="people"))
-        yield Static(
-            "How often each way of speaking has worked (complied / tried):",
-            id="summary",
-            markup=False,
+        """Lay out the three panels."""
+        yield StatusLine(Status(mode="people", note=self._house.activity.title))
+        with Container(id="body"):
+            with Container(id="left"):
+                yield panel(ChoiceList("People", PEOPLE_HELP, id="people"))
+                yield panel(ChoiceList("What works", STRATEGIES_HELP, id="strategies"))
+            yield panel(ChoiceList("History", HISTORY_HELP, id="history"))
+        yield key_line(
+            ("tab", "panel"),
+            ("v", "void"),
+            ("f", "answer"),
+            ("x", "off/on"),
+            ("m", "method"),
+            ("u", "undo"),
+            ("esc", "back"),
+            ("?", "help"),
         )
-        yield panel(Posteriors())
-        yield key_line(("up down", "scroll"), ("esc", "back"), ("?", "help"))
 
     def on_mount(self) -> None:
-        """Fill them from the log."""
-        posteriors = self.query_one(Posteriors)
-        posteriors.show(self._house.persuasion(Random(0)).beliefs, self._house.names, None)
-        posteriors.focus()
+        """Fill the panels from the log."""
+        self._read()
+        self._list("people").focus()
         if self._leave_after is not None:
             self.set_timer(self._leave_after, self.action_leave)
+
+    def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
+        """Show another person, or what another strategy does."""
+        if event.choices.id == "people":
+            self._show_person()
+        elif event.choices.id == "strategies":
+            self._show_hint()
+
+    def action_void(self) -> None:
+        """Ask whether the chosen response is not to count."""
+        entry = self._entry()
+        if entry is None or not entry.counts:
+            self._say("Choose a response that counts: tab goes to the history, arrows choose.")
+            return
+        person = self._record.person
+
+        def void() -> None:
+            self._feedback.void(person.id, entry.seq, NOT_COMPLIANCE)
+
+        self._ask(
+            "Shall this response no longer count?",
+            f"{entry.strategy}: {person.name} {entry_words(entry)}, {on_day(entry.at)}.",
+            f"{NOT_COMPLIANCE}: leave it out",
+            void,
+        )
+
+    def action_feedback(self) -> None:
+        """Ask what the person did about the chosen request."""
+        entry = self._entry()
+        if entry is None or not entry.open:
+            self._say("Choose a request without an answer; void a wrong answer first, with v.")
+            return
+        person = self._record.person
+
+        def answered(complied: bool | None) -> None:
+            if complied is not None:
+                self._do(
+                    lambda: self._feedback.give(person.id, entry.strategy, complied, entry.seq)
+                )
+
+        detail = f"The request with {entry.strategy}, {on_day(entry.at)}."
+        self.app.push_screen(AnswerDialog(f"Did {person.name} comply?", detail), answered)
+
+    def action_switch(self) -> None:
+        """Ask whether the chosen strategy is to be used with this person."""
+        strategy, record = str(self._list("strategies").chosen), self._record
+        on = strategy in record.known.off
+        among = self._house.activity.strategies
+        state = "on again" if on else "off"
+        self._ask(
+            f"Switch {strategy} {state} for {record.person.name}?",
+            "What Tangy has learnt of it stays.",
+            f"switch it {state}",
+            lambda: self._feedback.switch(record.person.id, strategy, on, among),
+        )
+
+    def action_method(self) -> None:
+        """Choose how Tangy persuades this person."""
+        person, known = self._record.person, self._record.known
+        default = self._house.activity.persuasion
+
+        def take(answer: MethodChoice | None) -> None:
+            if answer is not None:
+                self._do(lambda: self._feedback.choose_method(person.id, answer.chosen))
+
+        self.app.push_screen(MethodDialog(person.name, known.chosen, known.own, default), take)
+
+    def action_undo(self) -> None:
+        """Ask whether the last change to this person is to be taken back."""
+        person = self._record.person
+        change = self._feedback.last_change(person.id)
+        if change is None:
+            self._say(f"There is nothing to take back for {person.name}.")
+            return
+        self._ask(
+            f"Take this back for {person.name}?",
+            f"What was said: {change_words(change)}.",
+            "take it back",
+            lambda: self._feedback.undo(person.id),
+        )
 
     def action_leave(self) -> None:
         """Go back."""
         self.dismiss(None)
+
+    @property
+    def _record(self) -> Record:
+        """What is told of the chosen person."""
+        return self._records[str(self._list("people").chosen)]
+
+    def _list(self, id: str) -> ChoiceList:
+        return self.query_one(f"#{id}", ChoiceList)
+
+    def _entry(self) -> Entry | None:
+        """Return the chosen line of the history."""
+        chosen = self._list("history").chosen
+        return next((entry for entry in self._record.history if entry.seq == chosen), None)
+
+    def _read(self) -> None:
+        """Read everything from the log again."""
+        records = self._house.records()
+        self._records = {record.person.id: record for record in records}
+        self._list("people").show(lambda width, _: people_lines(records, width))
+        self._show_person()
+
+    def _show_person(self) -> None:
+        record = self._record
+        strategies, history = self._list("strategies"), self._list("history")
+        strategies.border_title = clean(f"What works with {record.person.name}").replace("[", "\\[")
+        strategies.set_class(record.known.chosen.prior == "people", "-lent")
+        strategies.show(lambda width, height: strategy_lines(record, width, height))
+        history.show(lambda width, _: history_lines(record, width))
+        self._show_hint()
+
+    def _show_hint(self) -> None:
+        strategies = self._list("strategies")
+        hint = strategy_hint(self._house.activity.strategies, strategies.chosen)
+        strategies.border_subtitle = hint.replace("[", "\\[")
+
+    def _ask(self, question: str, detail: str, yes: str, change: Callable[[], object]) -> None:
+        """Make a change once it is confirmed."""
+
+        def answered(sure: bool | None) -> None:
+            if sure:
+                self._do(change)
+
+        dialog = ConfirmDialog(question, detail, yes=yes, no="leave it as it is")
+        self.app.push_screen(dialog, answered)
+
+    def _do(self, change: Callable[[], object]) -> None:
+        """Make a change and show what follows from it, or say why it cannot be made."""
+        try:
+            change()
+        except TangyError as error:
+            self._say(str(error), bad=True)
+        self._read()
+
+    def _say(self, sentence: str, *, bad: bool = False) -> None:
+        severity = "error" if bad else "information"
+        self.notify(clean(sentence), severity=severity, markup=False)  # type: ignore[arg-type]
+
+
+PEOPLE_HELP = (
+    "Everybody, with what works and on how many responses that rests. It is said to work when it "
+    "is at least 90% probable that no other way of asking is better. Up and down choose a person."
+)
+STRATEGIES_HELP = (
+    "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
+    "often the person complied of how often it was tried, the mean, the interval in which the "
+    "truth lies with 90%, and the probability of being the best. Then how the next one is chosen, "
+    "and where the beliefs began. x switches the chosen one off for this person, or on again."
+)
+HISTORY_HELP = (
+    "What was asked and what came of it, the newest game first. v voids the chosen response; what "
+    "is void, or has no response yet, can be answered with f."
+)

@@ -11,10 +11,10 @@ from textual.binding import Binding, BindingType
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tangy_profiles.beliefs import Beliefs, Beta, probability_best
+from tangy_profiles.beliefs import Beliefs, Beta, leading, probability_best, settled
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit
+from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit, shorten
 
 BLOCKS = " ▁▂▃▄▅▆▇█"
 LOWEST_PEAK = 3.0
@@ -40,7 +40,8 @@ def curve(belief: Beta, width: int) -> str:
 class Posteriors(ScrollView, can_focus=True):
     """For each person and strategy: curve, times complied of times asked, mean and P(best).
 
-    The strategy that is most probably the best has a mark. Only lines that changed are drawn.
+    The strategy that alone is most probably the best has a mark, and what is settled is said beside
+    the name. Only lines that changed are drawn.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
@@ -54,7 +55,8 @@ class Posteriors(ScrollView, can_focus=True):
     HELP = (
         "What Tangy believes of each person: how probable it is that they do what they are asked "
         "for, with each way of asking. The curve runs from 0 (left) to 1 (right); 7/9 means done "
-        "7 times of 9; then the mean, and the probability that this way is the best of all."
+        "7 times of 9; then the mean, and the probability that this way is the best of all. "
+        "It is settled when that is at least .9."
     )
 
     def __init__(
@@ -117,7 +119,9 @@ class Posteriors(ScrollView, can_focus=True):
                     marks[len(rows)] = "now"
                 rows.append(self._compact(person, name, profile, width))
                 continue
-            rows.append(((fit(name, width), "person"),))
+            known = settled(self._best[person])
+            mark = "" if known is None else f"  settled: {clean(known)}"
+            rows.append(((shorten(name, width - len(mark)), "person"), (mark, "good")))
             for strategy, belief in profile.items():
                 if self._highlight == (person, strategy):
                     marks[len(rows)] = "now"
@@ -129,13 +133,13 @@ class Posteriors(ScrollView, can_focus=True):
     def _line(self, person: str, strategy: str, belief: Beta, width: int) -> Row:
         """One strategy: name, curve, counts, mean, P(best)."""
         best = self._best[person]
-        leads = best[strategy] == max(best.values()) and belief.trials > 0
+        leads = leading(best) == strategy and belief.trials > 0
         label = min(12, max(cell_len(s) for s in self._beliefs[person]))
         word = " best " if width >= WORDS_FROM else ""
         tail: tuple[Span, ...] = (
             (f" {_counts(belief):>6}", "text"),
-            (f" {_share(belief.mean)}", "strong"),
-            (f" {word}{_share(best[strategy])}", "good" if leads else "dim"),
+            (f" {share(belief.mean)}", "strong"),
+            (f" {word}{share(best[strategy])}", "good" if leads else "dim"),
             ("★" if leads else " ", "good"),
         )
         used = 2 + label + sum(cell_len(text) for text, _ in tail)
@@ -155,9 +159,9 @@ class Posteriors(ScrollView, can_focus=True):
         if self._highlight is not None and self._highlight[0] == person:
             strategy = self._highlight[1]
         belief = profile[strategy]
-        leads = best[strategy] == max(best.values()) and belief.trials > 0
+        leads = leading(best) == strategy and belief.trials > 0
         label = min(10, max(cell_len(s) for s in profile))
-        tail = f" {_counts(belief)} {_share(belief.mean)}"
+        tail = f" {_counts(belief)} {share(belief.mean)}"
         mark = "★" if leads else " "
         room = width - label - cell_len(tail) - 3
         points = min(10, max(0, room - 6))
@@ -172,9 +176,9 @@ class Posteriors(ScrollView, can_focus=True):
 
 
 def _counts(belief: Beta) -> str:
-    return f"{round(belief.alpha - 1)}/{belief.trials}"
+    return f"{belief.complied}/{belief.trials}"
 
 
-def _share(value: float) -> str:
+def share(value: float) -> str:
     """Write a share in three characters, as papers do: .87, and 1.0 when it is as good as sure."""
     return "1.0" if value >= 0.995 else f".{round(value * 100):02d}"

@@ -1,0 +1,61 @@
+"""What a person did, asked afterwards: yes, no, or still not known."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+
+
+class AnswerDialog(Dialog[bool | None]):
+    """Asks whether a person complied: y, n, or esc to leave it open. Keys typed ahead do not."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("y", "nothing", "They complied"),
+        Binding("n", "nothing", "They did not"),
+        Binding("escape", "nothing", "Leave it open"),
+    ]
+    HELP = (
+        "Complied means: they did what they were asked, in time, after it was said this way. "
+        "Press y if they did, n if they did not, and esc to leave it open."
+    )
+
+    def __init__(self, question: str, detail: str = "", *, clock: Clock | None = None) -> None:
+        super().__init__(None)
+        self._question = clean(question)
+        self._detail = clean(detail)
+        self._clock = clock
+        self._keys = FreshKeys()
+
+    def compose(self) -> ComposeResult:
+        """Lay out question, detail and keys."""
+        parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
+        if self._detail:
+            parts += ["\n\n", self._detail]
+        for key, word in (("Y", "they complied"), ("N", "they did not"), ("esc", "leave it open")):
+            parts += ["\n\n" if key == "Y" else "\n", (f"{key:<3}", "$primary bold"), f"  {word}"]
+        yield Static(Content.assemble(*parts), id="answer", classes="box")
+
+    def on_mount(self) -> None:
+        """Take note of the moment from which keys count."""
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+
+    def on_key(self, event: events.Key) -> None:
+        """Answer by y, n or esc."""
+        if not self._keys.take(event):
+            return
+        if event.key in ("y", "Y", "n", "N"):
+            self.answer(event.key in ("y", "Y"))
+        elif event.key == "escape":
+            self.answer(None)
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""

@@ -1,0 +1,131 @@
+"""How a person's record is written on lines of a panel: people, strategies, history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.cells import cell_len
+
+from tangy_profiles.beliefs import Beta
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.record import Record
+from tangy_tui.interaction.saying import (
+    entry_words,
+    method_words,
+    on_day,
+    prior_words,
+    sentence,
+    tally,
+)
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.widgets.choice_list import Line
+from tangy_tui.ui.widgets.posteriors import BLOCKS, LOWEST_PEAK, share
+from tangy_tui.ui.widgets.rows import Row, Span, fit, shorten
+from tangy_tui.ui.widgets.wrapping import wrap
+
+LONGEST_CURVE = 40
+HIGHEST_CURVE = 5
+COUNTS = 9  # columns: "40 of 100"
+STATE = 13
+
+
+def people_lines(records: Sequence[Record], width: int) -> list[Line]:
+    """Write one sentence for each person, the name standing out."""
+    lines = []
+    for record in records:
+        words = shorten(clean(sentence(record)), width)
+        before, name, after = words.partition(clean(record.person.name))
+        lines.append(Line(((before, "text"), (name, "person"), (after, "text")), record.person.id))
+    return lines
+
+
+def strategy_lines(record: Record, width: int, height: int) -> list[Line]:
+    """Write each strategy with curve, counts, mean, interval and P(best); then where it is from.
+
+    Where the panel is high, so are the curves.
+    """
+    label = min(12, max(cell_len(clean(s)) for s in record.beliefs))
+    points = max(6, min(LONGEST_CURVE, width - label - COUNTS - STATE - 22))
+    tall = max(1, min(HIGHEST_CURVE, (height - 4) // len(record.beliefs) - 1))
+    head = f"{fit('0 to 1', points)} {'complied':>{COUNTS}} mean  90%     best"
+    lines = [Line(((" " * (label + 1), "dim"), (shorten(head, width - label - 1), "dim")))]
+    for strategy, belief in record.beliefs.items():
+        *above, last = curve_lines(belief, points, tall)
+        lead = (" " * (label + 1), "text")
+        lines += [Line((lead, (part, "curve")), strategy) for part in above]
+        lines.append(Line(_strategy(record, strategy, label, last), strategy))
+        if tall > 1:
+            lines.append(Line(()))
+    for words in (method_words(record), prior_words(record.known.prior)):
+        lines += [Line(((line, "dim"),)) for line in wrap(clean(words), width)]
+    return lines
+
+
+def curve_lines(belief: Beta, width: int, height: int) -> list[str]:
+    """Draw the density from 0 (left) to 1 (right) on so many lines, the top one first."""
+    density = belief.density(width)
+    peak = max(LOWEST_PEAK, *density)
+    full = len(BLOCKS) - 1
+    levels = [round(value / peak * full * height) for value in density]
+    return [
+        "".join(BLOCKS[min(full, max(0, level - full * below))] for level in levels)
+        for below in range(height - 1, -1, -1)
+    ]
+
+
+def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
+    belief = record.beliefs[strategy]
+    low, high = belief.interval()
+    off = strategy in record.known.off
+    state, ink = "", "text"
+    if off:
+        state, ink = "off", "warn"
+    elif strategy == record.settled:
+        state, ink = "★ settled", "good"
+    elif strategy == record.leading and belief.trials:
+        state, ink = "★ so far", "good"
+    spans: list[Span] = [
+        (fit(clean(strategy), label), "dim" if off else "text"),
+        (" ", "text"),
+        (drawn, "curve"),
+        (f" {tally(belief):>{COUNTS}}", "text"),
+        (f"  {share(belief.mean)}", "strong"),
+        (f" {share(low)}-{share(high)}", "text"),
+        (f"  {share(record.best[strategy])}", ink if ink == "good" else "dim"),
+        (f" {state}", ink),
+    ]
+    return tuple(spans)
+
+
+def history_lines(record: Record, width: int) -> list[Line]:
+    """Write the history, the newest game first, and within a game the newest response first."""
+    if not record.games:
+        return [Line((("No request was put to this person yet.", "dim"),))]
+    strategy = min(12, max(cell_len(clean(e.strategy)) for e in record.history))
+    digits = len(str(len(record.history)))
+    lines = []
+    for game in reversed(record.games):
+        heading = "game of" if game.id is not None else "outside of a game, from"
+        lines.append(Line(((f"{heading} {on_day(game.begun)}", "dim"),)))
+        for entry in reversed(game.entries):
+            lines.append(Line(_entry(entry, digits, strategy, width), entry.seq))
+    return lines
+
+
+def _entry(entry: Entry, digits: int, strategy: int, width: int) -> Row:
+    local = entry.at.astimezone()
+    front = f" {entry.number:>{digits}}  {local:%H:%M}  "
+    words = shorten(clean(entry_words(entry)), width - cell_len(front) - strategy - 2)
+    ink = ("good" if entry.complied else "text") if entry.counts else "dim"
+    return (
+        (front, "dim"),
+        (fit(clean(entry.strategy), strategy), "text" if entry.counts else "dim"),
+        ("  ", "text"),
+        (words, "warn" if entry.open and entry.complied is None else ink),
+    )
+
+
+def strategy_hint(strategies: Mapping[str, str], chosen: object) -> str:
+    """Say what the chosen strategy does, in the words of the activity."""
+    words = strategies.get(str(chosen), "")
+    return clean(f"{chosen}: {words}") if words else ""

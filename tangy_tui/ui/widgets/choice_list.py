@@ -1,0 +1,97 @@
+"""A panel with lines to choose among, and lines between them that are only to be read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from typing import NamedTuple
+
+from textual.message import Message
+
+from tangy_tui.ui.widgets.choosable import Choosable
+from tangy_tui.ui.widgets.rows import Row
+
+
+class Line(NamedTuple):
+    """One line; `key` is what it stands for, None where it cannot be chosen.
+
+    Lines with the same key stand together and are chosen together.
+    """
+
+    row: Row
+    key: Hashable | None = None
+
+
+Lines = Callable[[int, int], Sequence[Line]]
+"""Writes the lines for a panel of so many columns and lines."""
+
+
+class ChoiceList(Choosable):
+    """Lines with a cursor that is always on one of the choices, as long as there are any.
+
+    The cursor stays on its key when the lines are written anew. `Moved` tells of every move.
+    """
+
+    class Moved(Message):
+        """The cursor is on another line."""
+
+        def __init__(self, choices: ChoiceList) -> None:
+            super().__init__()
+            self.choices = choices
+
+        @property
+        def control(self) -> ChoiceList:
+            """The list that it moved in."""
+            return self.choices
+
+    def __init__(self, title: str, help: str, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self.border_title = title
+        self.HELP = help  # type: ignore[misc] # of each list its own
+        self._write: Lines = lambda width, height: ()
+        self._keys: list[Hashable] = []
+        self._at: dict[Hashable, range] = {}
+
+    @property
+    def chosen(self) -> Hashable | None:
+        """The key of the line that the cursor is on."""
+        return None if self._cursor is None else self._keys[self._cursor]
+
+    def show(self, write: Lines, key: Hashable | None = None) -> None:
+        """Show other lines, the cursor on a key (None: where it was)."""
+        self._write = write
+        self._lay_out(self.chosen if key is None else key)
+
+    def action_choose(self, by: int) -> None:
+        """Move the cursor, and tell of it."""
+        before = self._cursor
+        super().action_choose(by)
+        if self._cursor != before:
+            self.post_message(self.Moved(self))
+
+    def _lay_out(self, key: Hashable | None) -> None:
+        lines = self._write(max(1, self._rows.width), self._rows.height)
+        self._at = {}
+        for y, line in enumerate(lines):
+            if line.key is not None:
+                self._at[line.key] = range(self._at.get(line.key, range(y, y)).start, y + 1)
+        self._keys = list(self._at)
+        if key in self._keys:
+            self._cursor = self._keys.index(key)
+        else:
+            last = len(self._keys) - 1
+            self._cursor = None if last < 0 else min(self._cursor or 0, last)
+        if self.is_attached and self._rows.width > 0:
+            self._rows.put([line.row for line in lines])
+            self._mark()
+
+    def _show(self) -> None:
+        self._lay_out(self.chosen)
+
+    def _length(self) -> int:
+        return len(self._keys)
+
+    def _places(self, index: int) -> range:
+        return self._at[self._keys[index]]
+
+    def _tell(self, index: int) -> None:
+        self.post_message(self.Moved(self))

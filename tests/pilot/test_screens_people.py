@@ -1,0 +1,280 @@
+"""The people screen: what works with whom in words and numbers, and what staff can say about it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.persuading import Persuading
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.interaction.feedback import AWAITED, Feedback
+from tangy_tui.ui.dialogs.answer import AnswerDialog
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.method import MethodDialog
+from tangy_tui.ui.screens.people import PeopleScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.themes import LIGHT
+from tangy_tui.ui.widgets.choice_list import ChoiceList
+from tests.pilot.conftest import LARGE, SMALL, Run, TangyPilot
+
+NOW = datetime(2026, 5, 22, 15, tzinfo=UTC)
+
+GAMES = (
+    (24, {"user1": "neutral- praise+ praise+ suggestion-", "user2": "scarcity-"}),
+    (22, {"user1": "praise+ praise+ neutral- scarcity- praise-", "user2": "praise-"}),
+    (21, {"user1": "praise+ praise- praise+ neutral- praise+ scarcity- suggestion-"}),
+    (2, {"user3": "neutral+", "user2": "suggestion+ suggestion?"}),
+)
+"""How many days ago, and what came of each request: complied (+), did not (-), not known (?)."""
+
+
+@pytest.fixture
+def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
+    """A house in which four games were played, the last one two days ago."""
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    at = [NOW]
+    with Store.open(tmp_path / "data", now=lambda: at[0]) as store:
+        store.rename("user1", "Rosa")
+        for number, (days, people) in enumerate(GAMES):
+            at[0] = NOW - timedelta(days=days, minutes=60 * number)
+            store.append("game begun", {"game": f"g{number}", "people": list(people)})
+            for person, told in people.items():
+                for one in told.split():
+                    at[0] += timedelta(minutes=7)
+                    put(store, f"g{number}", person, one[:-1], one[-1])
+    opened = House(tmp_path / "data", now=lambda: NOW)
+    yield opened
+    opened.close()
+    monkeypatch.undo()
+    time.tzset()
+
+
+def put(store: Store, game: str, person: str, strategy: str, came: str) -> None:
+    kind = AWAITED if came == "?" else "response"
+    complied = {"+": True, "-": False, "?": None}[came]
+    store.append(kind, {"game": game}, person=person, strategy=strategy, complied=complied)
+
+
+def complied(house: House, person: str, strategy: str) -> tuple[int, int]:
+    """Return how often a person complied with a strategy, of how many times, by the log."""
+    return house.store.responses().get((person, strategy), (0, 0))
+
+
+def line_with(pilot: TangyPilot, *words: str) -> str:
+    return next(line for line in pilot.lines() if all(word in line for word in words))
+
+
+# ------------------------------------------------------------------------------ what it says
+
+
+async def test_it_says_in_words_what_works_with_whom(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        text = pilot.text()
+        assert "praise works with Rosa: 7 of 9, last seen 3 weeks ago" in text
+        assert "suggestion may work best with User 2: 1 of 1 so far, last seen 2 days ago" in text
+        assert "neutral may work best with User 3: 1 of 1 so far, last seen 2 days ago" in text
+        assert "nothing is known of User 4 yet" in text
+
+
+async def test_it_shows_counts_mean_interval_best_and_settled(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        praise = line_with(pilot, "praise", "7 of 9 ")
+        assert "  .73 .49-.91" in praise  # Beta(8, 3)
+        assert "settled" in praise
+        assert "★" not in line_with(pilot, "neutral", "0 of 3")
+        assert "Thompson sampling (as the activity has it)" in pilot.text()
+        assert "begins from nothing" in pilot.text()
+
+
+async def test_the_history_stands_game_by_game_with_its_times(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house), size=LARGE) as pilot:
+        history = [line for line in pilot.lines() if "game of" in line]
+        assert [line.split("game of ")[1].rstrip(" │┃█▅") for line in history] == [
+            "1 May 2026 13:00", "30 Apr 2026 14:00", "28 Apr 2026 15:00",
+        ]  # fmt: skip
+        await pilot.press("down")
+        await pilot.pause()
+        assert "no response yet" in line_with(pilot, "suggestion", "no response")
+
+
+async def test_another_person_is_chosen_with_the_arrows(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("down", "down", "down")
+        await pilot.pause()
+        assert "What works with User 4" in pilot.text()
+        assert "No request was put to this person yet." in pilot.text()
+        assert "★" not in pilot.text(), "equal is not best"
+
+
+# --------------------------------------------------------------------------- what it changes
+
+
+async def test_a_response_is_voided_and_taken_back(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("v")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await pilot.press("n")
+        assert complied(house, "user1", "suggestion") == (0, 2)
+        await pilot.press("v", "y")
+        await pilot.pause()
+        assert complied(house, "user1", "suggestion") == (0, 1)
+        assert "void: that was not compliance" in pilot.text()
+        await pilot.press("u")
+        await pilot.pause()
+        assert "that a response to suggestion is void" in pilot.text()
+        await pilot.press("y")
+        await pilot.pause()
+        assert complied(house, "user1", "suggestion") == (0, 2)
+        assert "void:" not in pilot.text()
+
+
+async def test_what_is_void_does_not_void_again_and_can_be_answered(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house), notifications=True) as pilot:
+        await pilot.press("v", "y")
+        await pilot.pause()
+        await pilot.press("v")
+        await pilot.pause()
+        assert "Choose a response that counts" in pilot.text()
+        await pilot.press("f")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, AnswerDialog)
+        await pilot.press("y")
+        await pilot.pause()
+        assert complied(house, "user1", "suggestion") == (1, 1)
+        assert "said later" in pilot.text()
+
+
+async def test_a_request_without_a_response_is_answered_late(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("down", "f")
+        await pilot.pause()
+        assert "Did User 2 comply?" in pilot.text()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert complied(house, "user2", "suggestion") == (1, 0)
+        await pilot.press("f", "n")
+        await pilot.pause()
+        assert complied(house, "user2", "suggestion") == (1, 1)
+        assert "answered later" in pilot.text()
+
+
+async def test_a_strategy_is_switched_off_and_on_again(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("tab", "down", "down", "down", "x")
+        await pilot.pause()
+        assert "Switch scarcity off for Rosa?" in pilot.text()
+        await pilot.press("y")
+        await pilot.pause()
+        assert house.memory().recall("user1").off == {"scarcity"}
+        assert line_with(pilot, "scarcity", "0 of 2").rstrip("│┃ ").endswith("off")
+        await pilot.press("x", "y")
+        await pilot.pause()
+        assert house.memory().recall("user1").off == frozenset()
+
+
+async def test_the_last_strategy_stays_on(run: Run, house: House) -> None:
+    for strategy in ("praise", "suggestion", "scarcity"):
+        Feedback(house.store).switch("user1", strategy, False, house.activity.strategies)
+    async with run(PeopleScreen(house), notifications=True) as pilot:
+        await pilot.press("x", "y")
+        await pilot.pause()
+        assert "neutral is the last one left" in pilot.text()
+
+
+async def test_another_method_is_chosen_and_the_activitys_again(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("m")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, MethodDialog)
+        await pilot.press("1", "2", "3", "3")
+        await pilot.pause()
+        for words in ("Bayes-UCB: tries less", "earlier people", "10% with each interaction"):
+            assert words in pilot.text()
+        await pilot.press("n")
+        await pilot.pause()
+        assert house.memory().feedback.method("user1") is None
+        await pilot.press("m", "1", "2", "y")
+        await pilot.pause()
+        assert house.memory().feedback.method("user1") == Persuading("bayes-ucb", "people")
+        assert "Bayes-UCB from earlier people" in pilot.text()
+        assert "(for this person)" in pilot.text()
+        assert "begins with what earlier people lend" in pilot.text()
+        await pilot.press("m", "d", "y")
+        await pilot.pause()
+        assert house.memory().feedback.method("user1") is None
+
+
+async def test_with_nothing_said_there_is_nothing_to_take_back(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house), notifications=True) as pilot:
+        await pilot.press("u")
+        await pilot.pause()
+        assert "nothing to take back" in " ".join(pilot.text().split())
+
+
+async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("tab", "tab", "down", "down")
+        await pilot.pause()
+        history = pilot.app.screen.query_one("#history", ChoiceList)
+        before = history.chosen
+        await pilot.press("v", "y")
+        await pilot.pause()
+        assert history.chosen == before
+        assert pilot.app.screen.focused is history
+
+
+async def test_names_that_look_like_markup_are_only_names(run: Run, house: House) -> None:
+    house.store.rename("user1", "[/b] {x} [@click=quit]Jo")
+    house.people = (type(house.people[0])("user1", "[/b] {x} [@click=quit]Jo"), *house.people[1:])
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("tab", "x")
+        await pilot.pause()
+        assert "[@click=quit]Jo" in pilot.text()
+
+
+# -------------------------------------------------------------------------------- its looks
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_it_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(PeopleScreen(house), size=size) as pilot:
+        picture(pilot.app)
+
+
+async def test_how_it_looks_in_the_light_theme_with_a_prior(
+    run: Run, house: House, picture: Callable[[App[None]], None]
+) -> None:
+    feedback = Feedback(house.store)
+    feedback.choose_method("user2", Persuading("bayes-ucb", "people", 0.98))
+    feedback.switch("user2", "scarcity", False, house.activity.strategies)
+    feedback.void("user2", feedback.history("user2")[1].seq, "that was not compliance")
+    async with run(PeopleScreen(house)) as pilot:
+        pilot.app.theme = LIGHT.name
+        await pilot.press("down")
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_how_the_choice_of_a_method_looks(
+    run: Run, house: House, picture: Callable[[App[None]], None]
+) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press("m", "1")
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_in_ascii_every_line_is_ascii(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house), kind=TerminalKind(ascii=True)) as pilot:
+        assert pilot.app._filters[-1].ascii  # type: ignore[attr-defined]
+        assert "settled" in pilot.text()
