@@ -183,10 +183,7 @@ class Teaching:
             TangyError: the demonstration that is to be shown again cannot be.
         """
         if self._first is not None:
-            events = self._begin_again(self._first)
-            if isinstance(events[0], Refused):
-                raise TangyError(events[0].reason)
-            return events
+            return self.check()
         if resume:
             entries = read_library(self._store, self.activity.name).entries.values()
             for entry in reversed(entries):
@@ -207,6 +204,17 @@ class Teaching:
                         *self._begin_new(),
                     ]
         return self._begin_new()
+
+    def check(self) -> list[TeachingEvent]:
+        """Try what is to be shown again, before a screen is opened for it.
+
+        Raises:
+            TangyError: it cannot be shown again; says why.
+        """
+        events = self._begin_again(self._first) if self._first is not None else []
+        if events and isinstance(events[0], Refused):
+            raise TangyError(events[0].reason)
+        return events
 
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
         """Carry out one command of the teacher and return what followed."""

@@ -73,6 +73,7 @@ def teach(
     sound = keys_from_terminal(script) if mic == "-" else 0
     with open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
+        teaching.check()
         ears = _ears(mic, teaching, sound, house)
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)

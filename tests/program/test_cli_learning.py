@@ -1,4 +1,4 @@
-"""The command line of teaching, settling, explaining, comparing, and of games in which Tangy asks."""
+"""The command line of teaching, settling, explaining, comparing, and of games with questions."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def test_why_is_told_by_number_by_words_and_as_a_document(tangy: Tangy, taught: 
     assert why["situation"] == WRONG
     assert len(why["rests_on"]) == why["seen"] > 0
     assert {s["behaviour"] for s in why["rests_on"]} == {"remove markers"}
-    assert "did you mean" in refusal(tangy("policy", "--why", "help · wrong mark", *at))
+    assert "did you mean" in refusal(tangy("policy", "--why", "help · wrnog marks", *at))
 
 
 # ------------------------------------------------------------------------------------- asking
@@ -186,19 +186,8 @@ def test_a_scripted_teacher_answers_and_then_nothing_is_asked_any_more(
 def test_a_teacher_answers_by_lines_and_each_answer_is_verified(
     tangy: Tangy, untaught: Path
 ) -> None:
-    answers = "\n".join(
-        [
-            "mumble",
-            "greet everyone",
-            "n",
-            "greet everyone",
-            "maybe",
-            "y",
-            "help",
-            "call number",
-            "y",
-        ]
-    )
+    wavering = ["mumble", "greet everyone", "n", "greet everyone", "maybe", "y"]
+    answers = "\n".join([*wavering, "help", "call number", "y"])
     done = tangy("play", "--teacher", "Ada", "--seed", 3, "--data", untaught, stdin=answers)
     assert done.returncode == 0
     told = done.stdout
