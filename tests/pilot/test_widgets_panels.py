@@ -249,6 +249,26 @@ async def test_counts_mean_and_probability_are_those_of_the_beliefs(
         assert "★" not in other
 
 
+async def test_equal_beliefs_have_no_star_however_much_they_rest_on(run: Run) -> None:
+    for compact in (False, True):
+        view = Posteriors(compact=compact)
+        async with run(One(view)) as pilot:
+            view.show({"user1": {"neutral": Beta(8, 3), "praise": Beta(8, 3)}}, {})
+            await pilot.pause()
+            assert "★" not in pilot.text()
+
+
+async def test_what_is_settled_is_said_beside_the_name(run: Run) -> None:
+    view = Posteriors()
+    async with run(One(view)) as pilot:
+        view.show({"u": {"neutral": Beta(2, 9), "praise": Beta(9, 2)}}, {"u": "Rosa"})
+        await pilot.pause()
+        assert "Rosa  settled: praise" in pilot.text()
+        view.show({"u": {"neutral": Beta(2, 2), "praise": Beta(3, 2)}}, {"u": "Rosa"})
+        await pilot.pause()
+        assert "settled" not in pilot.text()
+
+
 async def test_nothing_is_the_best_before_anything_is_known(run: Run) -> None:
     view = Posteriors()
     async with run(One(view)) as pilot:

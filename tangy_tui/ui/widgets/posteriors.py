@@ -120,8 +120,11 @@ class Posteriors(ScrollView, can_focus=True):
                 rows.append(self._compact(person, name, profile, width))
                 continue
             known = settled(self._best[person])
-            mark = "" if known is None else f"  settled: {clean(known)}"
-            rows.append(((shorten(name, width - len(mark)), "person"), (mark, "good")))
+            head: Row = ((fit(name, width), "person"),)
+            if known is not None:
+                mark = f"  settled: {clean(known)}"
+                head = ((shorten(name, width - cell_len(mark)), "person"), (mark, "good"))
+            rows.append(head)
             for strategy, belief in profile.items():
                 if self._highlight == (person, strategy):
                     marks[len(rows)] = "now"
