@@ -7,10 +7,11 @@ folder, and a game is committed as a whole, which takes .1 ms a step instead of 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol
@@ -79,54 +80,34 @@ def about(name: str) -> dict[str, Any]:
     return {"activity": name, "content": digest_of(Path(name).read_text(encoding="utf-8"))}
 
 
-@contextmanager
-def lessons(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Steps]:
-    """Give an endless course: iterating it yields the events of one game after another.
-
-    The demonstrations of a course come from `taught`; this is the session beneath it.
-    """
-    activity = activity_of(course.activity)
-    people = load_people(course.users)
-    kind = GuidedWorld if course.games == GUIDED else SimulatedWorld
-
-    def make_world(shown: Demonstration) -> World:
-        return kind(activity, shown.people, seed=shown.seed, users=load_users().teaching())
-
-    with TemporaryDirectory(prefix="tangy-class-") as scratch, Store.open(Path(scratch)) as store:
-        teaching = Teaching(
-            activity, people, store, make_world, teacher="class", seed=1000 * course.seed
-        )
-        yield _games(teaching, store, make_teacher(teaching))
-
-
-def _games(teaching: Teaching, store: Store, teacher: Teacher) -> Steps:
-    teaching.begin()
-    while True:
-        with store.transaction():
-            events = list(teacher.demonstrate())
-        yield from events
-        teaching.apply(Next())
-
-
 def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Demonstration]:
     """Yield one finished demonstration after another, without end.
 
     Their steps are numbered through the course, as they would be in one log.
     """
-    from tangy_tui.learning.demonstrating import Finished
+    activity = activity_of(course.activity)
+    kind = GuidedWorld if course.games == GUIDED else SimulatedWorld
 
-    numbered = 0
-    with lessons(course, make_teacher) as events:
-        for event in events:
-            if isinstance(event, Finished):
-                steps = event.demonstration.steps
-                ids = range(numbered + 1, numbered + 1 + len(steps))
-                numbered += len(steps)
-                yield replace(
-                    event.demonstration,
-                    id=f"{course.games}-{event.demonstration.seed}",
-                    steps=tuple(replace(s, id=i) for s, i in zip(steps, ids, strict=True)),
-                )
+    def make_world(shown: Demonstration) -> World:
+        return kind(activity, shown.people, seed=shown.seed, users=load_users().teaching())
+
+    numbers = count(1)
+    with TemporaryDirectory(prefix="tangy-class-") as scratch, Store.open(Path(scratch)) as store:
+        people = load_people(course.users)
+        first = 1000 * course.seed  # each game of a course has the next seed
+        teaching = Teaching(activity, people, store, make_world, teacher="class", seed=first)
+        teacher = make_teacher(teaching)
+        teaching.begin()
+        while True:
+            with store.transaction():
+                deque(teacher.demonstrate(), maxlen=0)
+            shown = teaching.demonstration
+            yield replace(
+                shown,
+                id=f"{course.games}-{shown.seed}",
+                steps=tuple(replace(step, id=next(numbers)) for step in shown.steps),
+            )
+            teaching.apply(Next())
 
 
 def learnt(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from tangy_tui.experiments.provenance import code_digest
 if TYPE_CHECKING:
     from tangy_tui.experiments.sweep import Case, Piece, Settings
 
-REACHED_WITHIN = 5.0
+REACHED_WITHIN = 3.0
 """Seconds after which a scheduler that does not answer counts as not there."""
 
 
@@ -35,10 +36,17 @@ def on_cluster(
             for index, case in enumerate(cases)
         }
         try:
-            for future, result in distributed.as_completed(list(futures), with_results=True):
-                yield futures[future], result
+            for future in distributed.as_completed(list(futures), loop=client.loop):
+                if future.status not in ("finished", "error"):
+                    raise CancelledError
+                yield futures[future], future.result()
+        except (distributed.KilledWorker, CancelledError, OSError):
+            raise TangyError(
+                plain(f"--dask {address}: the cluster was lost; what was done is kept.")
+            ) from None
         finally:  # what is left when somebody has had enough
-            client.cancel(list(futures))
+            if client.status == "running":
+                client.cancel(list(futures))
 
 
 def _distributed() -> Any:
@@ -60,10 +68,16 @@ def _connected(distributed: Any, address: str) -> Any:
         ) from None
 
 
+def _theirs(client: Any) -> dict[str, str]:
+    """Return the digest of the code that each worker has."""
+    found: dict[str, str] = client.run(code_digest)
+    return found
+
+
 def _check_workers(client: Any, address: str) -> None:
     """See that there are workers, and that they would do the work as it would be done here."""
     try:
-        theirs = set(client.run(code_digest).values())
+        theirs = set(_theirs(client).values())
     except Exception:  # a worker without this package raises whatever its unpickling raises
         theirs = {"none"}
     if not theirs:

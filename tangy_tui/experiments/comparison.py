@@ -149,9 +149,10 @@ def _persuasion(document: Document) -> list[Row]:
             "Interactions of a user in a game",
             str(asked),
             f"{number(rate, 3)} ({document['games']} games)",
-            f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}. The rates of the "
-            "simulated people were fitted to the twenty games of Table II, whose own counts give "
-            "90 interactions for four people in twenty games.",
+            f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}; a mean over "
+            f"twenty games varies by {number(document['interactions_sd_of_twenty_games'])} "
+            "(standard deviation). The rates of the simulated people were fitted to the twenty "
+            "games of Table II, whose counts give 90 interactions of four people.",
         ),
         Row(
             "Optimal strategies over interactions (Fig. 5)",

@@ -192,5 +192,5 @@ def regrets(
     figure.axes[0].plot(
         [int(t) for t in log_term], list(log_term.values()), ":", color=INK, label="log term"
     )
-    figure.legend(columns=4)
+    figure.legend(columns=3)
     return figure.svg()

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import islice
+from math import sqrt
 from random import Random
 from typing import Any
 
@@ -122,6 +123,7 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
     everybody = [count for group in groups for count in group["suboptimal"]]
     converged = [count for count in everybody if count is not None]
     games = sum(group["games"] for group in groups)
+    rates = [sum(group["interactions"]) / group["games"] / users for group in groups]
     interactions = sum(sum(group["interactions"]) for group in groups)
     return {
         "users": [
@@ -146,6 +148,8 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
             [sum(g["suboptimal"]) / users for g in groups if None not in g["suboptimal"]]
         ),
         "interactions_per_user_game": interactions / (games * users),
+        # A mean over n games varies as 1 / sqrt(n): from that of a group to that of twenty games.
+        "interactions_sd_of_twenty_games": summary(rates)["sd"] * sqrt(games / len(groups) / 20),
         "games": games,
         "groups": len(groups),
         "preferred": model.preferred,

@@ -15,7 +15,7 @@ _SEQUENCE = re.compile(
     r"\[(?P<values>[0-9;:<=>?]*)[ -/]*(?P<final>[@-~])"
     "|\\][^\x07\x1b]*(?:\x07|\x1b\\\\)"  # a title or a colour, to the end of its text
     "|[PX^_][^\x1b]*\x1b\\\\"
-    "|[ -/]*[0-~]"
+    r"|(?![\[\]PX^_])[ -/]*[0-~]"
     ")"
 )
 

@@ -1,0 +1,47 @@
+"""Both scenarios, run once by the command line on a few seeds: the documents and the pages."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+TANGY = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
+SMALL = {
+    1: ("--seeds", "2", "--users", "2", "--no-typing"),
+    2: ("--people", "6", "--seed", "5"),
+}
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What one scenario left: its document, its page, and the folder it was run in."""
+
+    document: dict[str, Any]
+    page: str
+    folder: Path
+    words: tuple[str, ...]
+
+
+def run(*words: str) -> subprocess.CompletedProcess[str]:
+    """Run the program to its end, with nobody looking."""
+    return subprocess.run(  # noqa: S603 - our own interpreter
+        [*TANGY, *words], capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+@pytest.fixture(scope="session", params=[1, 2])
+def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Ran:
+    """One scenario after another."""
+    folder = tmp_path_factory.mktemp("scenario")
+    words = ("experiment", str(request.param), *SMALL[request.param], "--jobs", "1")
+    words += ("--data", str(folder / "data"), "--report", str(folder / "report.html"))
+    done = run(*words, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    return Ran(json.loads(done.stdout), page, folder, words)

@@ -1,0 +1,134 @@
+"""The documents of both scenarios keep their contract, and their pages stand by themselves."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from tangy_tui.experiments import published
+from tangy_tui.experiments.comparison import compare
+from tangy_tui.experiments.figures import INKS
+from tangy_tui.experiments.report import report
+from tests.experiments.conftest import Ran, run
+
+pytestmark = pytest.mark.xdist_group("scenarios")
+
+
+def share(value: Any) -> bool:
+    return isinstance(value, int | float) and 0 <= value <= 1
+
+
+def test_the_contract(ran: Ran) -> None:
+    document = ran.document
+    if document["experiment"] == 1:
+        assert document["seeds"] == 2
+        assert share(document["guided"]["exact_after_one"])
+        assert list(document["random"]["exact_within"]) == ["1", "2", "3", "4"]
+        assert all(share(value) for value in document["random"]["exact_within"].values())
+        assert 20 < document["behaviours_per_demonstration"] < 150
+        teachers = document["teachers"]
+        assert (teachers["count"], teachers["identical"]) == (5, True)
+        assert len(teachers["each"]) == 5
+        rows = teachers["with_mistakes"]
+        assert {row["placed"] for row in rows} == {"anywhere", "commonest", "rarest"}
+        assert {row["rate"] for row in rows} == {0, 0.01, 0.02, 0.03, 0.05}
+        assert document["minutes_to_teach"] is document["typing"] is None
+        assert document["paper"] == dict(published.SCENARIO_ONE)
+        return
+    assert [set(user) for user in document["users"]] == [
+        {"name", "best", "optimal_share", "one_run"}
+    ] * 4
+    assert all(share(value) for user in document["users"] for value in user["optimal_share"])
+    assert {"mean", "sd"} <= set(document["suboptimal_before_convergence"])
+    assert document["interactions_per_user_game"] > 0
+    assert {"thompson", "bayes_ucb"} <= set(document["algorithms"])
+    for row in document["algorithms"].values():
+        assert list(row["regret"]) == ["23", "60", "300"]
+        assert share(row["optimal_share"])
+    assert document["paper"] == dict(published.SCENARIO_TWO)
+
+
+def test_a_document_says_what_it_was_made_from(ran: Ran) -> None:
+    assert {"python", "tangy", "numpy", "scikit-learn"} <= set(ran.document["versions"])
+    assert re.fullmatch("[0-9a-f]{64}", ran.document["code"])
+    assert ran.document["settings"]["activity"] == "Bingo"
+
+
+def test_it_is_told_in_words_too(ran: Ran) -> None:
+    done = run(*ran.words)
+    assert (done.returncode, done.stderr) == (0, "")
+    rows = compare(ran.document)
+    for row in rows:
+        assert (
+            f"{row.what}\n  paper: {row.paper}\n  here:  {row.here}\n  {row.words}" in done.stdout
+        )
+    assert done.stdout.endswith("report.html.\n")
+
+
+def test_a_page_is_well_formed_and_needs_nothing_else(ran: Ran) -> None:
+    page = ran.page
+    root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+    assert root.tag == "html"
+    assert len(root.findall(".//svg")) == (2 if ran.document["experiment"] == 1 else 3)
+    assert not re.search(r"https?:|src=|@import|url\((?!#)|<link|<script", page)
+    for element in root.iter():
+        for name, value in element.attrib.items():
+            assert name != "href" or value.startswith("#")
+    ids = Counter(element.get("id") for element in root.iter() if element.get("id"))
+    assert max(ids.values()) == 1
+    used = set(re.findall(r'(?:href="|url\()#([^")]+)', page))
+    assert used <= set(ids)
+    parser = HTMLParser()
+    parser.feed(page)
+    parser.close()
+
+
+def test_a_page_names_no_place_on_this_machine(ran: Ran) -> None:
+    for place in (ran.folder, Path.home(), Path.cwd(), Path("/tmp")):  # noqa: S108
+        assert str(place) not in ran.page
+
+
+def test_figures_take_the_colours_of_the_page(ran: Ran) -> None:
+    for svg in re.findall(r"<svg.*?</svg>", ran.page, flags=re.DOTALL):
+        assert not set(re.findall(r"#[0-9a-f]{6}\b", svg)) & set(INKS)
+        assert "var(--ink)" in svg
+        assert "#ffffff" not in svg
+
+
+def test_the_page_has_the_paper_beside_and_what_it_was_made_from(ran: Ran) -> None:
+    text = "".join(ElementTree.fromstring(ran.page.partition("\n")[2]).itertext())  # noqa: S314
+    for row in compare(ran.document):
+        for words in (row.what, row.paper, row.here, row.words):
+            assert words in text
+    for name, version in ran.document["versions"].items():
+        assert name in text and version in text
+
+
+def test_a_page_is_made_of_its_document_alone(ran: Ran) -> None:
+    assert report(ran.document) == ran.page
+
+
+def test_words_follow_the_numbers(ran: Ran) -> None:
+    if ran.document["experiment"] == 1:
+        near = {**ran.document, "behaviours": {"mean": 61.0, "se": 1.0, "n": 9, "all": []}}
+        far = {**near, "behaviours": {**near["behaviours"], "mean": 50.0}}
+        assert "Agrees" in compare(near)[2].words
+        assert compare(far)[2].words.startswith("Lower by 12.")
+    else:
+        four = {"mean": 10.0, "sd": 3.0}
+        far = {
+            **ran.document,
+            "four_users": four,
+            "suboptimal_before_convergence": {
+                "mean": 20.0, "sd": 5.0, "se": 1.0, "n": 25, "never": 2,
+            },
+        }  # fmt: skip
+        row = compare(far)[0]
+        assert row.words.startswith("Higher by 9.2")
+        assert "2 never converged" in row.here

@@ -1,0 +1,94 @@
+"""Scenario 2: strategies converge as in the paper, and methods compare on the same draws."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+
+from tangy_tui.experiments import algorithms, persuading
+from tangy_tui.experiments.sweep import Where
+from tangy_tui.interaction.methods import BayesUcb, Thompson
+
+SEED = 31
+
+
+def test_the_first_run_of_ten_is_convergence() -> None:
+    count = persuading.suboptimal_before_convergence
+    assert count([True] * 10) == 0
+    assert count([False, True, False, *[True] * 10, False]) == 2
+    assert count([True] * 9 + [False] + [True] * 9) is None
+    assert count([], in_a_row=1) is None
+
+
+def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
+    played = persuading.run("bingo", 4, 100, SEED, Where(jobs=1))
+    before = played["suboptimal_before_convergence"]
+    assert (before["n"], before["never"]) == (400, 0)
+    assert before["mean"] == pytest.approx(10.8, abs=1.5)
+    assert played["interactions_per_user_game"] == pytest.approx(1.1, abs=0.05)
+    assert len({user["best"] for user in played["users"]}) == 4
+    for user in played["users"]:
+        shares = user["optimal_share"]
+        assert len(shares) == len(user["one_run"]) == persuading.SHOWN
+        assert shares[0] == pytest.approx(0.25, abs=0.2)
+        assert sum(shares[-10:]) / 10 > 0.9
+
+
+def test_a_group_comes_out_the_same_alone_and_among_others() -> None:
+    settings = {"activity": "bingo", "users": 3}
+    together = persuading.play(settings, (SEED, 3))
+    assert persuading.play(settings, (SEED + 1, 1)) == together[1:2]
+
+
+def test_everybody_answers_all_methods_alike() -> None:
+    crowd = algorithms.CROWDS["even"]
+    runs = [
+        algorithms.choices(crowd, method, 3, Random(chance), 4, SEED, 200)
+        for method, chance in ((Thompson(), 1), (Thompson(), 2), (BayesUcb(), 3))
+    ]
+    answers: dict[tuple[int, int], bool] = {}
+    shared = 0
+    for run in runs:
+        for time, place, complied in run:
+            shared += (time, place) in answers
+            assert answers.setdefault((time, place), complied) == complied
+    assert shared > 100
+
+
+def test_regrets_are_as_measured_and_bayes_ucb_is_better() -> None:
+    def rows(name: str) -> list[list[float]]:
+        return algorithms.meet({"strategies": 4, "seed": SEED}, ("even", name, 0, 200))
+
+    thompson, bayes = rows("thompson"), rows("bayes_ucb")
+    mean = sum(row[1] for row in thompson) / 200
+    assert mean == pytest.approx(6.2, abs=0.9)  # the standard error is .25
+    assert sum(row[1] for row in bayes) / 200 <= 0.65 * mean
+
+
+def test_earlier_people_help_where_people_are_alike_and_forgetting_where_they_change() -> None:
+    settings = {"strategies": 4, "seed": SEED}
+
+    def mean(crowd: str, name: str, column: int) -> float:
+        rows = algorithms.meet(settings, (crowd, name, 0, 60))
+        return sum(row[column] for row in rows) / len(rows)
+
+    assert mean("uneven", "bayes_ucb_prior", 1) <= 0.5 * mean("uneven", "thompson", 1)
+    after = len(algorithms.HORIZONS) + 1
+    assert (
+        mean("drifting", "thompson_forgetting", after) > mean("drifting", "thompson", after) + 0.2
+    )
+
+
+def test_earlier_people_are_others_and_always_the_same() -> None:
+    met = algorithms.earlier_people("uneven", 4, SEED)
+    assert len(met) == algorithms.EARLIER
+    assert all(sum(map(sum, counts.values())) == algorithms.MET for counts in met)
+    algorithms.earlier_people.cache_clear()
+    assert algorithms.earlier_people("uneven", 4, SEED) == met
+
+
+def test_the_log_term_of_lai_and_robbins() -> None:
+    assert algorithms.lai_robbins(0.9, [0.4] * 3) == pytest.approx(1.998, abs=0.001)
+    assert algorithms.lai_robbins(0.5, [0.5]) == 0
+    assert algorithms.lai_robbins(0.5, [0.0]) == pytest.approx(0.5 / 0.6931, abs=0.001)
