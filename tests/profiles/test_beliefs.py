@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.beliefs import Beta, probability_best, uniform_beliefs
+from tangy_profiles.beliefs import Beta, leading, probability_best, settled, uniform_beliefs
 
 counts = st.tuples(st.integers(0, 2000), st.integers(0, 2000))
 
@@ -107,3 +107,43 @@ def test_the_chance_of_being_best_is_what_drawing_finds(
     for strategy, chance in probability_best(beliefs).items():
         sd = sqrt(chance * (1 - chance) / draws)
         assert abs(won[strategy] / draws - chance) < 4 * sd + 0.002
+
+
+@given(st.integers(1, 60))
+def test_quantiles_are_those_of_beliefs_that_can_be_written_down(n: int) -> None:
+    for share in (0.05, 0.5, 0.95):
+        assert Beta(n, 1).quantile(share) == pytest.approx(share ** (1 / n))
+        assert Beta(1, n).quantile(share) == pytest.approx(1 - (1 - share) ** (1 / n))
+
+
+@given(st.tuples(st.integers(0, 300), st.integers(0, 300)))
+def test_the_truth_lies_in_the_interval_with_nine_in_ten(pair: tuple[int, int]) -> None:
+    belief = Beta(1 + pair[0], 1 + pair[1])
+    low, high = belief.interval()
+    points = 20_000
+    inside = sum(
+        value / points
+        for at, value in enumerate(belief.density(points))
+        if low <= (at + 0.5) / points <= high
+    )
+    assert inside == pytest.approx(0.9, abs=0.01)
+
+
+@given(st.lists(st.booleans(), max_size=60), st.floats(1, 5), st.floats(1, 5))
+def test_counts_stay_whole_whatever_was_lent_or_forgotten(
+    responses: list[bool], alpha: float, beta: float
+) -> None:
+    belief = Beta(alpha, beta, (0, 0))
+    for complied in responses:
+        belief = belief.updated(complied)
+    assert belief.complied == responses.count(True)
+    assert belief.trials == len(responses)
+    assert belief.alpha == pytest.approx(alpha + responses.count(True))
+
+
+def test_one_that_leads_alone_is_settled_from_nine_in_ten() -> None:
+    assert settled({"a": 0.9, "b": 0.1}) == "a"
+    assert settled({"a": 0.899, "b": 0.101}) is None
+    assert leading({"a": 0.6, "b": 0.4}) == "a"
+    assert leading({"a": 0.4, "b": 0.4, "c": 0.2}) is None
+    assert settled({}) is leading({}) is None
