@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import re
+from collections.abc import Sequence
 from typing import ClassVar
 
 from textual.app import ComposeResult
@@ -13,10 +15,12 @@ from textual.widgets import Static
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import (
+    Again,
     Begun,
     Executed,
     Finished,
     Next,
+    Redo,
     StepUndone,
     TeacherCommand,
     Teaching,
@@ -27,18 +31,21 @@ from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.foresight import show_why
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
+from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, state_words, step_words
 
-DRIVING_PACE = 4.0
-"""How many times faster than the robot the picture of it drives: nobody waits for a picture."""
+AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
+"""Typed: from which step on the present game is to be shown again."""
 
 
 class TeachScreen(TangyScreen[bool]):
@@ -52,11 +59,19 @@ class TeachScreen(TangyScreen[bool]):
         "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
         "asks whether it understood; press y and it is done. People press a button when they "
         "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
-        "Tangy sees there. Leave whenever you like: what you confirmed is kept."
+        "Tangy sees there. Leave whenever you like: what you confirmed is kept. Typed, undo, redo, "
+        "again 7, why, seen and next do what their keys do."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("u", "undo", "Undo the last step"),
         Binding("ctrl+z", "undo", "Undo the last step", show=False, priority=True),
+        Binding("U", "redo", "Do the step again that was undone", key_display="U"),
+        Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
+        Binding("a", "again", "Show again from the chosen step"),
+        Binding("w", "why", "Why: what Tangy would do here by now"),
+        Binding("c", "coverage", "What was shown and what not"),
+        Binding("up,k", "choose(-1)", "Choose a step", show=False),
+        Binding("down,j", "choose(1)", "Choose a step", show=False),
         Binding("r", "learn", "Learn from the demonstrations"),
         Binding("d", "next", "Another demonstration"),
         Binding("escape", "leave", "Leave; your steps are kept"),
@@ -71,6 +86,7 @@ class TeachScreen(TangyScreen[bool]):
         another: bool = False,
         ears: Ears | None = None,
         scripted: float | None = None,
+        begun: Sequence[TeachingEvent] = (),
     ) -> None:
         """Make the screen.
 
@@ -79,6 +95,7 @@ class TeachScreen(TangyScreen[bool]):
             another: the session has begun already; begin its next demonstration.
             ears: where spoken commands come from, if they do.
             scripted: let a scripted teacher give the demonstration, this many steps a second.
+            begun: the session has begun already, and this is what followed.
         """
         super().__init__()
         self._house = house
@@ -87,6 +104,8 @@ class TeachScreen(TangyScreen[bool]):
         self._ears = ears
         self._scripted = scripted
         self._another = another
+        self._begun = list(begun)
+        self._picture = TeachingPicture(self, house, teaching)
         phrases = (b.phrases[0] for b in teaching.activity.behaviours.values())
         self.HELP = f"{type(self).HELP} You can say: {', '.join(phrases)}."  # type: ignore[misc]
         self._free = asyncio.Event()
@@ -98,26 +117,30 @@ class TeachScreen(TangyScreen[bool]):
             with Vertical(id="left"):
                 yield room_panel(self._house)
                 yield panel(LogView(id="log"))
-            yield panel(
-                Transcript(empty="No steps yet. Type what Tangy should do first.", id="transcript")
-            )
+            with Vertical(id="right"):
+                yield panel(Transcript(empty="No steps yet. Type what Tangy should do first."))
+                yield panel(CoverageList())
         yield Static(id="now", markup=False)
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
-            resting="u undo   d another game   r learn   : type   esc home",
+            resting="u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home",
             id="command",
         )
 
     def on_mount(self) -> None:
         """Begin the session."""
-        teaching = self._teaching
-        self._tell(teaching.apply(Next()) if self._another else teaching.begin(resume=self._resume))
+        self._tell(self._begun or self._begin())
         self._free.set()
         if self._scripted is not None:
             self.query_one(CommandBar).disabled = True
             self.run_worker(self._follow_script(self._scripted), name="scripted teacher")
         if self._ears is not None:
             self.run_worker(self._listen(self._ears), name="ears")
+
+    def _begin(self) -> list[TeachingEvent]:
+        if self._another:
+            return self._teaching.apply(Next())
+        return self._teaching.begin(resume=self._resume)
 
     # ------------------------------------------------------------------------------ commands
 
@@ -132,28 +155,107 @@ class TeachScreen(TangyScreen[bool]):
                 self.app.run_worker(self.run_action("app.stop"))
             case "undo":
                 self.action_undo()
+            case "redo":
+                self.action_redo()
+            case "why":
+                self.action_why()
+            case "seen":
+                self.query_one(CommandBar).ready()
+                self.action_coverage()
+            case typed if found := AGAIN.fullmatch(typed):
+                self.query_one(CommandBar).ready()
+                self.again(self._teaching.demonstration.id, int(found[1]) - 1)
             case "next":
                 self.action_next()
             case "quit" | "exit" | "leave":
-                self.action_leave()
+                self.dismiss(False)
             case _:
                 self._apply(Say(event.text))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave a scripted teacher alone: who watches can only leave, or stop."""
-        return self._scripted is None or action not in ("undo", "next", "learn")
+        alone = ("undo", "redo", "again", "next", "learn")
+        return self._scripted is None or action not in alone
 
     def action_undo(self) -> None:
         """Take the last step back."""
         self._apply(Undo())
+
+    def action_redo(self) -> None:
+        """Do the step again that was taken back last."""
+        self._apply(Redo())
+
+    def action_again(self) -> None:
+        """Show the present game again from the step that is chosen."""
+        number = self.query_one(Transcript).chosen
+        if number is None:
+            self._log.write("Choose the step first: up and down, or type again 7.", "warn")
+        else:
+            self.again(self._teaching.demonstration.id, number - 1)
+
+    def again(self, id: str, kept: int) -> None:
+        """Show a demonstration again from the step after `kept`, if the teacher means it."""
+        self.run_worker(self._again(Again(id, kept)), name="again")
+
+    async def _again(self, command: Again) -> None:
+        present = self._teaching.demonstration
+        steps = len(present.steps)
+        if command.demonstration == present.id and 0 <= command.kept < steps:
+            first = command.kept + 1
+            gone = f"Step {first} is" if first == steps else f"Steps {first} to {steps} are"
+            dialog = ConfirmDialog(
+                f"Go back before step {first} and show it again?",
+                f"{gone} taken back; U brings them back one by one until you show another.",
+                yes="go back",
+                no="go on here",
+            )
+            if not await self.app.push_screen_wait(dialog):
+                return
+        self._apply(command)
+
+    def action_coverage(self) -> None:
+        """Show which situations were shown, where the steps are seen, or the steps again."""
+        self.toggle_class("-coverage")
+        covers = self.has_class("-coverage")
+        panel = self.query_one(CoverageList if covers else Transcript)
+        self.call_after_refresh(panel.focus)
+
+    def action_choose(self, by: int) -> None:
+        """Give the keys to the steps, and choose one."""
+        steps = self.query_one(Transcript)
+        self.remove_class("-coverage")
+        steps.focus()
+        steps.action_choose(by)
+
+    def action_why(self) -> None:
+        """Tell what Tangy would do in the chosen step's situation, or here, and why."""
+        self.query_one(CommandBar).ready()
+        present = self._teaching.demonstration
+        number = self.query_one(Transcript).chosen
+        state = (
+            self._teaching.world.observe() if number is None else present.steps[number - 1].state
+        )
+        self.run_worker(show_why(self, self._house, present, state.situation), name="why")
+
+    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
+        """Tell why, for the step that was chosen with Enter."""
+        event.stop()
+        self.action_why()
 
     def action_next(self) -> None:
         """Begin another demonstration."""
         self._apply(Next())
 
     def action_leave(self) -> None:
-        """Go back; what was verified is kept."""
-        self.dismiss(False)
+        """Close what lies over the steps, let go of a chosen one, or go home; all is kept."""
+        steps = self.query_one(Transcript)
+        if self.has_class("-coverage", "-narrow"):
+            self.remove_class("-coverage")
+            steps.focus()
+        elif steps.chosen is not None:
+            steps.release()
+        else:
+            self.dismiss(False)
 
     async def action_learn(self) -> None:
         """Learn from all finished demonstrations, and show the policy."""
@@ -178,8 +280,9 @@ class TeachScreen(TangyScreen[bool]):
 
     # -------------------------------------------------------------------------------- events
 
-    def _tell(self, events: list[TeachingEvent]) -> None:
+    def _tell(self, events: Sequence[TeachingEvent]) -> None:
         bar = self.query_one(CommandBar)
+        undone = [event for event in events if isinstance(event, StepUndone)]
         for event in events:
             match event:
                 case Asked():
@@ -197,18 +300,17 @@ class TeachScreen(TangyScreen[bool]):
                     if heard:
                         bar.restore(heard)
                 case Executed():
-                    self._show_step(event)
-                case StepUndone(number, step):
+                    self._picture.step(event)
+                case StepUndone():
                     self.query_one(Transcript).remove_last()
-                    self._log.write(f"Step {number} is undone: {step.behaviour}.", "warn")
-                    self.query_one(RoomView).say("")
-                    self._show_scene(self._teaching.world.observe().place)
-                case Begun(demonstration, resumed):
-                    self._show_beginning(len(demonstration.steps), resumed)
+                case Begun(_, resumed):
+                    self._picture.beginning(resumed)
                 case Finished(demonstration):
-                    self._finish(len(demonstration.steps))
+                    self._picture.finished(len(demonstration.steps))
+        if undone:
+            self._picture.undone(undone)
         bar.ready()
-        self._show_state()
+        self._picture.state()
         self._free.set()
 
     def _ask(self, asked: Asked) -> None:
@@ -233,58 +335,6 @@ class TeachScreen(TangyScreen[bool]):
             self._ears.open()
         chosen = None if answer.alternative is None else answer.alternative + 1
         self._apply(Reply(answer.yes, chosen))
-
-    def _show_step(self, event: Executed) -> None:
-        self.query_one(Transcript).append(
-            step_words(self._teaching.activity, event.step, self._teaching.name)
-        )
-        self._log.write(event.speech)
-        self.query_one(RoomView).say(event.speech)
-        self._show_scene(event.step.state.place)
-
-    def _show_scene(self, came_from: str) -> None:
-        room = self.query_one(RoomView)
-        scene = self._teaching.world.scene()
-        if came_from != scene.place:
-            stand, people = self._house.room.stand, self._teaching.people
-            way = stand(came_from, people).distance(stand(scene.place, people))
-            room.drive(scene.place, way / self._house.robot.speed / DRIVING_PACE)
-        room.show(scene)
-
-    def _show_beginning(self, steps: int, resumed: bool) -> None:
-        teaching = self._teaching
-        self.query_one(Transcript).fill(
-            [step_words(teaching.activity, s, teaching.name) for s in teaching.demonstration.steps]
-        )
-        self._show_scene(teaching.world.observe().place)
-        if resumed:
-            self._log.write(f"Going on where you left, after {counted(steps, 'step')}.", "good")
-        else:
-            self._log.write(
-                f"A new game of {teaching.activity.title}, demonstrated by {teaching.teacher}.",
-                "dim",
-            )
-
-    def _finish(self, steps: int) -> None:
-        self._log.write(f"The game is complete: {counted(steps, 'step')}.", "good")
-
-    def _show_state(self) -> None:
-        teaching = self._teaching
-        state = teaching.world.observe()
-        self.query_one(StatusLine).show(
-            Status(
-                mode="teach",
-                stage=state.stage if not teaching.world.over else "over",
-                step=len(teaching.demonstration.steps),
-                note=f"{teaching.teacher}'s game {teaching.demonstration.seed}",
-            )
-        )
-        words = (
-            "The game is over. Press esc, then d for another game, or r to let Tangy learn."
-            if teaching.world.over
-            else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
-        )
-        self.query_one("#now", Static).update(f"Now: {words}")
 
     @property
     def _log(self) -> LogView:

@@ -21,7 +21,7 @@ class Status:
     """What the status line says; empty parts are left out.
 
     `robot` and STOP are seen at every width; the others go from the right when there is no room.
-    `alarm` writes the robot's part as a warning, with a mark.
+    `alarm` writes the robot's part as a warning, with a mark; `seen` says how much was shown.
     """
 
     mode: str = ""
@@ -31,6 +31,7 @@ class Status:
     step: int | None = None
     note: str = ""
     alarm: bool = False
+    seen: str = ""
 
 
 class StatusLine(Widget):
@@ -74,6 +75,8 @@ class StatusLine(Widget):
             parts.append((f"stage {clean(status.stage).upper()}", "robot"))
         if status.game is not None:
             parts.append((f"game {status.game}", "text"))
+        if status.seen:
+            parts.append((f"seen {clean(status.seen)}", "text"))
         if status.step is not None:
             parts.append((f"step {status.step}", "text"))
         if status.note:

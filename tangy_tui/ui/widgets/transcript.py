@@ -130,6 +130,12 @@ class Transcript(ScrollView, can_focus=True):
             self._mark()
             self.post_message(self.Moved(self, self.chosen))
 
+    def release(self) -> None:
+        """Take the cursor off the steps, and follow the newest again."""
+        self._chosen = None
+        self._mark()
+        self.post_message(self.Moved(self, None))
+
     def clear(self) -> None:
         """Begin again at step 1."""
         self.fill([])

@@ -1,0 +1,34 @@
+"""What was shown so far in a teaching session: by everybody before, and in the present game."""
+
+from __future__ import annotations
+
+from tangy_profiles.state import Situation
+from tangy_tui.house import House
+from tangy_tui.learning.coverage import Coverage, coverage
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.library import read_library
+
+
+class ShownSoFar:
+    """Counts the situations of a session; the library is read when a game begins, not per step."""
+
+    def __init__(self, house: House, teaching: Teaching) -> None:
+        self._house = house
+        self._teaching = teaching
+        self._before = Coverage(dict.fromkeys(house.activity.situations, 0))
+
+    def begin(self) -> None:
+        """Count what was shown before the present game, and is not replaced by it."""
+        activity, present = self._house.activity, self._teaching.demonstration
+        replaced = {present.id, *present.of}
+        finished = read_library(self._house.store, activity.name).finished
+        self._before = coverage(activity, [d for d in finished if d.id not in replaced])
+
+    def now(self) -> Coverage:
+        """Count what was shown up to now."""
+        here = coverage(self._house.activity, [self._teaching.demonstration]).times
+        return Coverage({s: times + here[s] for s, times in self._before.times.items()})
+
+    def first(self, situation: Situation) -> bool:
+        """Say whether the last step is the first one ever in its situation."""
+        return self.now().times.get(situation) == 1

@@ -1,0 +1,122 @@
+"""What the teaching screen shows of a session: the steps, the room, what was seen, what is now."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from textual.screen import Screen
+from textual.widgets import Static
+
+from tangy_tui.house import House
+from tangy_tui.learning.coverage import Coverage, missing_words
+from tangy_tui.learning.demonstrating import Executed, StepUndone, Teaching
+from tangy_tui.ui.shown_so_far import ShownSoFar
+from tangy_tui.ui.widgets.coverage_list import CoverageList
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import counted, state_words, step_words
+
+DRIVING_PACE = 4.0
+"""How many times faster than the robot the picture of it drives: nobody waits for a picture."""
+
+
+class TeachingPicture:
+    """Puts what happens in a session on the widgets of its screen."""
+
+    def __init__(self, screen: Screen[Any], house: House, teaching: Teaching) -> None:
+        self._screen = screen
+        self._house = house
+        self._teaching = teaching
+        self._shown = ShownSoFar(house, teaching)
+
+    def step(self, event: Executed) -> None:
+        """Show a step that was carried out."""
+        activity, situation = self._teaching.activity, event.step.state.situation
+        self._screen.query_one(Transcript).append(
+            step_words(activity, event.step, self._teaching.name)
+        )
+        if self._shown.first(situation):
+            self._log.write(f"New to Tangy: {activity.in_words(situation)}.", "good")
+        self._log.write(event.speech)
+        self._screen.query_one(RoomView).say(event.speech)
+        self._scene(event.step.state.place)
+
+    def undone(self, undone: Sequence[StepUndone]) -> None:
+        """Tell of steps that were taken back, the last one first."""
+        last, first = undone[0], undone[-1]
+        words = (
+            f"Step {last.number} is undone: {last.step.behaviour}."
+            if last is first
+            else f"Steps {first.number} to {last.number} are undone."
+        )
+        self._log.write(f"{words} U brings {'it' if last is first else 'them'} back.", "warn")
+        self._screen.query_one(RoomView).say("")
+        self._scene(self._teaching.world.observe().place)
+
+    def beginning(self, resumed: bool) -> None:
+        """Show a game that begins, or that goes on with the steps it has."""
+        teaching = self._teaching
+        shown = teaching.demonstration
+        steps = len(shown.steps)
+        self._shown.begin()
+        self._screen.query_one(Transcript).fill(
+            [step_words(teaching.activity, s, teaching.name) for s in shown.steps]
+        )
+        self._scene(teaching.world.observe().place)
+        if resumed:
+            self._log.write(f"Going on where you left, after {counted(steps, 'step')}.", "good")
+        elif shown.origin == "again":
+            self._log.write(f"Show it again from step {steps + 1}; what was before stays.", "good")
+        else:
+            title, teacher = teaching.activity.title, teaching.teacher
+            arranged = ", arranged to show everything" if shown.guided else ""
+            self._log.write(f"A new game of {title}{arranged}, demonstrated by {teacher}.", "dim")
+
+    def finished(self, steps: int) -> None:
+        """Say that the game is over."""
+        self._log.write(f"The game is complete: {counted(steps, 'step')}.", "good")
+
+    def state(self) -> None:
+        """Show where the game is, and what was shown up to here."""
+        teaching = self._teaching
+        shown = teaching.demonstration
+        state = teaching.world.observe()
+        found = self._shown.now()
+        self._coverage(found)
+        guided = ", guided" if shown.guided else ""
+        self._screen.query_one(StatusLine).show(
+            Status(
+                mode="teach",
+                stage=state.stage if not teaching.world.over else "over",
+                seen=f"{len(found.seen)}/{len(found.times)}",
+                step=len(shown.steps),
+                note=f"{teaching.teacher}'s game {shown.seed}{guided}",
+            )
+        )
+        words = (
+            "The game is over. Press esc, then d for another game, or r to let Tangy learn."
+            if teaching.world.over
+            else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
+        )
+        self._screen.query_one("#now", Static).update(f"Now: {words}")
+
+    def _scene(self, came_from: str) -> None:
+        room = self._screen.query_one(RoomView)
+        scene = self._teaching.world.scene()
+        if came_from != scene.place:
+            stand, people = self._house.room.stand, self._teaching.people
+            way = stand(came_from, people).distance(stand(scene.place, people))
+            room.drive(scene.place, way / self._house.robot.speed / DRIVING_PACE)
+        room.show(scene)
+
+    def _coverage(self, found: Coverage) -> None:
+        activity = self._teaching.activity
+        seen = [(activity.in_words(s), found.times[s]) for s in found.seen]
+        self._screen.query_one(CoverageList).show(missing_words(activity, found), seen)
+
+    @property
+    def _log(self) -> LogView:
+        return self._screen.query_one(LogView)

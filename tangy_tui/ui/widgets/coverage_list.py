@@ -1,0 +1,101 @@
+"""What Tangy has been shown and what not: the missing situations in plain words, then the seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import ClassVar
+
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Rows, shorten
+from tangy_tui.ui.widgets.wrapping import wrap
+
+
+class CoverageList(ScrollView, can_focus=True):
+    """First what nobody has shown yet, a sentence each; below it, dimmed, what was seen how often.
+
+    The title counts them, so that a glance at the frame is enough.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    CoverageList { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("k", "scroll_up", "Up", show=False),
+        Binding("j", "scroll_down", "Down", show=False),
+    ]
+    HELP = (
+        "Which situations Tangy has been shown. Above stands what nobody has shown yet: Tangy "
+        "would not act there, but ask. Below, how often each of the others was shown."
+    )
+
+    def __init__(self, *, id: str | None = "coverage", classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self.border_title = "Seen"
+        self._missing: tuple[str, ...] = ()
+        self._seen: tuple[tuple[str, int], ...] = ()
+        self._rows = Rows(self)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What nobody has shown yet, in words."""
+        return self._missing
+
+    def show(self, missing: Sequence[str], seen: Sequence[tuple[str, int]]) -> None:
+        """Show what is missing, and what was seen how often."""
+        new = tuple(missing), tuple(seen)
+        if new == (self._missing, self._seen):
+            return
+        self._missing, self._seen = new
+        count, of = len(self._seen), len(self._missing) + len(self._seen)
+        self.border_title = f"{count} of {of} situations shown"
+        self._draw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Wrap anew."""
+        self._draw()
+
+    def notify_style_update(self) -> None:
+        """Draw in the new colours."""
+        super().notify_style_update()
+        self._rows.forget()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one line."""
+        return self._rows.strip(y)
+
+    def _draw(self) -> None:
+        width = self._rows.width
+        if not self.is_attached or width <= 4:
+            return
+        rows: list[Row] = []
+        if self._seen and not self._missing:
+            rows += _sentence("✓ ", "Everything that can come about was shown.", "good", width)
+        for sentence in self._missing:
+            rows += _sentence("! ", clean(sentence), "text", width)
+        for words, times in self._seen:
+            count = ", once" if times == 1 else f", {times} times"
+            rows.append(
+                (
+                    ("✓ ", "good"),
+                    (shorten(clean(words), width - 2 - len(count)), "dim"),
+                    (count, "dim"),
+                )
+            )
+        self._rows.put(rows)
+
+
+@lru_cache(256)
+def _sentence(mark: str, text: str, ink: str, width: int) -> tuple[Row, ...]:
+    """Write a sentence on as many lines as it needs, the mark before the first."""
+    return tuple(
+        ((mark if n == 0 else "  ", "good" if ink == "good" else "warn"), (line, ink))
+        for n, line in enumerate(wrap(text, width - 2))
+    )
