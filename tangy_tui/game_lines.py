@@ -44,7 +44,7 @@ def game_lines(event: GameEvent, facilitation: Facilitation, name: Name) -> list
             best = max(profile, key=lambda strategy: profile[strategy].mean)
             return [
                 f"   {name(response.person)} {what} ({response.strategy} now "
-                f"{belief.alpha - 1:.0f} of {belief.trials}; best so far: {best})."
+                f"{belief.complied} of {belief.trials}; best so far: {best})."
             ]
         case Unsure(_, _, reason):
             return [f"Tangy asks. {reason} What should it do?"]
@@ -65,7 +65,7 @@ def belief_lines(facilitation: Facilitation, name: Name) -> list[str]:
     for person, profile in facilitation.persuasion.beliefs.items():
         best = probability_best(profile)
         parts = [
-            f"{strategy} {belief.alpha - 1:.0f}/{belief.trials} (best {best[strategy]:.0%})"
+            f"{strategy} {belief.complied}/{belief.trials} (best {best[strategy]:.0%})"
             for strategy, belief in profile.items()
         ]
         lines.append(f"{name(person)}: " + ", ".join(parts))

@@ -158,7 +158,7 @@ def _people_table(house: House, beliefs: Mapping[str, Beliefs]) -> Table:
             Text(house.name(person)),
             *(
                 Text(
-                    f"{profile[s].alpha - 1:.0f}/{profile[s].trials} ({best[s]:.2f})"
+                    f"{profile[s].complied}/{profile[s].trials} ({best[s]:.2f})"
                     + (" *" if s == leads and profile[s].trials else ""),
                 )
                 for s in strategies
