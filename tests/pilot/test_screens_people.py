@@ -278,3 +278,35 @@ async def test_in_ascii_every_line_is_ascii(run: Run, house: House) -> None:
     async with run(PeopleScreen(house), kind=TerminalKind(ascii=True)) as pilot:
         assert pilot.app._filters[-1].ascii  # type: ignore[attr-defined]
         assert "settled" in pilot.text()
+
+
+@pytest.mark.parametrize("keys", [("v",), ("down", "f"), ("x",)], ids=["void", "answer", "switch"])
+async def test_how_the_questions_look(
+    run: Run, house: House, keys: tuple[str, ...], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(PeopleScreen(house)) as pilot:
+        await pilot.press(*keys)
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_eight_people_are_reached_where_four_are_seen(run: Run, tmp_path: Path) -> None:
+    house = House(tmp_path / "eight", users=8, now=lambda: NOW)
+    async with run(PeopleScreen(house)) as pilot:
+        assert "User 8" not in pilot.text()
+        await pilot.press("end")
+        await pilot.pause()
+        assert "nothing is known of User 8 yet" in pilot.text()
+        assert "What works with User 8" in pilot.text()
+    house.close()
+
+
+@pytest.mark.parametrize("size", [(60, 18), (100, 30), (200, 60)])
+async def test_at_every_size_the_chosen_person_is_told_of_in_full(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    async with run(PeopleScreen(house), size=size) as pilot:
+        text = pilot.text()
+        assert "praise works with Rosa: 7 of 9" in text
+        for words in ("0 of 3", "★ settled", ".49-.91", "did not comply"):
+            assert words in text
