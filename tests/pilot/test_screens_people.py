@@ -126,7 +126,7 @@ async def test_a_response_is_voided_and_taken_back(run: Run, house: House) -> No
         await pilot.press("v", "y")
         await pilot.pause()
         assert complied(house, "user1", "suggestion") == (0, 1)
-        assert "void: that was not compliance" in pilot.text()
+        assert "void: that was not a refusal" in pilot.text()
         await pilot.press("u")
         await pilot.pause()
         assert "that a response to suggestion is void" in pilot.text()

@@ -29,7 +29,8 @@ from tangy_tui.ui.person_lines import (
 from tangy_tui.ui.widgets.choice_list import ChoiceList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
-NOT_COMPLIANCE = "that was not compliance"
+WHY = {True: "that was not compliance", False: "that was not a refusal"}
+"""Why a response is void, by whether it had counted as compliance."""
 
 
 class PeopleScreen(TangyScreen[None]):
@@ -100,16 +101,13 @@ class PeopleScreen(TangyScreen[None]):
         if entry is None or not entry.counts:
             self._say("Choose a response that counts: tab goes to the history, arrows choose.")
             return
-        person = self._record.person
-
-        def void() -> None:
-            self._feedback.void(person.id, entry.seq, NOT_COMPLIANCE)
+        person, why = self._record.person, WHY[bool(entry.complied)]
 
         self._ask(
             "Shall this response no longer count?",
             f"{entry.strategy}: {person.name} {entry_words(entry)}, {on_day(entry.at)}.",
-            f"{NOT_COMPLIANCE}: leave it out",
-            void,
+            f"{why}: leave it out",
+            lambda: self._feedback.void(person.id, entry.seq, why),
         )
 
     def action_feedback(self) -> None:
