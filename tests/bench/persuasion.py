@@ -253,7 +253,7 @@ def speeds(learn: bool) -> tuple[float, float, float]:
 
 def main() -> None:
     """Print all tables."""
-    people = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    people = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000
     print(f"{people} people with each crowd; seeds are their numbers")
     table("Favourites shared out evenly: .9, the others .4", even, people)
     table("Seven in ten share a favourite: .9, the others .4", shared, people)
