@@ -10,7 +10,7 @@ from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.demonstrating import Begun, Executed, Next
 from tangy_tui.learning.effects import learn_effects
-from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
@@ -40,7 +40,7 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
         steps = len(teaching.demonstration.steps)
         write(f"   {steps} steps; {len(seen)} of {len(activity.situations)} situations shown.")
     policy = learn(house)
-    shown = read_demonstrations(house.store, activity.name)
+    shown = read_library(house.store, activity.name).demonstrations
     effects = learn_effects(activity, shown)
     write("2. A random forest learns what to do, and what follows from it.")
     for situation in activity.situations:
@@ -70,8 +70,8 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
 
 
 def learn(house: House) -> Policy:
-    """Learn from all finished demonstrations and keep the policy."""
-    shown = read_demonstrations(house.store, house.activity.name)
-    policy = learn_policy(house.activity, [d for d in shown if d.finished])
+    """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
+    library = read_library(house.store, house.activity.name)
+    policy = learn_policy(house.activity, library.finished, resolutions=library.resolutions)
     keep_policy(house.store, policy)
     return policy

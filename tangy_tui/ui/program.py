@@ -61,14 +61,17 @@ class Program(TangyApp):
 
     def _states(self) -> Mapping[str, str]:
         """Say how far each choice is."""
-        shown = library.read_demonstrations(self.house.store, self.house.activity.name)
+        there = library.read_library(self.house.store, self.house.activity.name)
+        shown = there.demonstrations
         finished = sum(1 for d in shown if d.finished)
         unfinished = sum(1 for d in shown if d.steps and not d.finished)
+        away = sum(1 for entry in there.entries.values() if entry.hidden)
         kept = policies.last_policy(self.house.store, self.house.activity.name)
         people = ", ".join(person.name for person in self.house.people)
         return {
             "teach": counted(finished, "demonstration")
             + (f", {unfinished} unfinished" if unfinished else ""),
+            "library": f"{len(shown)} in use, {away} put away" if away else "",
             "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
             "play": "" if kept is not None else "learn first",
             "policy": "" if kept is None else str(kept["name"]),
@@ -84,6 +87,8 @@ class Program(TangyApp):
         match event.id:
             case "teach":
                 self.teach(self.house.teaching(teacher_name(), None))
+            case "library":
+                self.library()
             case "learn":
                 self.run_worker(self._learn())
             case "play":
@@ -101,6 +106,34 @@ class Program(TangyApp):
 
         self.push_screen(TeachScreen(self.house, teaching))
 
+    def library(self) -> None:
+        """Open the screen of all demonstrations."""
+        from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
+
+        self.push_screen(DemonstrationsScreen(self.house))
+
+    async def show_again(self, id: str, kept: int) -> None:
+        """Let a demonstration be shown again after its first `kept` steps.
+
+        A teaching session that is open takes it over: two of them would write one game.
+        """
+        from tangy_tui.learning.demonstrating import Again
+        from tangy_tui.ui.screens.teach import TeachScreen
+
+        open_one = next((s for s in self.screen_stack if isinstance(s, TeachScreen)), None)
+        if open_one is not None:
+            while self.screen is not open_one:
+                await self.screen.dismiss(None)
+            open_one.again(id, kept)
+            return
+        teaching = self.house.teaching(teacher_name(), None, again=Again(id, kept))
+        try:
+            begun = teaching.begin()
+        except TangyError as error:
+            await self._tell(str(error), title="Not possible")
+            return
+        self.push_screen(TeachScreen(self.house, teaching, begun=begun))
+
     def people(self) -> None:
         """Open the people screen."""
         from tangy_tui.ui.screens.people import PeopleScreen
@@ -113,7 +146,12 @@ class Program(TangyApp):
 
     async def _learn(self) -> None:
         from tangy_tui.story import learn
+        from tangy_tui.ui.screens.conflicts import ConflictsScreen, settle_conflicts
 
+        if self._busy or any(isinstance(s, ConflictsScreen) for s in self.screen_stack):
+            return
+        if not await settle_conflicts(self, self.house, "let Tangy learn"):
+            return
         policy = await self._in_thread("Tangy is learning ...", lambda: learn(self.house))
         if policy is not None:
             await self._open_policy(policy)

@@ -102,7 +102,7 @@ class DemonstrationScreen(TangyScreen[None]):
         )
         if await self.app.push_screen_wait(dialog):
             program: Any = self.app
-            program.show_again(self._shown.id, number - 1)
+            await program.show_again(self._shown.id, number - 1)
 
     def action_leave(self) -> None:
         """Go back."""

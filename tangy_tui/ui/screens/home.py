@@ -36,6 +36,7 @@ class Choice:
 
 CHOICES = (
     Choice("t", "Teach", "show Tangy how the activity is run"),
+    Choice("i", "Library", "all demonstrations: look, mend, delete"),
     Choice("l", "Learn", "make a policy from what was shown"),
     Choice("p", "Play", "let Tangy run the activity"),
     Choice("o", "Policy", "what Tangy does in which situation"),
@@ -168,7 +169,7 @@ class HomeScreen(TangyScreen[None]):
     AUTO_FOCUS = "#home"
 
     class Chosen(Message):
-        """A choice was made; `id` is teach, learn, play, policy, people, demo."""
+        """A choice was made; `id` is teach, library, learn, play, policy, people, demo."""
 
         def __init__(self, id: str) -> None:
             super().__init__()

@@ -1,0 +1,226 @@
+"""The conflicts screen: two answers to one situation, side by side, and which of them is right."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Grid
+from textual.widgets import Static
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.learning.conflicts import Conflict
+from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.library import Edit
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.fresh_keys import FreshKeys, clock_of
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.widgets.answer_steps import AnswerSteps
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.wording import counted, edit_words
+
+ASKED = (
+    "Which is right? Press its number, b if all of them are, o for something else. Esc leaves it "
+    "open: Tangy will not act there in a game, but ask."
+)
+
+
+class ConflictsScreen(TangyScreen[bool]):
+    """One conflict after another. Dismissed with True to go on, False to go back."""
+
+    CSS_PATH = "conflicts.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
+    TITLE = "Conflicts"
+    HELP = (
+        "Demonstrations gave different answers to the same situation. Nothing is outvoted behind "
+        "your back: say which answer is right, and the other steps are not learnt from. Enter "
+        "opens the step under the cursor, tab goes to the other answer, u takes your last answer "
+        "back. What you leave open Tangy asks about when it comes up in a game."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("1", "nothing", "This answer is right", key_display="1-9"),
+        Binding("b", "nothing", "All of them are right"),
+        Binding("o", "nothing", "Something else is right"),
+        Binding("u", "nothing", "Take the last answer back"),
+        Binding("enter", "nothing", "Open the step, or go on at the end"),
+        Binding("escape", "nothing", "Leave it open"),
+    ]
+
+    def __init__(self, house: House, *, then: str = "go on") -> None:
+        """Make the screen; `then` says what follows when all were looked at."""
+        super().__init__()
+        self._house = house
+        self._then = then
+        self._editor = Editor(house.store, house.activity)
+        self._library = self._editor.library
+        self._conflicts: list[Conflict] = self._library.conflicts
+        self._answered: list[Edit | None] = []
+        self._keys = FreshKeys()
+
+    @property
+    def _present(self) -> Conflict | None:
+        """The conflict that is looked at, None when all were."""
+        at = len(self._answered)
+        return self._conflicts[at] if at < len(self._conflicts) else None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the situation, the answers, what is asked, and what was answered."""
+        yield StatusLine()
+        yield Static(id="situation", markup=False)
+        yield Grid(id="answers")
+        yield Static(id="asked", markup=False)
+        yield panel(LogView(id="log"), "Answers")
+        yield key_line(
+            ("1-9", "right"), ("b", "all"), ("o", "other"), ("enter", "open"),
+            ("esc", "leave open"), ("u", "undo"), ("?", "help"),
+        )  # fmt: skip
+
+    async def on_mount(self) -> None:
+        """Show the first one."""
+        await self._show()
+
+    async def on_key(self, event: events.Key) -> None:
+        """Take an answer, if the conflict was on the screen by then."""
+        key = event.character or event.key
+        if key not in ("u", "b", "o") and event.key not in ("escape", "enter"):
+            if not key.isdecimal():
+                return
+        elif event.key == "enter" and self._present is not None:
+            return  # it opens the step under the cursor
+        if self._keys.take(event):
+            await self._take(event.key)
+
+    async def _take(self, key: str) -> None:
+        present = self._present
+        if key == "u":
+            await self._undo()
+        elif present is None:
+            if key in ("enter", "escape"):
+                self.dismiss(key == "enter")
+        elif key == "escape":
+            await self._leave_open(present)
+        elif key == "b":
+            await self._resolve(present, *present.answers)
+        elif key == "o":
+            self.run_worker(self._other(present), name="other")
+        elif key.isdecimal() and 1 <= int(key) <= len(present.answers):
+            await self._resolve(present, list(present.answers)[int(key) - 1])
+
+    def on_answer_steps_chosen(self, event: AnswerSteps.Chosen) -> None:
+        """Open a step where it was demonstrated."""
+        from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+
+        event.stop()
+        shown = event.shown
+        self.app.push_screen(DemonstrationScreen(self._house, shown.demonstration, shown.number))
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    # --------------------------------------------------------------------------- the answers
+
+    async def _resolve(self, conflict: Conflict, *right: str) -> None:
+        try:
+            edit = self._editor.resolve(conflict, *right)
+        except TangyError as error:
+            self._log.write(str(error), "bad")
+            return
+        self._answered.append(edit)
+        words = edit_words(self._house.activity, self._library, edit)
+        aside = len(edit.body["wrong"])
+        put = f" {counted(aside, 'step')} set aside." if aside else ""
+        self._log.write(f"{words}{put}", "good")
+        await self._show()
+
+    async def _other(self, conflict: Conflict) -> None:
+        """Let another behaviour be chosen that nobody showed here."""
+        others = [b for b in self._house.activity.behaviours if b not in conflict.answers]
+        dialog = ChooseDialog("What is right here?", others)
+        chosen = await self.app.push_screen_wait(dialog)
+        if chosen is not None and conflict is self._present:
+            await self._resolve(conflict, chosen)
+
+    async def _leave_open(self, conflict: Conflict) -> None:
+        self._answered.append(None)
+        words = self._house.activity.in_words(conflict.situation)
+        self._log.write(f"{words}: left open. Tangy will ask when it comes up in a game.", "warn")
+        await self._show()
+
+    async def _undo(self) -> None:
+        """Take back the last answer, and ask again."""
+        if not self._answered:
+            self._log.write("There is no answer to take back.", "warn")
+            return
+        edit = self._answered[-1]
+        try:
+            if edit is not None:
+                self._editor.undo()
+        except TangyError as error:
+            self._log.write(str(error), "bad")
+            return
+        self._answered.pop()
+        self._log.write("Your last answer is taken back.", "warn")
+        await self._show()
+
+    # ------------------------------------------------------------------------------- showing
+
+    async def _show(self) -> None:
+        self._keys = FreshKeys()
+        present, count = self._present, len(self._conflicts)
+        note = f"{len(self._answered) + 1} of {count}" if present is not None else "all looked at"
+        self.query_one(StatusLine).show(Status(mode="conflicts", note=note))
+        await self._show_answers(present)
+        self.query_one("#situation", Static).update(
+            self._summary() if present is None else self._situation(present)
+        )
+        self.query_one("#asked", Static).update(
+            f"Press enter to {self._then}, esc to go back, u to take the last answer back."
+            if present is None
+            else ASKED
+        )
+        self.call_after_refresh(self._keys.painted, clock_of(self.app))
+
+    async def _show_answers(self, present: Conflict | None) -> None:
+        grid = self.query_one(Grid)
+        await grid.remove_children()
+        if present is None:
+            self.set_focus(None)
+            return
+        columns = [
+            panel(AnswerSteps(number, behaviour, steps, self._library))
+            for number, (behaviour, steps) in enumerate(present.answers.items(), 1)
+        ]
+        grid.styles.grid_size_columns = min(len(columns), 4 if self.has_class("-wide") else 2)
+        await grid.mount(*columns)
+        columns[0].focus()
+
+    def _situation(self, conflict: Conflict) -> str:
+        words = self._house.activity.in_words(conflict.situation)
+        return clean(f"Different answers were shown to this situation: {words}.")
+
+    def _summary(self) -> str:
+        left = sum(edit is None for edit in self._answered)
+        if not self._conflicts:
+            return "The demonstrations agree in every situation."
+        settled = len(self._answered) - left
+        if not left:
+            return f"Settled: {settled}. Nothing is left open."
+        return f"Settled: {settled}. Left open: {left}; Tangy will ask there when it plays."
+
+    @property
+    def _log(self) -> LogView:
+        return self.query_one(LogView)
+
+
+async def settle_conflicts(app: Any, house: House, then: str) -> bool:
+    """Let the conflicts be settled, if there are any; say whether to go on."""
+    if not Editor(house.store, house.activity).library.conflicts:
+        return True
+    return bool(await app.push_screen_wait(ConflictsScreen(house, then=then)))

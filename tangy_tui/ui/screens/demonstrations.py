@@ -1,0 +1,270 @@
+"""The library of demonstrations: what there is, and everything that can be done to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Static
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.library import Edit
+from tangy_tui.learning.listing import ListRow, list_rows
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.widgets.demonstration_list import DemonstrationList
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import counted, edit_words, step_words
+
+NOTHING_LOST = "Nothing is lost: u takes it back."
+
+
+class DemonstrationsScreen(TangyScreen[None]):
+    """All demonstrations, and the steps of the one under the cursor."""
+
+    CSS_PATH = "demonstrations.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
+    AUTO_FOCUS = "#demonstrations"
+    TITLE = "Demonstrations"
+    HELP = (
+        "What was shown to Tangy, by whom, and how much of the activity it shows. Below stand the "
+        "steps of the demonstration under the cursor: tab goes there and up and down choose one. "
+        "x puts a demonstration away or takes it back into use, a shows it again from the chosen "
+        "step, space marks several and g makes one of them, / makes two after the chosen step. "
+        "Every change is one step that u takes back, however long ago it was."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("x", "delete", "Delete, or restore"),
+        Binding("a", "again", "Show again from the chosen step"),
+        Binding("space", "mark", "Mark, to merge"),
+        Binding("g", "merge", "Merge those that are marked"),
+        Binding("slash", "split", "Split after the chosen step", key_display="/"),
+        Binding("c", "conflicts", "What they disagree about"),
+        Binding("u", "undo", "Undo the last change"),
+        Binding("ctrl+z", "undo", "Undo the last change", show=False, priority=True),
+        Binding("U", "redo", "Do it again", key_display="U"),
+        Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
+        Binding("l", "learn", "Learn from those in use"),
+        Binding("escape", "leave", "Back"),
+    ]
+
+    def __init__(self, house: House) -> None:
+        """Make the screen of a house's demonstrations."""
+        super().__init__()
+        self._house = house
+        self._editor = Editor(house.store, house.activity)
+        self._library = self._editor.library
+        self._rows: dict[str, ListRow] = {}
+        self._marked: list[str] = []
+        self._shown = ""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the list, the notes on the chosen one, and its steps."""
+        yield StatusLine()
+        yield panel(DemonstrationList())
+        yield Static(id="notes", markup=False)
+        yield panel(Transcript(empty="It has no steps.", id="transcript"))
+        yield key_line(
+            ("x", "delete"), ("a", "again"), ("space", "mark"), ("g", "merge"),
+            ("/", "split"), ("c", "conflicts"), ("u U", "undo"), ("?", "help"),
+        )  # fmt: skip
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Read the library: something may have been shown, or settled, meanwhile."""
+        super().on_screen_resume(event)
+        self._read()
+
+    # ---------------------------------------------------------------------------- the choice
+
+    @property
+    def _chosen(self) -> ListRow | None:
+        return self._rows.get(str(self.query_one(DemonstrationList).chosen))
+
+    @property
+    def _step(self) -> int | None:
+        """The step that the cursor is on, if it is on one."""
+        return self.query_one(Transcript).chosen
+
+    def on_choice_list_moved(self) -> None:
+        """Show the steps of another demonstration."""
+        self._show_chosen()
+
+    def on_demonstration_list_chosen(self, event: DemonstrationList.Chosen) -> None:
+        """Open the demonstration."""
+        event.stop()
+        self._open()
+
+    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
+        """Open the demonstration at the step."""
+        event.stop()
+        self._open()
+
+    def _open(self) -> None:
+        from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+
+        if (row := self._chosen) is not None:
+            self.app.push_screen(DemonstrationScreen(self._house, row.id, self._step or 1))
+
+    # --------------------------------------------------------------------------- the changes
+
+    def action_delete(self) -> None:
+        """Put the chosen demonstration away, or take it into use again."""
+        row = self._chosen
+        if row is None:
+            return
+        if self._library.entries[row.id].hidden:
+            self._do(lambda: self._editor.restore(row.id))
+            return
+        detail = f"Tangy will not learn from its {counted(row.steps, 'step')}. {NOTHING_LOST}"
+        self._confirm(
+            f"Delete demonstration {row.number} by {row.teacher}?",
+            detail,
+            "delete it",
+            lambda: self._editor.delete(row.id),
+        )
+
+    def action_mark(self) -> None:
+        """Mark the chosen demonstration, or take the mark off."""
+        row = self._chosen
+        if row is not None:
+            if row.id in self._marked:
+                self._marked.remove(row.id)
+            else:
+                self._marked.append(row.id)
+            self._show_list()
+
+    def action_merge(self) -> None:
+        """Make one demonstration of those that are marked, in the order of their marks."""
+        ids = [id for id in self._marked if id in self._rows]
+        if len(ids) < 2:
+            self._say("Mark two or more with space first, and then merge them with g.")
+            return
+        names = " and ".join(str(self._rows[id].number) for id in ids)
+        steps = sum(self._rows[id].steps for id in ids)
+        self._confirm(
+            f"Merge demonstrations {names}?",
+            f"They give way to one of {counted(steps, 'step')}, in this order. {NOTHING_LOST}",
+            "merge them",
+            lambda: self._editor.merge(*ids),
+        )
+
+    def action_split(self) -> None:
+        """Make two demonstrations of the chosen one, after the chosen step."""
+        row, step = self._chosen, self._step
+        if row is None:
+            return
+        if step is None:
+            self._say("Choose the step that ends the first part: tab goes to the steps.")
+            return
+        self._confirm(
+            f"Split demonstration {row.number} after step {step}?",
+            f"It gives way to two: {counted(step, 'step')}, and {row.steps - step} after them. "
+            f"{NOTHING_LOST}",
+            "split it",
+            lambda: self._editor.split(row.id, step),
+        )
+
+    def action_undo(self) -> None:
+        """Take the last change back."""
+        self._do(self._editor.undo, "Taken back")
+
+    def action_redo(self) -> None:
+        """Make the change again that was taken back."""
+        self._do(self._editor.redo, "Done again")
+
+    def action_again(self) -> None:
+        """Show the chosen demonstration again from the chosen step."""
+        row, step = self._chosen, self._step
+        if row is None:
+            return
+        if step is None:
+            self._say("Choose the step to begin with: tab goes to the steps.")
+        else:
+            program: Any = self.app
+            self.app.run_worker(program.show_again(row.id, step - 1))
+
+    def action_conflicts(self) -> None:
+        """Show what the demonstrations disagree about."""
+        from tangy_tui.ui.screens.conflicts import ConflictsScreen
+
+        if self._library.conflicts:
+            self.app.push_screen(ConflictsScreen(self._house, then="go back to the list"))
+        else:
+            self._say("The demonstrations agree in every situation.")
+
+    async def action_learn(self) -> None:
+        """Learn from those that are in use."""
+        await self.run_action("app.learn")
+
+    def action_leave(self) -> None:
+        """Let go of a chosen step, or go back."""
+        if self._step is not None:
+            self.query_one(Transcript).release()
+            self.query_one(DemonstrationList).focus()
+        else:
+            self.dismiss(None)
+
+    def _confirm(self, question: str, detail: str, yes: str, change: Callable[[], Edit]) -> None:
+        async def ask() -> None:
+            if await self.app.push_screen_wait(ConfirmDialog(question, detail, yes=yes)):
+                self._do(change)
+
+        self.run_worker(ask(), name="confirm")
+
+    def _do(self, change: Callable[[], Edit], before: str = "") -> None:
+        """Make a change and say what it was, or why it cannot be made."""
+        try:
+            edit = change()
+        except TangyError as error:
+            self._say(str(error), bad=True)
+            return
+        self._marked.clear()
+        self._read()
+        words = edit_words(self._house.activity, self._library, edit)
+        self._say(f"{before}: {words}" if before else f"{words} u takes it back.")
+
+    def _say(self, sentence: str, *, bad: bool = False) -> None:
+        app: Any = self.app
+        app.clear_notifications()
+        app.say(sentence[:1].upper() + sentence[1:], bad=bad)
+
+    # ------------------------------------------------------------------------------- showing
+
+    def _read(self) -> None:
+        self._library = self._editor.library
+        rows = list_rows(self._house.activity, self._library)
+        self._rows = {row.id: row for row in rows}
+        conflicts = len(self._library.conflicts)
+        disagree = f", {counted(conflicts, 'conflict')}: press c" if conflicts else ""
+        note = f"{sum(row.in_use for row in rows)} of {len(rows)} in use{disagree}"
+        self.query_one(StatusLine).show(Status(mode="demonstrations", note=note))
+        self._shown = ""
+        self._show_list()
+
+    def _show_list(self) -> None:
+        self.query_one(DemonstrationList).fill(list(self._rows.values()), self._marked)
+        self._show_chosen()
+
+    def _show_chosen(self) -> None:
+        """Show notes and steps of the demonstration under the cursor, if it is another one."""
+        row = self._chosen
+        if row is None or row.id == self._shown:
+            return
+        self._shown = row.id
+        house = self._house
+        notes = ", ".join(row.notes) or "nothing to note"
+        self.query_one("#notes", Static).update(clean(f"{row.number}: {row.state}; {notes}."))
+        steps = self._library.entries[row.id].demonstration.steps
+        words = [step_words(house.activity, step, house.name) for step in steps]
+        transcript = self.query_one(Transcript)
+        transcript.border_title = f"Steps of demonstration {row.number}"
+        transcript.fill(words)

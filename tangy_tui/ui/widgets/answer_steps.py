@@ -1,0 +1,60 @@
+"""One answer to a situation, with the steps that gave it: a column beside the other answers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from textual.message import Message
+
+from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.library import Library
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.local_time import local_time
+from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.rows import shorten
+from tangy_tui.wording import counted
+
+
+class AnswerSteps(ChoiceList):
+    """The steps that gave one answer, two lines each; Enter opens the one under the cursor."""
+
+    class Chosen(Message):
+        """A step was chosen with Enter."""
+
+        def __init__(self, answer: AnswerSteps, shown: Shown) -> None:
+            super().__init__()
+            self.answer = answer
+            self.shown = shown
+
+        @property
+        def control(self) -> AnswerSteps:
+            """The column that it was chosen in."""
+            return self.answer
+
+    def __init__(
+        self, number: int, behaviour: str, steps: Sequence[Shown], library: Library
+    ) -> None:
+        super().__init__(
+            f"{number} {clean(behaviour)}",
+            "The steps that gave this answer. Enter opens one in its demonstration; the number "
+            "before the answer says that it is right.",
+        )
+        self.border_subtitle = counted(len(steps), "time")
+        self._steps = tuple(steps)
+        self._library = library
+        self._write = self._lines
+
+    def _lines(self, width: int, height: int) -> list[Line]:
+        lines = []
+        for index, shown in enumerate(self._steps):
+            name = self._library.name(shown.demonstration)
+            entry = self._library.entries.get(shown.demonstration)
+            when = f", {local_time(entry.at)}" if entry is not None else ""
+            where = f"step {shown.number} of {name}"
+            who = f"  {clean(shown.teacher)}{when}"
+            lines.append(Line(((shorten(where, width), "text"),), index))
+            lines.append(Line(((shorten(who, width), "dim"),), index))
+        return lines
+
+    def _tell(self, index: int) -> None:
+        self.post_message(self.Chosen(self, self._steps[index]))

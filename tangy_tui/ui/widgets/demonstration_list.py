@@ -1,0 +1,80 @@
+"""The demonstrations as a table: who showed it and when, how much it shows, what is to be known."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from rich.cells import cell_len
+from textual.message import Message
+
+from tangy_tui.learning.listing import ListRow
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.local_time import local_time
+from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.rows import Row, fit, shorten
+
+WIDEST_TEACHER = 12
+SHORTEST_NOTES = 12
+"""Columns below which the notes stand under the table alone."""
+
+
+class DemonstrationList(ChoiceList):
+    """One line for each demonstration, by its id; those that are marked have a star."""
+
+    class Chosen(Message):
+        """A demonstration was chosen with Enter."""
+
+        def __init__(self, list: DemonstrationList) -> None:
+            super().__init__()
+            self.list = list
+
+        @property
+        def control(self) -> DemonstrationList:
+            """The list that it was chosen in."""
+            return self.list
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Demonstrations",
+            "One line for each demonstration: its number, who showed it and when, how many steps "
+            "it has, how many of the situations it shows, and whether it is learnt from.",
+            id="demonstrations",
+        )
+
+    def fill(self, rows: Sequence[ListRow], marked: Collection[str]) -> None:
+        """Show these demonstrations; the cursor stays on the one that it is on."""
+        kept, stars = tuple(rows), frozenset(marked)
+        self.show(lambda width, height: demonstration_lines(kept, stars, width))
+
+    def _tell(self, index: int) -> None:
+        self.post_message(self.Chosen(self))
+
+
+def demonstration_lines(rows: Sequence[ListRow], marked: Collection[str], width: int) -> list[Line]:
+    """Write the table for so many columns; with no demonstrations, how to begin."""
+    if not rows:
+        return [Line((("No demonstrations yet: press t at home to show Tangy a game.", "dim"),))]
+    teacher = min(WIDEST_TEACHER, max(7, *(cell_len(clean(row.teacher)) for row in rows)))
+    state = max(5, *(cell_len(clean(row.state)) for row in rows))
+    notes = width - (teacher + state + 40)
+    notes = notes if notes >= SHORTEST_NOTES else 0
+    head = f"   no  {fit('teacher', teacher)}  {'date':<16}  steps  seen   {fit('state', state)}"
+    head += "  notes" if notes else ""
+    lines = [Line(((shorten(head, width), "dim"),))]
+    for row in rows:
+        lines.append(Line(_row(row, row.id in marked, (teacher, state, notes)), row.id))
+    return lines
+
+
+def _row(row: ListRow, marked: bool, widths: tuple[int, int, int]) -> Row:
+    teacher, state, notes = widths
+    ink = "text" if row.in_use else "dim"
+    seen = f"{row.seen}/{row.situations}"
+    return (
+        ("★ " if marked else "  ", "good"),
+        (f"{row.number:>3}  ", "strong" if row.in_use else "dim"),
+        (f"{fit(clean(row.teacher), teacher)}  {local_time(row.at)}  ", ink),
+        (f"{row.steps:>5}  {seen:<5}  ", ink),
+        (fit(clean(row.state), state), "good" if row.in_use else "warn"),
+        (f"  {shorten(clean(', '.join(row.notes)), notes)}" if notes else "", "text"),
+    )
