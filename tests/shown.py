@@ -1,64 +1,54 @@
-"""Demonstrations for tests: put into a log, with a situation left out or answered otherwise."""
+"""Putting demonstrations into a log as a teaching session does, with answers of one's choice."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
-from tangy_tui.learning.policy import EXACT, ForestSettings, Policy, learn_policy
+from tangy_tui.learning.library import BEGUN, FINISHED, STEP
 
 
-def keep(store: Store, demonstration: Demonstration) -> None:
-    """Log a demonstration as a teaching session does."""
-    name = {"demonstration": demonstration.id}
-    store.append(
-        BEGUN,
-        {
-            **name,
-            "activity": demonstration.activity,
-            "teacher": demonstration.teacher,
-            "seed": demonstration.seed,
-            "people": list(demonstration.people),
-        },
-    )
-    for step in demonstration.steps:
-        store.append(STEP, {**name, **step.to_json()})
-    store.append(FINISHED, name)
-
-
-def without(demonstration: Demonstration, *situations: Situation) -> Demonstration:
-    """Return a demonstration without its steps in some situations."""
-    steps = tuple(s for s in demonstration.steps if s.state.situation not in situations)
-    return replace(demonstration, steps=steps)
-
-
-def otherwise(
-    demonstration: Demonstration, situation: Situation, behaviour: str, teacher: str
-) -> Demonstration:
-    """Return another teacher's copy of a demonstration, with another answer in a situation."""
-    steps = tuple(
-        replace(step, behaviour=behaviour) if step.state.situation == situation else step
-        for step in demonstration.steps
-    )
-    return replace(demonstration, id=f"{demonstration.id}-{teacher}", teacher=teacher, steps=steps)
-
-
-def learnt(
-    store: Store,
-    activity: Activity,
-    demonstrations: Iterable[Demonstration],
-    settings: ForestSettings = EXACT,
-) -> Policy:
-    """Log demonstrations and learn a policy from all that are in the log."""
+def log_demonstration(store: Store, shown: Demonstration) -> None:
+    """Log a demonstration."""
     with store.transaction():
-        for demonstration in demonstrations:
-            keep(store, demonstration)
-    library = read_library(store, activity.name)
-    return learn_policy(
-        activity, library.finished, resolutions=library.resolutions, settings=settings
+        store.append(
+            BEGUN,
+            {
+                "demonstration": shown.id,
+                "activity": shown.activity,
+                "teacher": shown.teacher,
+                "seed": shown.seed,
+                "people": list(shown.people),
+                "origin": shown.origin,
+                "of": list(shown.of),
+            },
+        )
+        for step in shown.steps:
+            store.append(STEP, {"demonstration": shown.id, **step.to_json()})
+        if shown.finished:
+            store.append(FINISHED, {"demonstration": shown.id})
+
+
+def answering(shown: Demonstration, user_state: str, behaviour: str) -> Demonstration:
+    """Return a demonstration that gives another answer wherever a person is doing so."""
+    steps = tuple(
+        replace(step, behaviour=behaviour)
+        if step.state.situation.user_state == user_state
+        else step
+        for step in shown.steps
     )
+    return replace(shown, steps=steps)
+
+
+class SlowClock:
+    """A clock that goes on a second with each look at it, so that pictures stay as they are."""
+
+    def __init__(self) -> None:
+        self._time = datetime(2026, 3, 2, 9, 0, tzinfo=UTC)
+
+    def __call__(self) -> datetime:
+        """Return the time."""
+        self._time += timedelta(seconds=1)
+        return self._time

@@ -144,6 +144,7 @@ def read_library(store: Store, activity: str) -> Library:
     """Read the library of an activity from the log."""
     library = Library(activity)
     edits: list[Edit] = []
+    made: dict[str, int] = {}
     for event in store.events(
         BEGUN, STEP, UNDONE, REDONE, FINISHED, EDITED, EDIT_UNDONE, EDIT_REDONE
     ):
@@ -151,6 +152,7 @@ def read_library(store: Store, activity: str) -> Library:
         if event.kind == BEGUN:
             if body["activity"] == activity:
                 _begin(library, event)
+                made[str(body["demonstration"])] = event.seq
         elif event.kind in (STEP, UNDONE, REDONE, FINISHED):
             entry = library.entries.get(str(body["demonstration"]))
             if entry is not None:
@@ -161,6 +163,7 @@ def read_library(store: Store, activity: str) -> Library:
                 edits.append(Edit(event.seq, event.at, str(body["what"]), body))
                 library.done.append(edits[-1])
                 library.undone.clear()
+                made.update((str(id), event.seq) for id in body.get("made", ()))
             elif event.kind == EDIT_UNDONE:
                 library.undone.append(library.done.pop())
             else:
@@ -168,6 +171,8 @@ def read_library(store: Store, activity: str) -> Library:
     in_force = {edit.seq for edit in library.done}
     for edit in edits:
         _APPLY[edit.what](library, edit, edit.seq in in_force)
+    in_order = sorted(library.entries.items(), key=lambda entry: made[entry[0]])
+    library.entries = dict(in_order)  # so that nobody's number changes when more is shown
     _replace_repeated(library)
     return library
 

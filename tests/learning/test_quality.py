@@ -1,0 +1,195 @@
+"""What is said of demonstrations: short, true, and only where there is something to say."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.store import Store
+from tangy_tui.learning.editing import Editor
+from tangy_tui.learning.library import BEGUN, STEP, UNDONE, Library, read_library
+from tangy_tui.learning.listing import heard_words, list_rows
+from tangy_tui.learning.quality import quality_notes
+from tests.shown import answering, log_demonstration
+
+Demonstrate = Callable[[str, int, int], Demonstration]
+WRONG = "incorrectly marked"
+
+
+@pytest.fixture
+def good(demonstrate: Demonstrate) -> list[Demonstration]:
+    """Four games that show the same, as it should be done."""
+    games = (demonstrate("bingo", seed, 4) for seed in range(40))
+    wanted = [g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps)]
+    return wanted[:4]
+
+
+def library_of(store: Store, *shown: Demonstration) -> Library:
+    for one in shown:
+        log_demonstration(store, one)
+    return read_library(store, "bingo")
+
+
+def notes(activity: Activity, library: Library, number: int) -> list[str]:
+    return quality_notes(activity, library.find(str(number)), library)
+
+
+def test_of_a_good_demonstration_nothing_is_said(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    assert notes(activity, library_of(store, *good), 1) == []
+
+
+def test_an_unfinished_one_says_so(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    begun = replace(good[0], steps=good[0].steps[:5], finished=False)
+    assert notes(activity, library_of(store, begun), 1) == ["not finished"]
+
+
+def test_steps_taken_back_are_counted(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    log_demonstration(store, replace(good[0], steps=good[0].steps[:3], finished=False))
+    for _ in range(2):
+        store.append(UNDONE, {"demonstration": good[0].id, "step": 3})
+    library = read_library(store, "bingo")
+    assert notes(activity, library, 1) == ["not finished", "2 steps taken back"]
+
+
+def test_what_could_not_be_carried_out_is_counted(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    failed = (replace(good[0].steps[1], completed=False), *good[0].steps[2:])
+    shown = replace(good[0], steps=(good[0].steps[0], *failed))
+    assert notes(activity, library_of(store, shown), 1) == ["1 step that could not be carried out"]
+
+
+def test_a_game_that_never_came_to_its_end_is_noted(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    short = replace(good[0], steps=good[0].steps[:4])
+    assert notes(activity, library_of(store, short), 1) == ["stopped before the stage 'end'"]
+
+
+def test_disagreement_names_the_other_demonstration_until_it_is_settled(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    library = library_of(store, good[0], answering(good[1], WRONG, "encourage"))
+    assert notes(activity, library, 1) == ["disagrees with demonstration 2 in 1 situation"]
+    assert notes(activity, library, 2) == ["disagrees with demonstration 1 in 1 situation"]
+    Editor(store, activity).resolve(library.conflicts[0], "remove markers")
+    library = read_library(store, "bingo")
+    assert notes(activity, library, 1) == []
+    wrong = sum(s.state.situation.user_state == WRONG for s in good[1].steps)
+    plural = "" if wrong == 1 else "s"
+    assert notes(activity, library, 2) == [f"{wrong} step{plural} called wrong by a teacher"]
+
+
+def test_one_that_gives_two_answers_contradicts_itself(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    calls = [n for n, s in enumerate(good[0].steps) if s.behaviour == "call number"]
+    steps = list(good[0].steps)
+    steps[calls[0]] = replace(steps[calls[0]], behaviour="joke")
+    library = library_of(store, replace(good[0], steps=tuple(steps)))
+    assert notes(activity, library, 1) == ["contradicts itself in 1 situation"]
+
+
+def test_an_unfinished_one_is_compared_too(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    other = replace(answering(good[1], WRONG, "encourage"), finished=False)
+    library = library_of(store, good[0], other)
+    assert "disagrees with demonstration 1 in 1 situation" in notes(activity, library, 2)
+    assert notes(activity, library, 1) == []
+
+
+def test_one_much_longer_than_the_others_is_noted(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    first, *others = good
+    calls = [s for s in first.steps if s.behaviour == "call number"] * 30
+    long = replace(first, steps=(first.steps[0], *calls, *first.steps[1:]))
+    said = notes(activity, library_of(store, long, *others), 1)
+    assert len(said) == 1 and said[0].startswith("much longer than usual")
+
+
+def test_how_it_came_about_is_said(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    library_of(store, *good[:3])
+    editor = Editor(store, activity)
+    editor.merge("1", "2")
+    editor.split("3", 4)
+    log_demonstration(store, replace(good[3], id="asked", steps=good[3].steps[:1], origin="asked"))
+    library = read_library(store, "bingo")
+    said = [row.notes for row in list_rows(activity, library)]
+    assert "merged from demonstrations 1 and 2" in said[3]
+    assert "a part of demonstration 3" in said[4]
+    assert said[6] == ("answered in a game",)
+
+
+def test_one_that_was_shown_again_names_the_step(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    log_demonstration(store, good[0])
+    store.append(
+        BEGUN,
+        {
+            "demonstration": "again",
+            "activity": "bingo",
+            "teacher": "Ada",
+            "seed": good[0].seed,
+            "people": list(good[0].people),
+            "origin": "again",
+            "of": [good[0].id],
+            "kept": 6,
+        },
+    )
+    store.append(STEP, {"demonstration": "again", **good[0].steps[6].to_json()})
+    said = notes(activity, read_library(store, "bingo"), 2)
+    assert "shown again from step 7 of demonstration 1" in said
+
+
+def test_a_number_stays_when_more_is_shown(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    library_of(store, *good[:2])
+    made = Editor(store, activity).merge("1", "2").body["made"][0]
+    assert read_library(store, "bingo").number(made) == 3
+    library = library_of(store, good[2])
+    assert library.number(made) == 3
+    assert library.number(good[2].id) == 4
+
+
+def test_rows_tell_what_there_is_and_are_documents(
+    activity: Activity, store: Store, good: list[Demonstration]
+) -> None:
+    library_of(store, *good[:2])
+    Editor(store, activity).delete("2")
+    rows = list_rows(activity, read_library(store, "bingo"))
+    assert [(row.number, row.state, row.in_use) for row in rows] == [
+        (1, "in use", True),
+        (2, "deleted", False),
+    ]
+    assert rows[0].steps == len(good[0].steps)
+    assert rows[0].situations == len(activity.situations)
+    assert 0 < rows[0].seen <= rows[0].situations
+    document = json.loads(json.dumps(rows[0].to_json()))
+    assert document["coverage"] == {"seen": rows[0].seen, "situations": rows[0].situations}
+
+
+def test_the_words_that_were_heard_are_found_by_step(
+    store: Store, good: list[Demonstration]
+) -> None:
+    log_demonstration(store, replace(good[0], steps=good[0].steps[:1], finished=False))
+    second = good[0].steps[1].to_json()
+    store.append(STEP, {"demonstration": good[0].id, **second, "heard": "next number"})
+    shown = read_library(store, "bingo").find("1").demonstration
+    assert heard_words(store, shown) == {2: "next number"}
