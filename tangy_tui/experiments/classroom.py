@@ -18,6 +18,7 @@ from typing import Any, Protocol
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.guide import GuidedWorld
@@ -74,7 +75,15 @@ def about(name: str) -> dict[str, Any]:
     """Return the settings of a sweep that say which activity it is about.
 
     A file of somebody's own may change under the same name, so its content is among them.
+
+    Raises:
+        TangyError: there is no such activity, or it does not say what is expected.
     """
+    if not activity_of(name).expected:
+        raise TangyError(
+            f"{activity_of(name).title} does not say what is expected ([[expected]]), "
+            "so nobody can tell whether it was learnt."
+        )
     if not name.endswith(".toml"):
         return {"activity": name}
     return {"activity": name, "content": digest_of(Path(name).read_text(encoding="utf-8"))}

@@ -14,11 +14,21 @@ from math import sqrt
 from random import Random
 from typing import Any
 
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_sim.compliance import preferences_in_turn
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
-from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of, learnt, taught
+from tangy_tui.experiments.classroom import (
+    GUIDED,
+    Course,
+    about,
+    activity_of,
+    covered,
+    learnt,
+    taught,
+)
 from tangy_tui.experiments.estimates import summary
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.interaction.persuasion import Persuasion
@@ -34,13 +44,28 @@ LONGEST = 2_000
 """Games after which somebody who has not converged is counted as such."""
 
 GROUPS_A_PIECE = 5
+MOST_GUIDED = 8
+
+
+LONGEST_GAME = 2_000
+"""Behaviours after which a game goes round in circles."""
 
 
 @cache
 def policy_of(activity: str, users: int) -> Policy:
-    """Learn the policy that facilitates, from one guided demonstration of Scenario 1."""
-    course = Course(activity, users, GUIDED, 1)
-    return learnt(activity_of(activity), list(islice(taught(course), 1)))
+    """Learn the policy that facilitates, from guided demonstrations of Scenario 1.
+
+    One is enough for an activity that can show everything in one game.
+
+    Raises:
+        TangyError: some situation never comes about, so that it cannot be demonstrated.
+    """
+    shown: list[Demonstration] = []
+    for demonstration in islice(taught(Course(activity, users, GUIDED, 1)), MOST_GUIDED):
+        shown.append(demonstration)
+        if covered(activity_of(activity), shown):
+            return learnt(activity_of(activity), shown)
+    raise TangyError(f"{MOST_GUIDED} guided games do not show all that is expected.")
 
 
 def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
@@ -69,7 +94,9 @@ def _group(settings: Settings, seed: int) -> dict[str, Any]:
         if games:
             world.begin()
         games += 1
-        while not world.over:
+        for _ in range(LONGEST_GAME):
+            if world.over:
+                break
             state = world.observe()
             behaviour = activity.behaviours[policy.decide(state.situation).behaviour]
             target = state.attended if behaviour.attends else None
@@ -80,6 +107,8 @@ def _group(settings: Settings, seed: int) -> dict[str, Any]:
             if response is not None:
                 optimal[response.person].append(response.strategy == best[response.person])
                 persuasion.update(response)
+        if not world.over:
+            raise TangyError(f"A game did not end within {LONGEST_GAME} behaviours.")
     return {
         "games": games,
         "interactions": [len(chosen) for chosen in optimal.values()],

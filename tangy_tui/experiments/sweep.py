@@ -97,7 +97,10 @@ class Kept:
         if self.path is None:
             return
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
+            if folder is not None and not folder.exists():
+                folder.mkdir(parents=True)
+                folder.chmod(0o700)  # as the log of this folder would have it
+            self.path.parent.mkdir(exist_ok=True)
             if fresh:
                 self.path.unlink(missing_ok=True)
             data = self.path.read_bytes() if self.path.exists() else b""

@@ -124,4 +124,6 @@ def test_estimates_say_how_sure_they_are() -> None:
     assert summary([])["mean"] is None
     low, high = share_interval(0.95, 100)
     assert [low, high] == pytest.approx([0.888, 0.978], abs=0.002)
-    assert share_interval(1.0, 10)[1] == 1
+    for n in range(1, 200):
+        assert share_interval(1.0, n)[1] == 1
+        assert share_interval(0.0, n)[0] == 0

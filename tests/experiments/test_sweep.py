@@ -134,6 +134,11 @@ def _kept(folder: Path) -> bool:
     return any(file.stat().st_size for file in folder.glob("experiments/*.jsonl"))
 
 
+def test_a_folder_that_is_made_is_for_its_owner_alone(tmp_path: Path) -> None:
+    sweep().run(Where(tmp_path / "new" / "data", jobs=1))
+    assert (tmp_path / "new" / "data").stat().st_mode & 0o777 == 0o700
+
+
 def test_a_folder_that_cannot_be_used_is_said_in_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "experiments").write_text("a file", encoding="utf-8")
     with pytest.raises(TangyError, match="choose another --data"):
@@ -149,6 +154,7 @@ def test_a_folder_that_cannot_be_used_is_said_in_a_sentence(tmp_path: Path) -> N
         (("--report", "nowhere/r.html"), "there is no such folder"),
         (("--report", "."), "name a file in it"),
         (("--activity", "chess"), "There is no activity 'chess'"),
+        (("--activity", "nowhere.toml"), "nowhere.toml"),
         (("--dask", "tcp://127.0.0.1:1"), "no Dask scheduler answers there"),
         (("--dask", "no address"), "no Dask scheduler answers there"),
     ],
