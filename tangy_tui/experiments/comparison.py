@@ -6,7 +6,7 @@ given only for what differs.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,14 +55,31 @@ def _beside(here: float, paper: float, error: float, why: str) -> str:
     return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}. {why}"
 
 
-def _one_run(here: float, paper: float, spread: float) -> str:
+def _one_run(here: float, paper: float, runs: Mapping[str, Any]) -> str:
     """Say whether one run of the paper's may have come out as it did where ours is the mean."""
-    chance = f"a mean of four users varies by {number(spread)} (standard deviation) between runs"
     unknown = "What counted as convergence, and how its users complied, the paper does not say."
-    if abs(here - paper) <= SURE * spread:
-        return f"Agrees as far as one run can: {chance}. {unknown}"
+    chance = f"a mean of four users {_varies(runs['sd'], runs['n'])}"
     how = "Higher" if here > paper else "Lower"
+    if runs["n"] > 1 and abs(here - paper) <= SURE * runs["sd"]:
+        return f"Agrees as far as one run can: {chance}. {unknown}"
     return f"{how} by {abs(here - paper):.2g}, and {chance}. {unknown}"
+
+
+def _varies(deviation: float, runs: int) -> str:
+    if runs < 2:
+        return "varies between runs, by how much one run cannot say"
+    return f"varies by {number(deviation)} (standard deviation) between runs"
+
+
+def _rising(users: Sequence[Mapping[str, Any]]) -> str:
+    """Say for whom the share of optimal strategies rises from its first quarter to its last."""
+    level = []
+    for user in users:
+        shares = user["optimal_share"]
+        size = max(1, len(shares) // 4)
+        if sum(shares[-size:]) <= sum(shares[:size]):
+            level.append(user["name"])
+    return f"Does not rise for {', '.join(level)}." if level else "Rises for every user, too."
 
 
 def _learning(document: Document) -> list[Row]:
@@ -143,15 +160,15 @@ def _persuasion(document: Document) -> list[Row]:
             "Sub-optimal strategies before convergence",
             f"{paper['suboptimal_before_convergence']} (mean of four users, one run)",
             f"{_mean(before)}, standard deviation {number(before['sd'])} between people{never}",
-            _one_run(before["mean"], paper["suboptimal_before_convergence"], four["sd"]),
+            _one_run(before["mean"], paper["suboptimal_before_convergence"], four),
         ),
         Row(
             "Interactions of a user in a game",
             str(asked),
             f"{number(rate, 3)} ({document['games']} games)",
             f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}; a mean over "
-            f"twenty games varies by {number(document['interactions_sd_of_twenty_games'])} "
-            "(standard deviation). The rates of the simulated people were fitted to the twenty "
+            f"twenty games {_varies(document['interactions_sd_of_twenty_games'], four['n'])}. "
+            "The rates of the simulated people were fitted to the twenty "
             "games of Table II, whose counts give 90 interactions of four people.",
         ),
         Row(
@@ -159,8 +176,8 @@ def _persuasion(document: Document) -> list[Row]:
             "rises to all of them, for each user",
             f"{', '.join(percent(share) for share in last)} of the "
             f"{len(document['users'][0]['optimal_share'])}th interactions, by user",
-            "The same shape. The paper draws one run of each user; here it is the share of "
-            f"{document['groups']} runs. Thompson sampling never stops exploring altogether, so "
-            "the share comes near to 100% and does not stay there.",
+            f"{_rising(document['users'])} The paper draws one run of each user; here it is the "
+            f"share of {document['groups']} runs. Thompson sampling never stops exploring "
+            "altogether, so the share comes near to 100% and does not stay there.",
         ),
     ]

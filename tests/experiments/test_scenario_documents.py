@@ -121,7 +121,7 @@ def test_words_follow_the_numbers(ran: Ran) -> None:
         assert "Agrees" in compare(near)[2].words
         assert compare(far)[2].words.startswith("Lower by 12.")
     else:
-        four = {"mean": 10.0, "sd": 3.0}
+        four = {"mean": 10.0, "sd": 3.0, "n": 9}
         far = {
             **ran.document,
             "four_users": four,
@@ -132,3 +132,5 @@ def test_words_follow_the_numbers(ran: Ran) -> None:
         row = compare(far)[0]
         assert row.words.startswith("Higher by 9.2")
         assert "2 never converged" in row.here
+        flat = [{**user, "optimal_share": [0.5] * 8} for user in ran.document["users"]]
+        assert compare({**far, "users": flat})[2].words.startswith("Does not rise for User 1, ")
