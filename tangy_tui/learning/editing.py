@@ -62,9 +62,14 @@ class Editor:
         return self._edit("delete", entries)
 
     def restore(self, *wanted: str) -> Edit:
-        """Take demonstrations into use again that were deleted or replaced."""
+        """Take demonstrations into use again that were deleted."""
         entries = self._choose(wanted)
         for entry in entries:
+            if entry.hidden == "shown again":  # only one of the two can be in use
+                raise NotPossible(
+                    f"{entry.demonstration.id} was shown again: delete the new one, "
+                    "and it is in use."
+                )
             if entry.hidden in ("merged", "split", "undone"):
                 raise NotPossible(
                     f"{entry.demonstration.id} was {entry.hidden}: "

@@ -301,11 +301,15 @@ _APPLY: Mapping[str, Callable[[Library, Edit, bool], None]] = {
 }
 
 
+STILL_USED = ("", "merged", "split", "shown again")
+"""States in which the steps of a demonstration are learnt from, there or in what took its place."""
+
+
 def _replace_repeated(library: Library) -> None:
     """Hide what was shown again from some step, from the moment the new one is complete."""
     for entry in list(library.entries.values()):
         made = entry.demonstration
-        if made.origin == "again" and made.finished and not entry.hidden:
+        if made.origin == "again" and made.finished and entry.hidden in STILL_USED:
             for id in made.of:
                 if id in library.entries and not library.entries[id].hidden:
                     _hide(library, [id], "shown again")

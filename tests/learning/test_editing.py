@@ -203,6 +203,11 @@ def test_what_is_shown_again_replaces_the_old_when_it_is_complete(store: Store) 
     assert set(used(library)) == {"bbb"}
     assert library.entries["aaa"].hidden == "shown again"
     editor = editor_of(store)
+    with pytest.raises(NotPossible, match="delete the new one"):
+        editor.restore("aaa")
+    editor.split("bbb", 1)
+    assert "aaa" not in used(editor.library)
+    editor.undo()
     editor.delete("bbb")
     assert set(used(editor.library)) == {"aaa"}
 
