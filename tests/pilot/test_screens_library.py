@@ -1,0 +1,364 @@
+"""The library of demonstrations and its conflicts, walked with keys as a teacher would."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.widgets import Static
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.house import House
+from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.policies import last_policy, load_policy
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.conflicts import ConflictsScreen
+from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.policy import PolicyScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot
+from tests.shown import SlowClock, answering, log_demonstration
+
+Demonstrate = Callable[[str, int, int], Demonstration]
+WRONG = "incorrectly marked"
+SIZES = pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+
+
+@pytest.fixture(autouse=True)
+def _greenwich(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Let dates look the same everywhere."""
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.fixture
+def house(
+    tmp_path: Path, demonstrate: Demonstrate, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[House]:
+    """A house in which Ada and Bea disagree about wrong marks, and Cem did not finish."""
+    monkeypatch.setenv("USER", "ann")
+    opened = House(tmp_path / "data")
+    monkeypatch.setattr(opened.store, "_now", SlowClock())
+    games = (demonstrate("bingo", seed, 4) for seed in range(1, 40))
+    wanted = (g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps))
+    first, second, third = (next(wanted) for _ in range(3))
+    log_demonstration(opened.store, replace(first, id="aaaa", teacher="Ada"))
+    other = replace(second, id="bbbb", teacher="Bea")
+    log_demonstration(opened.store, answering(other, WRONG, "encourage"))
+    begun = replace(third, id="cccc", teacher="Cem", steps=third.steps[:6], finished=False)
+    log_demonstration(opened.store, begun)
+    yield opened
+    opened.close()
+
+
+def library_of(house: House) -> Library:
+    return read_library(house.store, house.activity.name)
+
+
+def states(house: House) -> list[str]:
+    """Return why each demonstration is not learnt from (empty: it is)."""
+    return [entry.hidden for entry in library_of(house).entries.values()]
+
+
+def program(house: House, *keys: str) -> Program:
+    """Make the program at home."""
+    return Program(house, clock=StillClock())
+
+
+async def press(pilot: TangyPilot, *keys: str) -> None:
+    """Press keys, one after another, each when what came before is on the screen."""
+    for key in keys:
+        await pilot.press(key)
+        await pilot.pause()
+
+
+def told(pilot: TangyPilot) -> str:
+    """Return the sentences that are shown for a few seconds."""
+    return " ".join(notification.message for notification in pilot.app._notifications)
+
+
+async def wait_for(pilot: TangyPilot, kind: type[object]) -> None:
+    """Wait until a screen is open: what is learnt is learnt beside the screen."""
+    for _ in range(200):
+        await pilot.pause(0.02)
+        if isinstance(pilot.app.screen, kind):
+            return
+    raise AssertionError(f"no {kind.__name__}, but {pilot.app.screen}")
+
+
+# ----------------------------------------------------------------------------------- the list
+
+
+async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i")
+        assert isinstance(pilot.app.screen, DemonstrationsScreen)
+        shown = pilot.text()
+        assert "2 of 3 in use" in shown
+        assert "1 conflict: press c" in shown
+        assert "Ada" in shown and "2026-03-02 09:0" in shown
+        assert "unfinished" in shown
+        assert "disagrees with demonstration 2 in 1 situation" in shown
+        await press(pilot, "down", "down")
+        assert "3: unfinished; not finished" in pilot.text()
+
+
+async def test_deleting_is_asked_about_and_restored_by_the_same_key(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i", "x")
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await press(pilot, "n")
+        assert states(house) == ["", "", ""]
+        await press(pilot, "x", "y")
+        assert states(house) == ["deleted", "", ""]
+        assert "1 of 3 in use" in pilot.text()
+        await press(pilot, "x")
+        assert states(house) == ["", "", ""]
+
+
+async def test_changes_are_undone_and_done_again_in_order(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "x", "y", "down", "x", "y")
+        assert states(house) == ["deleted", "deleted", ""]
+        await press(pilot, "u")
+        assert states(house) == ["deleted", "", ""]
+        await press(pilot, "ctrl+z")
+        assert states(house) == ["", "", ""]
+        await press(pilot, "u")
+        assert "no change of the demonstrations to undo" in told(pilot)
+        await press(pilot, "U", "ctrl+y")
+        assert states(house) == ["deleted", "deleted", ""]
+
+
+async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "space", "g")
+        assert "Mark two or more" in told(pilot)
+        await press(pilot, "down", "space", "g")
+        assert "Merge demonstrations 1 and 2?" in pilot.text()
+        await press(pilot, "y")
+        assert states(house) == ["merged", "merged", "", ""]
+        assert len(library_of(house).find("4").demonstration.steps) == sum(
+            len(library_of(house).find(n).demonstration.steps) for n in "12"
+        )
+        await press(pilot, "u")
+        assert states(house)[:3] == ["", "", ""]
+
+
+async def test_one_is_split_after_the_chosen_step(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "slash")
+        assert "Choose the step that ends the first part" in told(pilot)
+        await press(pilot, "tab", "home", "down", "slash", "y")
+        assert states(house) == ["split", "", "", "", ""]
+        first = library_of(house).find("4").demonstration
+        assert len(first.steps) == 2
+
+
+async def test_an_unfinished_one_cannot_be_merged_and_says_why(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "space", "down", "down", "space", "g", "y")
+        assert "not finished yet" in told(pilot)
+        assert states(house) == ["", "", ""]
+
+
+async def test_a_demonstration_opens_at_the_chosen_step(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i", "tab", "home", "down", "down", "enter")
+        screen = pilot.app.screen
+        assert isinstance(screen, DemonstrationScreen)
+        assert screen.query_one(Transcript).chosen == 3
+        assert "3 of " in str(screen.query_one("#told", Static).render())
+        await press(pilot, "up", "escape")
+        assert isinstance(pilot.app.screen, DemonstrationsScreen)
+        await press(pilot, "escape", "escape")
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path: Path) -> None:
+    from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+
+    house = House(tmp_path / "own")
+    try:
+        teaching = house.teaching("Ada", 1)
+        teaching.begin()
+        list(ScriptedTeacher(teaching).demonstrate())
+        async with run(app=program(house)) as pilot:
+            await press(pilot, "i", "tab", "home", "down", "down", "down", "a")
+            await wait_for(pilot, TeachScreen)
+            assert pilot.app.screen.query_one(Transcript).count == 3
+            assert "Show it again from step 4" in pilot.text()
+            await press(pilot, *"call number", "enter", "y")
+            begun = library_of(house).find("2").demonstration
+            assert (begun.origin, len(begun.steps)) == ("again", 4)
+            assert not library_of(house).find("1").hidden  # until the new one is complete
+    finally:
+        house.close()
+
+
+async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
+    run: Run, tmp_path: Path
+) -> None:
+    house = House(tmp_path / "own")
+    try:
+        async with run(app=program(house)) as pilot:
+            await press(pilot, "t", *"greet everyone", "enter", "y", *"call number", "enter", "y")
+            teach = pilot.app.screen
+            id = library_of(house).find("1").demonstration.id
+            await pilot.app.push_screen(DemonstrationScreen(house, id, 2))
+            await press(pilot, "a", "y")
+            await wait_for(pilot, ConfirmDialog)
+            await press(pilot, "y")
+            assert pilot.app.screen is teach
+            assert teach.query_one(Transcript).count == 1
+            assert len(library_of(house).entries) == 1
+    finally:
+        house.close()
+
+
+# ------------------------------------------------------------------------------ the conflicts
+
+
+async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_says(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "l")
+        assert isinstance(pilot.app.screen, ConflictsScreen)
+        assert last_policy(house.store, "bingo") is None
+        shown = pilot.text()
+        assert "help · wrong marks" in shown
+        assert "remove markers" in shown and "encourage" in shown
+        assert "demonstration 1" in shown and "Bea, 2026-03-02" in shown
+        await press(pilot, "2")
+        assert "Settled: 1" in pilot.text()
+        await press(pilot, "enter")
+        await wait_for(pilot, PolicyScreen)
+        policy, _ = load_policy(house.store, house.activity)
+        (conflict,) = (s for s in house.activity.situations if s.user_state == WRONG)
+        right = library_of(house).resolutions[0].right
+        assert (policy.decide(conflict).behaviour,) == right
+        assert policy.decide(conflict).sure
+
+
+async def test_what_is_left_open_is_asked_about_in_games(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "l", "escape")
+        assert "Left open: 1; Tangy will ask" in pilot.text()
+        await press(pilot, "enter")
+        await wait_for(pilot, PolicyScreen)
+        policy, _ = load_policy(house.store, house.activity)
+        contested = [s for s in house.activity.situations if policy.decide(s).contested]
+        assert [s.user_state for s in contested] == [WRONG]
+
+
+async def test_answers_are_taken_back_and_learning_can_be_left(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "l", "1")
+        assert len(library_of(house).resolutions) == 1
+        await press(pilot, "u")
+        assert library_of(house).resolutions == ()
+        assert "Which is right?" in pilot.text()
+        await press(pilot, "b")
+        assert len(library_of(house).resolutions[0].right) == 2
+        await press(pilot, "escape")
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert last_policy(house.store, "bingo") is None
+
+
+async def test_something_else_can_be_right(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "l", "o")
+        assert isinstance(pilot.app.screen, ChooseDialog)
+        await press(pilot, "j", "enter")  # joke
+        assert library_of(house).resolutions[0].right == ("joke",)
+
+
+async def test_a_step_of_an_answer_opens_in_its_demonstration(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i", "c", "tab", "enter")
+        screen = pilot.app.screen
+        assert isinstance(screen, DemonstrationScreen)
+        step = screen._shown.steps[(screen.query_one(Transcript).chosen or 0) - 1]
+        assert step.state.situation.user_state == WRONG
+        await press(pilot, "escape")
+        assert isinstance(pilot.app.screen, ConflictsScreen)
+        assert "Which is right?" in pilot.text()
+
+
+async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "l")
+        pilot.type("1", at=0.1)
+        await pilot.pause()
+        assert library_of(house).resolutions == ()
+        assert pilot.app.screen.query_one(LogView).sentences == ()
+
+
+# --------------------------------------------------------------------------------- how it looks
+
+
+@SIZES
+async def test_how_the_list_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        await press(pilot, "i", "space", "down", "space")
+        picture(pilot.app)
+
+
+@SIZES
+async def test_how_a_demonstration_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        await press(pilot, "i", "tab", "home", "down", "enter")
+        picture(pilot.app)
+
+
+@SIZES
+async def test_how_a_conflict_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        await press(pilot, "i", "c")
+        picture(pilot.app)
+
+
+async def test_how_settled_conflicts_look(
+    run: Run, house: House, picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i", "c", "1")
+        picture(pilot.app)
+
+
+@pytest.mark.parametrize("size", [(60, 18), SMALL])
+async def test_it_can_be_read_in_ascii_and_in_little_room(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    app = Program(house, clock=StillClock(), kind=TerminalKind(ascii=True, ansi=True))
+    async with run(app=app, size=size) as pilot:
+        await press(pilot, "i")
+        assert "Ada" in pilot.text()
+        await press(pilot, "c")
+        assert "Which is right?" in pilot.text()
+        assert "step " in pilot.text()
