@@ -34,7 +34,7 @@ from tangy_tui.learning.policies import POLICY, load_policy
 from tangy_tui.learning.policy import PAPER, SURE, Policy
 from tangy_tui.learning.verifying import Asked, Reply, Say, Verified
 from tests.interaction.conftest import FEW, acts
-from tests.shown import learnt, otherwise, without
+from tests.interaction.gaps import learnt, otherwise, without
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
