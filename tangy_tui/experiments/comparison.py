@@ -132,7 +132,7 @@ def _learning(document: Document) -> list[Row]:
             _typed(typed),
             "Not measured in this run (--no-typing)."
             if typed is None
-            else "The paper's teachers were new to it, spoke, and watched a robot move; here "
+            else "The paper's teachers were new to it, spoke, and watched a simulated robot; here "
             "somebody who knows every command types it as fast as is sensible, so this is what "
             "the program itself allows at best. "
             f"At an ordinary pace it would be {number(typed['ordinary']['minutes'], 1)} minutes.",

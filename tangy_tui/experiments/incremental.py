@@ -27,7 +27,7 @@ from tangy_tui.experiments.published import USERS
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 
 MOST_GAMES = 12
-"""Games by chance after which a teacher gives up; P(not all shown) is below 1e-6 by then."""
+"""Games by chance after which a teacher gives up; four are nearly always enough."""
 
 COUNTS = (1, 2, 3, 4)
 """Demonstrations at which the share of exact policies is reported."""

@@ -168,3 +168,30 @@ def test_bad_input_is_one_sentence(
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
     assert monotonic() - begun < 15
+
+
+@pytest.mark.parametrize("which", [(), ("1",), ("2",)])
+def test_experiments_have_help(
+    which: tuple[str, ...], tangy: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
+    done = tangy("experiment", *which, "--help")
+    assert done.returncode == 0
+    assert "Usage: " in done.stdout
+
+
+def test_progress_is_shown_on_a_terminal_and_not_in_the_document(tmp_path: Path) -> None:
+    import pty
+
+    mine, theirs = pty.openpty()
+    child = subprocess.Popen(  # noqa: S603 - our own interpreter
+        [sys.executable, "-c", "from tangy_tui.cli import main; main()", "experiment", "2",
+         "--people", "4", "--jobs", "1", "--json", "--data", str(tmp_path)],
+        stdout=subprocess.PIPE, stderr=theirs, env={**os.environ, "TERM": "xterm-256color"},
+    )  # fmt: skip
+    os.close(theirs)
+    said, _ = child.communicate(timeout=60)
+    seen = os.read(mine, 65536).decode(errors="replace")
+    os.close(mine)
+    assert child.returncode == 0
+    assert json.loads(said)["experiment"] == 2
+    assert "persuading" in seen
