@@ -14,11 +14,14 @@ from textual.widgets import Static
 from tangy_tui.house import House
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -120,6 +123,135 @@ async def test_undo_takes_the_last_step_back(run: Run, house: House) -> None:
         assert steps(house) == []
 
 
+async def test_redo_brings_the_steps_back_in_order(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await say(pilot, "greet everyone")
+        await say(pilot, "call number")
+        await pilot.press("escape", "u", "u")
+        await pilot.pause()
+        assert "seen 0/11" in screen_text(pilot.app)
+        await pilot.press("U")
+        await pilot.pause()
+        assert steps(house) == ["greeting"]
+        await pilot.press("ctrl+y")
+        await pilot.pause()
+        assert steps(house) == ["greeting", "call number"]
+        assert pilot.app.screen.query_one(Transcript).count == 2
+        assert "seen 2/11" in screen_text(pilot.app)
+        await pilot.press("U")
+        await pilot.pause()
+        assert "no step to do again" in " ".join(pilot.app.screen.query_one(LogView).sentences)
+
+
+async def test_undo_and_redo_are_commands_too(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await say(pilot, "greet everyone")
+        await pilot.press(*"undo", "enter")
+        await pilot.pause()
+        assert steps(house) == []
+        await pilot.press(*"redo", "enter")
+        await pilot.pause()
+        assert steps(house) == ["greeting"]
+
+
+@pytest.mark.parametrize("typed", [True, False])
+async def test_the_game_is_shown_again_from_a_step(run: Run, house: House, typed: bool) -> None:
+    async with run(app=program(house)) as pilot:
+        await mid_game(pilot, 14)
+        if typed:
+            await pilot.press(*"again 13", "enter")
+        else:
+            await pilot.press("escape", "up", "up", "a")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        assert "before step 13" in screen_text(pilot.app)
+        await pilot.press("y")
+        await pilot.pause()
+        screen = pilot.app.screen
+        assert screen.query_one(Transcript).count == len(steps(house)) == 12
+        assert screen_text(pilot.app).count("Steps 13 to 14 are undone") == 1
+        await pilot.press(*(["escape"] if typed else []), "U")
+        await pilot.pause()
+        assert len(steps(house)) == 13
+
+
+async def test_a_no_leaves_the_game_as_it_is(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await mid_game(pilot, 4)
+        await pilot.press("escape", "up", "a")
+        await pilot.pause()
+        await pilot.press("n")
+        await pilot.pause()
+        assert len(steps(house)) == 4
+
+
+async def test_it_says_what_nobody_has_shown_yet(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
+        await pilot.press("escape", "c")
+        await pilot.pause()
+        seen = pilot.app.screen.query_one(CoverageList)
+        assert "nobody has had a wrong mark yet" in seen.missing
+        assert "0 of 11 situations shown" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        await mid_game(pilot, 15)  # the first person who is helped has wrong marks
+        assert "nobody has had a wrong mark yet" not in seen.missing
+        said = " ".join(pilot.app.screen.query_one(LogView).sentences)
+        assert "New to Tangy: help · wrong marks" in said
+
+
+async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, house: House) -> None:
+    async with run(app=program(house), size=LARGE) as pilot:
+        assert "! nobody has had a wrong mark yet" in screen_text(pilot.app)
+
+
+async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
+    house = House(taught)
+    try:
+        async with run(app=program(house, seed=9)) as pilot:
+            assert "seen 11/11" in screen_text(pilot.app)
+            assert not pilot.app.screen.query_one(CoverageList).missing
+    finally:
+        house.close()
+
+
+async def test_a_guided_session_says_so(run: Run, house: House) -> None:
+    async def start(started: Program) -> None:
+        await started.push_screen(TeachScreen(house, house.teaching("ann", 1, guided=True)))
+
+    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+        assert "guided" in screen_text(pilot.app)
+
+
+async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await pilot.press("escape", "w")  # nothing was shown, so there is nothing to tell
+        await ended(pilot, "why")
+        assert isinstance(pilot.app.screen, TeachScreen)
+        await mid_game(pilot, 4)
+        await pilot.press("w")
+        await ended(pilot, "why")
+        dialog = pilot.app.screen
+        assert isinstance(dialog, WhyDialog)
+        assert dialog.why.decision.behaviour == "call number"
+        await pilot.press("escape", "up", "up", "up", "up", "enter")
+        await ended(pilot, "why")
+        chosen = pilot.app.screen
+        assert isinstance(chosen, WhyDialog)
+        assert chosen.why.decision.behaviour == "greeting"
+
+
+async def ended(pilot: Pilot[None], name: str) -> None:
+    """Wait until what is thought over beside the screen is known."""
+    for _ in range(200):
+        await pilot.pause(0.02)
+        if all(worker.is_finished for worker in pilot.app.workers if worker.name == name):
+            await pilot.pause()
+            return
+
+
 async def test_letters_are_keys_only_outside_of_the_command_line(run: Run, house: House) -> None:
     async with run(app=program(house)) as pilot:
         await pilot.press("u")
@@ -213,6 +345,16 @@ async def test_how_it_looks_in_mid_game(
     async with run(app=program(house), size=size) as pilot:
         await mid_game(pilot, 14)
         await pilot.press(*"remov")
+        await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_how_it_looks_to_see_what_is_missing(
+    run: Run, house: House, picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=program(house)) as pilot:
+        await mid_game(pilot, 14)
+        await pilot.press("escape", "c")
         await pilot.pause()
         picture(pilot.app)
 

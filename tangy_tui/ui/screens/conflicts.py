@@ -194,7 +194,7 @@ class ConflictsScreen(TangyScreen[bool]):
             self.set_focus(None)
             return
         columns = [
-            panel(AnswerSteps(number, behaviour, steps, self._library))
+            panel(AnswerSteps(self._house, self._library, number, behaviour, steps))
             for number, (behaviour, steps) in enumerate(present.answers.items(), 1)
         ]
         grid.styles.grid_size_columns = min(len(columns), 4 if self.has_class("-wide") else 2)

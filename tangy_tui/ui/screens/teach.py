@@ -230,6 +230,8 @@ class TeachScreen(TangyScreen[bool]):
     def action_why(self) -> None:
         """Tell what Tangy would do in the chosen step's situation, or here, and why."""
         self.query_one(CommandBar).ready()
+        if self.focused is None:  # else the bar has the keys when the dialog is closed
+            self.query_one(Transcript).focus()
         present = self._teaching.demonstration
         number = self.query_one(Transcript).chosen
         state = (

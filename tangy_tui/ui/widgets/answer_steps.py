@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from textual.message import Message
 
+from tangy_tui.house import House
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.library import Library
 from tangy_tui.ui.clean_output import clean
@@ -16,7 +17,7 @@ from tangy_tui.wording import counted
 
 
 class AnswerSteps(ChoiceList):
-    """The steps that gave one answer, two lines each; Enter opens the one under the cursor."""
+    """The steps that gave one answer: where, by whom, and what followed; Enter opens one."""
 
     class Chosen(Message):
         """A step was chosen with Enter."""
@@ -32,7 +33,7 @@ class AnswerSteps(ChoiceList):
             return self.answer
 
     def __init__(
-        self, number: int, behaviour: str, steps: Sequence[Shown], library: Library
+        self, house: House, library: Library, number: int, behaviour: str, steps: Sequence[Shown]
     ) -> None:
         super().__init__(
             f"{number} {clean(behaviour)}",
@@ -40,6 +41,7 @@ class AnswerSteps(ChoiceList):
             "before the answer says that it is right.",
         )
         self.border_subtitle = counted(len(steps), "time")
+        self._house = house
         self._steps = tuple(steps)
         self._library = library
         self._write = self._lines
@@ -54,7 +56,15 @@ class AnswerSteps(ChoiceList):
             who = f"  {clean(shown.teacher)}{when}"
             lines.append(Line(((shorten(where, width), "text"),), index))
             lines.append(Line(((shorten(who, width), "dim"),), index))
+            lines.append(Line(((shorten(self._followed(shown), width), "dim"),), index))
         return lines
+
+    def _followed(self, shown: Shown) -> str:
+        """Say whom the step was for, and which situation it led to."""
+        step = shown.step
+        whom = f"for {self._house.name(step.target)}, " if step.target else ""
+        then = self._house.activity.in_words(step.after.situation)
+        return clean(f"  {whom}then {then}")
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Chosen(self, self._steps[index]))
