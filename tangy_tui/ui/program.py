@@ -178,8 +178,9 @@ class Program(TangyApp):
 
         policy = await self._load_policy(wanted)
         if policy is not None:
-            facilitation = self.house.facilitation(policy, seed)
-            await self.push_screen(PlayScreen(self.house, facilitation, games=games, speed=speed))
+            facilitation = self.house.facilitation(policy, seed, asks=True)
+            screen = PlayScreen(self.house, facilitation, games=games, speed=speed, teacher=teacher)
+            await self.push_screen(screen)
 
     async def _open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
         from tangy_tui.ui.screens.policy import PolicyScreen

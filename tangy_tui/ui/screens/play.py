@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 from contextlib import suppress
 from typing import ClassVar
 
@@ -12,34 +11,28 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import (
-    Acted,
-    Facilitation,
-    GameBegun,
-    GameEnded,
-    GameEvent,
-    Learnt,
-)
+from tangy_tui.house import House, teacher_name
+from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEnded, GameEvent, Unsure
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel, room_panel
-from tangy_tui.ui.screens.policy import policy_rows
-from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.reasons import why_asked, why_row, why_step
+from tangy_tui.ui.screens.asking import AskingPanel, learn_answer
+from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Times life; at 1 a game takes the half hour that it takes among people."""
 
-DRIVING_SHARE = 0.5
-"""The share of a step's time in which the picture of the robot drives."""
+ASKS_FIRST = "Tangy asks first: answer it (: types), or press esc to give the game up."
 
 
 class PlayScreen(TangyScreen[Tally]):
@@ -50,8 +43,9 @@ class PlayScreen(TangyScreen[Tally]):
     VERTICAL_BREAKPOINTS = LOW
     HELP = (
         "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
-        "the speed, e skips to the end of the game, g begins another. On the right: how sure "
-        "Tangy is of its policy, and what it believes about which way of speaking works with whom."
+        "the speed, e skips to the end of the game, g begins another. w tells why: of the step "
+        "that is chosen, or of the last one. Where Tangy is not sure it does nothing but ask: type "
+        "what it should do, and y has it done; it learns that from you, and the game goes on."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("p", "pause", "Pause or go on"),
@@ -60,6 +54,7 @@ class PlayScreen(TangyScreen[Tally]):
         Binding("less_than_sign,comma", "speed(-1)", "Slower", key_display="<"),
         Binding("e", "skip", "Skip to the end of the game"),
         Binding("g", "again", "Another game"),
+        Binding("w", "why", "Why this"),
         Binding("1", "panel('room')", "Room", show=False),
         Binding("2", "panel('transcript')", "Steps", show=False),
         Binding("3", "panel('policy')", "Policy", show=False),
@@ -76,6 +71,7 @@ class PlayScreen(TangyScreen[Tally]):
         games: int = 1,
         speed: float = 20,
         leave_after: float | None = None,
+        teacher: str = "",
     ) -> None:
         """Make the screen.
 
@@ -83,6 +79,7 @@ class PlayScreen(TangyScreen[Tally]):
             games: how many are played one after another.
             speed: times life.
             leave_after: seconds after the last game at which the screen closes by itself.
+            teacher: who answers where Tangy asks (default: whoever is logged in).
         """
         super().__init__()
         self._house = house
@@ -90,7 +87,9 @@ class PlayScreen(TangyScreen[Tally]):
         self._games = games
         self._speed = speed
         self._leave_after = leave_after
+        self._teacher = teacher or teacher_name()
         self._tally = Tally()
+        self._picture = GamePicture(self, house, facilitation)
         self._going = asyncio.Event()
         self._going.set()
         self._nudge = asyncio.Event()
@@ -98,7 +97,8 @@ class PlayScreen(TangyScreen[Tally]):
         self._single = False
         self._stopped = False
         self._halted = False
-        self._status = Status(mode="play")
+        self._learning = False
+        self._leaving = False
 
     def compose(self) -> ComposeResult:
         """Lay out the panels; which of them are seen at 80 columns `1` to `5` choose."""
@@ -112,15 +112,13 @@ class PlayScreen(TangyScreen[Tally]):
                 yield panel(PolicyTable())
                 yield panel(Posteriors())
         yield key_line(
-            ("p", "pause"), ("n", "step"), ("< >", "speed"), ("e", "end"), ("g", "again"),
-            ("1-5", "panels"), ("esc", "back"), ("?", "help"),
+            ("p", "pause"), ("n", "step"), ("<>", "speed"), ("e", "end"), ("g", "game"),
+            ("w", "why"), ("1-5", "show"), ("esc", "back"), ("?", "help"),
         )  # fmt: skip
 
     def on_mount(self) -> None:
         """Show what is known, and begin."""
-        activity = self._house.activity
-        self.query_one(PolicyTable).show(policy_rows(activity, self._facilitation.policy))
-        self._show_beliefs(None)
+        self._picture.begin()
         self.action_panel("transcript")
         self.run_worker(self._play(), name="game", exclusive=True)
 
@@ -131,8 +129,11 @@ class PlayScreen(TangyScreen[Tally]):
         if self._going.is_set():
             self._going.clear()
         else:
-            self._stopped = False
+            stopped, self._stopped = self._stopped, False
+            self._halted = False
             self._going.set()
+            if stopped and (asking := self._asking) is not None:
+                asking.hold(False)
         self._nudge.set()
         self._show_status()
 
@@ -178,9 +179,75 @@ class PlayScreen(TangyScreen[Tally]):
             if enlarged:
                 self.maximize(chosen)
 
+    def action_why(self) -> None:
+        """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
+        chosen = self.query_one(Transcript).chosen
+        question, house = self._facilitation.question, self._house
+        if chosen is None and question is not None:
+            policy = self._facilitation.policy
+            self.app.push_screen(why_asked(house, policy, question.state.situation))
+        elif self._picture.grounds:
+            self._explain(len(self._picture.grounds) if chosen is None else chosen)
+        else:
+            self._write("Nothing has been decided yet.", "dim")
+
+    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
+        """Tell why, for the step that was chosen with Enter."""
+        event.stop()
+        self._explain(event.number)
+
+    def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
+        """Tell why, for the row of the policy that was chosen with Enter."""
+        event.stop()
+        situation = self._house.activity.situations[event.index]
+        self.app.push_screen(why_row(self._house, self._facilitation.policy, situation))
+
+    def _explain(self, number: int) -> None:
+        """Tell why a step of this game was done."""
+        grounds = self._picture.grounds
+        if 1 <= number <= len(grounds):
+            self.app.push_screen(why_step(self._house, grounds[number - 1], number))
+
     def action_leave(self) -> None:
-        """Go back."""
-        self.dismiss(self._tally)
+        """Let go of a chosen step, give up what is asked, or go back; in mid-game it asks."""
+        steps = self.query_one(Transcript)
+        if steps.has_focus and steps.chosen is not None:
+            steps.release()
+        elif (asking := self._asking) is not None:
+            asking.ask_to_give_up()
+        elif self._facilitation.over or self._leave_after is not None:
+            self.dismiss(self._tally)
+        elif not self._leaving:
+            self.run_worker(self._leave(), name="leave")
+
+    async def _leave(self) -> None:
+        """Ask whether to leave in mid-game; the game waits meanwhile."""
+        self._leaving = True
+        going = self._going.is_set()
+        self._going.clear()
+        dialog = ConfirmDialog(
+            "Leave in the middle of the game?",
+            "It ends here, and the log says so. What was learnt from it stays.",
+            yes="leave",
+            no="go on",
+        )
+        leaves = await self.app.push_screen_wait(dialog)
+        self._leaving = False
+        if leaves:
+            self._end_game()
+            self.dismiss(self._tally)
+        elif going and not self._stopped:
+            self._going.set()
+
+    def _end_game(self) -> None:
+        """Let the log say that a game was left."""
+        if not self._learning:
+            with suppress(TangyError):  # who leaves is not held up by a log that is full
+                self._tally.add(self._facilitation.leave())
+
+    def on_unmount(self) -> None:
+        """End a game whose program is being left."""
+        self._end_game()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
@@ -189,45 +256,64 @@ class PlayScreen(TangyScreen[Tally]):
         self._going.clear()
         self._nudge.set()
         self.query_one(RoomView).skip()
-        self.query_one(LogView).write("STOP. Press p to go on.", "bad")
+        self._write("STOP. Press p to go on.", "bad")
+        if self._asking is not None:
+            self._asking.hold(True)
         self._show_status()
 
     def _refused(self) -> bool:
-        """Say, after a STOP, that it has to be lifted first."""
+        """Say, after a STOP or while Tangy asks, what has to be done first."""
         if self._stopped:
-            self.query_one(LogView).write("Tangy was stopped: press p to go on first.", "warn")
-        return self._stopped
+            self._write("Tangy was stopped: press p to go on first.", "warn")
+        elif self._asking is not None:
+            self._write(ASKS_FIRST, "warn")
+            self.notify(ASKS_FIRST, severity="warning", markup=False)
+        return self._stopped or self._asking is not None
+
+    def _write(self, sentence: str, kind: Kind) -> None:
+        self.query_one(LogView).write(sentence, kind)
 
     # ---------------------------------------------------------------------------------- game
 
     async def _play(self) -> None:
-        try:
-            await self._play_games()
-        except TangyError as error:  # the log could not be written, so nothing more is done
-            self._halted = True
-            self.query_one(LogView).write(str(error), "bad")
-            self._show_status()
-            await self._say_why(str(error))
-
-    async def _play_games(self) -> None:
-        facilitation = self._facilitation
         while self._tally.games < self._games:
-            self._tell(facilitation.begin())
-            while not facilitation.over:
-                await self._going.wait()
-                if self._single:
-                    self._single = False
-                    self._going.clear()
-                events = facilitation.step()
-                self._tell(events)
-                if self._skipping:
-                    await asyncio.sleep(0)  # let the screen and the keys live
-                else:
-                    await self._wait(events)
-            self._skipping = False
+            try:
+                await self._play_game()
+            except TangyError as error:  # the log could not be written, so nothing more is done
+                await self._hold(str(error))
         if self._leave_after is not None:
             await asyncio.sleep(self._leave_after)
             self.dismiss(self._tally)
+
+    async def _play_game(self) -> None:
+        """Play one game, or the rest of one that was held."""
+        facilitation = self._facilitation
+        if facilitation.over:
+            self._tell(facilitation.begin())
+        while not facilitation.over:
+            await self._going.wait()
+            if self._single:
+                self._single = False
+                self._going.clear()
+            events = facilitation.step()
+            self._tell(events)
+            if facilitation.question is not None:
+                events = await self._ask(facilitation.question)
+            if self._skipping:
+                await asyncio.sleep(0)  # let the screen and the keys live
+            else:
+                await self._wait(events)
+        self._skipping = False
+
+    async def _hold(self, reason: str) -> None:
+        """Stand still after a failure until somebody lets it try again."""
+        self._halted = True
+        self._skipping = False
+        self._going.clear()
+        self._write(f"{reason} p tries again.", "bad")
+        self._show_status()
+        await self._say_why(reason, "p tries again; esc leads home.")
+        await self._going.wait()
 
     async def _wait(self, events: list[GameEvent]) -> None:
         """Let a step's time pass; a key that changes the pace ends it early."""
@@ -236,92 +322,78 @@ class PlayScreen(TangyScreen[Tally]):
         with suppress(TimeoutError):
             await asyncio.wait_for(self._nudge.wait(), seconds / self._speed)
 
-    def _tell(self, events: list[GameEvent]) -> None:
+    def _tell(self, events: list[GameEvent], *, known: bool = False) -> None:
+        """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
-        log = self.query_one(LogView)
+        self._picture.tell(events, 0 if self._skipping else self._speed)
         for event in events:
-            match event:
-                case GameBegun(_, number, state):
-                    log.write(f"Game {number} begins.", "dim")
-                    self._halted = False
-                    self.query_one(RoomView).say("")
-                    self.query_one(Transcript).clear()
-                    self._status = Status(mode="play", stage=state.stage, game=number)
-                    self._show_scene(0, drive=False)
-                case Acted():
-                    self._show_step(event)
-                case Learnt(response, belief):
-                    name = self._house.name(response.person)
-                    what = "complied" if response.complied else "followed, but late"
-                    log.write(
-                        f"{name} {what}: {response.strategy} has worked "
-                        f"{belief.alpha - 1:.0f} of {belief.trials} times.",
-                        "good" if response.complied else "dim",
-                    )
-                    self._show_beliefs((response.person, response.strategy))
-                case GameEnded(_, steps, None):
-                    words = f"The game is over after {counted(steps, 'step')}."
-                    log.write(f"{words} g plays another.", "good")
-                case GameEnded(_, steps, str(reason)):
-                    log.write(f"The game stopped after {counted(steps, 'step')}. {reason}", "bad")
-                    self._halted = True
-                    self.run_worker(self._say_why(reason), name="why")
+            if isinstance(event, GameEnded) and event.stopped is not None and not known:
+                self._halted = True
+                text = "Esc leads home, where t teaches; g plays another game."
+                self.run_worker(self._say_why(event.stopped, text), name="why")
         self._show_status()
 
-    async def _say_why(self, reason: str) -> None:
+    async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
         if self._leave_after is None:
-            text = f"{reason}\nEsc leads home, where t teaches; g plays another game."
-            await self.app.push_screen_wait(MessageDialog(text, title="The game stopped"))
+            dialog = MessageDialog(f"{reason}\n{then}", title="The game stopped")
+            await self.app.push_screen_wait(dialog)
 
-    def _show_step(self, event: Acted) -> None:
-        activity, house = self._house.activity, self._house
-        words = activity.in_words(event.state.situation)
-        target = f" ({house.name(event.action.target)})" if event.action.target else ""
-        how = f", {event.choice.strategy}" if event.choice else ""
-        self.query_one(Transcript).append(f"{words} -> {event.action.behaviour.name}{target}{how}")
-        self.query_one(LogView).write(event.speech)
-        self.query_one(RoomView).say(event.speech)
-        self.query_one(PolicyTable).highlight(words)
-        if event.choice is not None:
-            self._show_beliefs((event.choice.person, event.choice.strategy))
-        self._status = Status(
-            mode="play",
-            stage=event.after.stage,
-            game=self._facilitation.games,
-            step=event.number,
-        )
-        self._show_scene(event.outcome.seconds, drive=event.state.place != event.after.place)
+    # -------------------------------------------------------------------------------- asking
 
-    def _show_scene(self, seconds: float, *, drive: bool) -> None:
-        room = self.query_one(RoomView)
-        scene = self._facilitation.world.scene()
-        if drive and not self._skipping:
-            room.drive(scene.place, seconds / self._speed * DRIVING_SHARE)
-        room.show(scene)
+    @property
+    def _asking(self) -> AskingPanel | None:
+        """The question that is open, if Tangy asks."""
+        panels = self.query(AskingPanel)
+        return panels.first() if panels else None
 
-    def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
-        names: Mapping[str, str] = self._house.names
-        self.query_one(Posteriors).show(self._facilitation.persuasion.beliefs, names, highlight)
+    async def _ask(self, question: Unsure) -> list[GameEvent]:
+        """Wait for the teacher's answer, learn it beside the screen, and go on."""
+        self.minimize()
+        asking = AskingPanel(self._house, self._facilitation, question)
+        self.add_class("-asking")
+        await self.mount(asking, before="#keys")
+        if self._stopped:
+            asking.hold(True)
+        self._show_status()
+        try:
+            verified = await asking.answer()
+        finally:
+            self.remove_class("-asking")
+            with suppress(Exception):  # the screen may be going as well
+                await asking.remove()
+        if verified is None:
+            events = self._facilitation.give_up()
+            self._tell(events, known=True)
+            return events
+        self._learning = True
+        self._show_status()
+        try:
+            events = await learn_answer(self, self._facilitation, verified, self._teacher)
+        finally:
+            self._learning = False
+        self._tell(events)
+        return events
+
+    def on_asking_panel_why_wanted(self, event: AskingPanel.WhyWanted) -> None:
+        """Tell why Tangy asks."""
+        event.stop()
+        self.query_one(Transcript).release()
+        self.action_why()
+
+    # -------------------------------------------------------------------------------- status
 
     def _show_status(self) -> None:
-        status = self._status
-        self.query_one(StatusLine).show(
-            Status(
-                mode="play",
-                robot="STOPPED" if self._stopped else "ASKS" if self._halted else "OK",
-                stage="over" if self._facilitation.over else status.stage,
-                game=status.game,
-                step=status.step,
-                note=self._note(),
-                alarm=self._stopped or self._halted,
-            )
-        )
+        asks = self._halted or self._facilitation.question is not None
+        robot = "STOPPED" if self._stopped else "ASKS" if asks else "OK"
+        self._picture.show_status(robot, self._note())
 
     def _note(self) -> str:
         """Say what the keys would do next, or how fast it goes."""
         if self._stopped:
             return "p goes on"
+        if self._learning:
+            return "learning"
         if self._facilitation.over:
             return "g plays again"
         return f"x{self._speed:g}" if self._going.is_set() else "paused"

@@ -11,7 +11,7 @@ from textual.widgets import Static
 from tangy_profiles.activity import Activity
 from tangy_tui.house import House
 from tangy_tui.learning.effects import Effects
-from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.widgets.log_view import LogView
@@ -21,16 +21,21 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
     """Return a row for every situation that can come about, in the order of a game."""
-    rows = []
-    for situation in activity.situations:
-        decision = policy.decide(situation)
-        words = activity.in_words(situation)
-        if decision.seen:
-            note = "" if decision.sure else "not sure"
-            rows.append(PolicyRow(words, decision.behaviour, decision.share, decision.seen, note))
-        else:  # whatever the trees would vote for, Tangy stops there and says so
-            rows.append(PolicyRow(words, "never shown", 0.0, 0))
-    return rows
+    return [
+        _row(activity.in_words(situation), policy.decide(situation))
+        for situation in activity.situations
+    ]
+
+
+def _row(words: str, decision: Decision) -> PolicyRow:
+    """Write what is done in a situation; where Tangy would ask, the words say why."""
+    if not decision.seen:  # whatever the trees would vote for, Tangy asks there
+        return PolicyRow(words, "never shown", 0.0, 0)
+    if decision.contested:
+        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
+        return PolicyRow(words, "contested", decision.share, decision.seen, answers)
+    note = "" if decision.sure else "not sure: asks"
+    return PolicyRow(words, decision.behaviour, decision.share, decision.seen, note)
 
 
 class PolicyScreen(TangyScreen[None]):

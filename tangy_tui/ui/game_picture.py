@@ -1,0 +1,156 @@
+"""The picture of a game: what happened, put on the panels of the screen that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from textual.screen import Screen
+
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import (
+    Acted,
+    Facilitation,
+    GameBegun,
+    GameEnded,
+    GameEvent,
+    Learnt,
+    Taught,
+    Unsure,
+)
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.reasons import Ground
+from tangy_tui.ui.screens.asking import lesson_words
+from tangy_tui.ui.screens.policy import policy_rows
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tangy_tui.wording import counted
+
+DRIVING_SHARE = 0.5
+"""The share of a step's time in which the picture of the robot drives."""
+
+TAUGHT_SECONDS = 6.0
+"""How long the message stands that says what was learnt from an answer."""
+
+
+class GamePicture:
+    """Puts the events of games on room, steps, policy, posteriors and log of a screen."""
+
+    def __init__(self, screen: Screen[Any], house: House, facilitation: Facilitation) -> None:
+        self.grounds: list[Ground] = []
+        """What each step of the present game rested on."""
+        self._stage = ""
+        self._step: int | None = None
+        self._game: int | None = None
+        self._screen = screen
+        self._house = house
+        self._facilitation = facilitation
+        self._policy = facilitation.policy
+
+    def begin(self) -> None:
+        """Show what is known before the first game."""
+        self._show_policy()
+        self._show_beliefs(None)
+
+    def tell(self, events: Sequence[GameEvent], pace: float) -> None:
+        """Show events; `pace` is how many times faster than life they are shown (0: at once)."""
+        taught = next((event for event in events if isinstance(event, Taught)), None)
+        log = self._screen.query_one(LogView)
+        for event in events:
+            match event:
+                case GameBegun(_, number, state):
+                    log.write(f"Game {number} begins.", "dim")
+                    self._screen.query_one(RoomView).say("")
+                    self._screen.query_one(Transcript).clear()
+                    self.grounds.clear()
+                    self._stage, self._game, self._step = state.stage, number, None
+                    self._show_scene(0, drive=False, pace=pace)
+                case Acted():
+                    self._show_step(event, taught.teacher if taught else "", pace)
+                case Learnt(response, belief):
+                    name = self._house.name(response.person)
+                    what = "complied" if response.complied else "followed, but late"
+                    log.write(
+                        f"{name} {what}: {response.strategy} has worked "
+                        f"{belief.complied} of {belief.trials} times.",
+                        "good" if response.complied else "dim",
+                    )
+                    self._show_beliefs((response.person, response.strategy))
+                case Unsure(_, _, reason):
+                    log.write(f"Tangy asks. {reason}", "warn")
+                case Taught():
+                    self._show_lesson(event)
+                case GameEnded(_, steps, None):
+                    words = f"The game is over after {counted(steps, 'step')}."
+                    log.write(f"{words} g plays another.", "good")
+                case GameEnded(_, steps, str(reason)):
+                    log.write(f"The game stopped after {counted(steps, 'step')}. {reason}", "bad")
+
+    def show_status(self, robot: str, note: str) -> None:
+        """Say how the robot is, where in the game it is, and what else is to be said."""
+        self._screen.query_one(StatusLine).show(
+            Status(
+                mode="play",
+                robot=robot,
+                stage="over" if self._facilitation.over else self._stage,
+                game=self._game,
+                step=self._step,
+                note=note,
+                alarm=robot != "OK",
+            )
+        )
+
+    def _show_step(self, event: Acted, teacher: str, pace: float) -> None:
+        house, screen = self._house, self._screen
+        self.grounds.append(Ground(self._policy, event, teacher))
+        words = house.activity.in_words(event.state.situation)
+        target = f" ({house.name(event.action.target)})" if event.action.target else ""
+        how = f", {event.choice.strategy}" if event.choice else ""
+        who = f", {teacher} answered" if teacher else ""
+        screen.query_one(Transcript).append(
+            f"{words} -> {event.action.behaviour.name}{target}{how}{who}"
+        )
+        screen.query_one(LogView).write(event.speech)
+        screen.query_one(RoomView).say(event.speech)
+        screen.query_one(PolicyTable).highlight(words)
+        if event.choice is not None:
+            self._show_beliefs((event.choice.person, event.choice.strategy))
+        self._stage, self._step = event.after.stage, event.number
+        self._show_scene(
+            event.outcome.seconds, drive=event.state.place != event.after.place, pace=pace
+        )
+
+    def _show_lesson(self, taught: Taught) -> None:
+        """Say from whom it was learnt and what the replay showed, and show the new row."""
+        activity, lesson = self._house.activity, taught.lesson
+        learnt = lesson_words(activity, taught.teacher, lesson)
+        log = self._screen.query_one(LogView)
+        log.write(learnt, "good")
+        log.write(lesson.replay.words(), "warn" if lesson.replay.changed else "good")
+        self._screen.notify(
+            clean(f"{learnt} {lesson.replay.words()}"),
+            severity="warning" if lesson.replay.changed else "information",
+            timeout=TAUGHT_SECONDS,
+            markup=False,
+        )
+        self._policy = lesson.policy
+        self._show_policy(activity.in_words(lesson.demonstration.steps[-1].state.situation))
+
+    def _show_policy(self, highlight: str | None = None) -> None:
+        rows = policy_rows(self._house.activity, self._policy)
+        self._screen.query_one(PolicyTable).show(rows, highlight)
+
+    def _show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
+        room = self._screen.query_one(RoomView)
+        scene = self._facilitation.world.scene()
+        if drive and pace:
+            room.drive(scene.place, seconds / pace * DRIVING_SHARE)
+        room.show(scene)
+
+    def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
+        beliefs = self._facilitation.persuasion.beliefs
+        self._screen.query_one(Posteriors).show(beliefs, self._house.names, highlight)

@@ -1,0 +1,51 @@
+"""Why this?, asked of a game or a policy: the dialogs for a step, a row and a question."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tangy_profiles.state import Situation
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.learning.explaining import Why, explain
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.why import WhyDialog
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What a step rested on: the policy of that moment, what happened, and who answered."""
+
+    policy: Policy
+    acted: Acted
+    teacher: str = ""
+
+
+def why_of(house: House, policy: Policy, situation: Situation) -> Why:
+    """Find the grounds of a policy's decision, among hidden demonstrations as well."""
+    entries = read_library(house.store, house.activity.name).entries.values()
+    return explain(policy, [entry.demonstration for entry in entries], situation)
+
+
+def why_step(house: House, ground: Ground, number: int) -> WhyDialog:
+    """Explain a step of a game."""
+    acted = ground.acted
+    done = f"Tangy asked, and {ground.teacher} answered: {acted.action.behaviour.name}."
+    return WhyDialog(
+        house,
+        why_of(house, ground.policy, acted.state.situation),
+        acted.choice,
+        title=f"Step {number}: why this?",
+        remarks=(done,) if ground.teacher else (),
+    )
+
+
+def why_row(house: House, policy: Policy, situation: Situation) -> WhyDialog:
+    """Explain a row of a policy."""
+    return WhyDialog(house, why_of(house, policy, situation), title=f"{policy.name}: why this?")
+
+
+def why_asked(house: House, policy: Policy, situation: Situation) -> WhyDialog:
+    """Explain why Tangy asks."""
+    return WhyDialog(house, why_of(house, policy, situation), title="Why does Tangy ask?")

@@ -1,0 +1,238 @@
+"""Asking in place: Tangy is not sure, the game waits, and the teacher answers by a command.
+
+The answer goes through the same question as a command in teaching: nothing happens before a y.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import Static
+from textual.worker import WorkerFailed
+
+from tangy_profiles.activity import Activity
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Facilitation, GameEvent, Unsure
+from tangy_tui.learning.asking import Lesson
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.explaining import Why
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Verification,
+    Verified,
+)
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.fresh_keys import SETTLE_SECONDS
+from tangy_tui.ui.reasons import why_of
+from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.wording import counted, state_words
+
+HELD = "Tangy was stopped: press p to go on first, then answer."
+
+
+def answers_words(why: Why) -> str:
+    """Say which answers demonstrations give in a situation, how often and by whom."""
+    given: dict[str, list[str]] = {}
+    for shown in (*why.rests_on, *why.against):
+        given.setdefault(shown.step.behaviour, []).append(shown.teacher)
+    parts = [
+        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
+        for behaviour, teachers in given.items()
+    ]
+    return f"Shown so far: {', '.join(parts)}." if parts else ""
+
+
+def lesson_words(activity: Activity, teacher: str, lesson: Lesson) -> str:
+    """Say what was learnt from an answer: what is done where from now on, and from whom."""
+    step = lesson.demonstration.steps[-1]
+    return f"Learnt from {teacher}: {activity.in_words(step.state.situation)} -> {step.behaviour}."
+
+
+async def learn_answer(
+    screen: Screen[Any], facilitation: Facilitation, answer: Verified, teacher: str
+) -> list[GameEvent]:
+    """Act on an answer and learn from it, beside the screen: the forest takes a moment.
+
+    Raises:
+        TangyError: it could not be kept, and nothing of it is.
+    """
+
+    def learn() -> list[GameEvent]:
+        return facilitation.answer(answer.behaviour, answer.target, teacher)
+
+    worker = screen.run_worker(learn, thread=True, exit_on_error=False, group="learning")
+    try:
+        return await worker.wait()
+    except WorkerFailed as failed:
+        raise failed.error or failed from None
+
+
+class AskingPanel(Vertical):
+    """What Tangy asks and why, and the line to answer in; `answer()` waits for the answer.
+
+    While the robot is stopped it is `held`: commands are given back.
+    """
+
+    DEFAULT_CSS = """
+    AskingPanel { height: auto; border-top: heavy $warning; border-title-color: $warning; }
+    AskingPanel Static.asks { height: auto; max-height: 5; padding: 0 1; }
+    AskingPanel Static.now { height: auto; max-height: 4; padding: 0 1; color: $ink-dim; }
+    """
+
+    class WhyWanted(Message):
+        """Why was typed: the grounds are to be shown."""
+
+    def __init__(self, house: House, facilitation: Facilitation, question: Unsure) -> None:
+        """Make the panel for a question of Tangy's."""
+        super().__init__(id="asking")
+        self._house = house
+        self._facilitation = facilitation
+        self._question = question
+        self._verifier = facilitation.verifier()
+        self._phrasebook = Phrasebook(house.activity, house.people)
+        self._answer: asyncio.Future[Verified | None] = asyncio.get_running_loop().create_future()
+        self._held = False
+        self.border_title = "Tangy asks"
+
+    def compose(self) -> ComposeResult:
+        """Lay out the question, what Tangy sees, and the line."""
+        yield Static(self._asks(), classes="asks", markup=False)
+        yield Static(self._sees(), classes="now", markup=False)
+        yield CommandBar(
+            lambda typed: self._phrasebook.complete(typed),
+            placeholder="what should Tangy do? why: why it asks; quit: give the game up",
+            resting="w why   : answer   p pause   esc give the game up",
+            id="command",
+        )
+
+    def on_mount(self) -> None:
+        """Take the keys, but none that was typed before the question could be seen."""
+        line = self.query_one(CommandInput)
+        line.closed = True
+        line.focus()
+        self.set_timer(SETTLE_SECONDS, self._open)
+
+    async def answer(self) -> Verified | None:
+        """Wait for an answer that was verified; None if the game is given up."""
+        return await self._answer
+
+    def ask_to_give_up(self) -> None:
+        """Give the game up, if that is meant."""
+        self.run_worker(self._confirm(), name="give up", group="give up", exclusive=True)
+
+    async def _confirm(self) -> None:
+        dialog = ConfirmDialog(
+            "Give this game up?",
+            "It ends here without an answer, and Tangy will ask again the next time.",
+            yes="give the game up",
+            no="go on",
+        )
+        if await self.app.push_screen_wait(dialog):
+            self._settle(None)
+
+    def _settle(self, answer: Verified | None) -> None:
+        if not self._answer.done():
+            self._answer.set_result(answer)
+
+    def hold(self, held: bool) -> None:
+        """Take no commands while the robot is stopped; the keys go to the screen."""
+        self._held = held
+        if held:
+            self.screen.set_focus(None)
+            self._say(HELD)
+        else:
+            self.query_one(".now", Static).update(self._sees())
+            self.query_one(CommandBar).focus_input()
+
+    def on_command_bar_given(self, event: CommandBar.Given) -> None:
+        """Put a typed answer to Tangy."""
+        event.stop()
+        bar = self.query_one(CommandBar)
+        match event.text.lower():
+            case "why":
+                bar.ready()
+                self.post_message(self.WhyWanted())
+            case "quit" | "exit" | "leave":
+                bar.ready()
+                self.ask_to_give_up()
+            case "help":
+                bar.ready()
+                self.app.run_worker(self.run_action("app.help"))
+            case "stop":
+                bar.ready()
+                self.app.run_worker(self.run_action("app.stop"))
+            case _ if self._held:
+                self._return(event.text, HELD)
+            case _:
+                self._tell(self._verifier.say(Say(event.text)))
+
+    def _tell(self, said: Verification) -> None:
+        match said:
+            case Asked():
+                self.run_worker(self._verify(said), name="question")
+            case NotUnderstood(heard, suggestions):
+                near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
+                self._return(heard, f"I do not know what {heard!r} means.{near}")
+            case Rejected(heard):
+                self._return(heard, HELD if self._held else "Not done. Give a new command.")
+            case Refused(reason, heard):
+                self._return(heard, reason)
+            case Verified():
+                self._settle(said)
+
+    async def _verify(self, asked: Asked) -> None:
+        """Put the question, and take its answer when its dialog has gone."""
+        behaviours = self._house.activity.behaviours
+        sure = asked.confidence >= 1
+        dialog = QuestionDialog(
+            asked.question,
+            heard="" if sure else asked.heard,
+            confidence=None if sure else asked.confidence,
+            alternatives=[behaviours[name].question for name in asked.alternatives],
+        )
+        answer = await self.app.push_screen_wait(dialog)
+        while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
+            await asyncio.sleep(0)
+        chosen = None if answer.alternative is None else answer.alternative + 1
+        self._tell(self._verifier.reply(Reply(answer.yes and not self._held, chosen)))
+
+    def _return(self, heard: str, sentence: str) -> None:
+        """Give a command back with what is to be said of it."""
+        self._say(sentence)
+        self.screen.query_one(LogView).write(sentence, "warn")
+        self.query_one(CommandBar).restore(heard)
+        if self._held:
+            self.screen.set_focus(None)
+
+    def _say(self, sentence: str) -> None:
+        self.query_one(".now", Static).update(clean(sentence))
+
+    def _open(self) -> None:
+        self.query_one(CommandBar).ready()
+
+    def _asks(self) -> str:
+        """Write why Tangy asks; where answers were given, which."""
+        words = self._question.reason
+        if self._question.decision.seen:
+            situation = self._question.state.situation
+            why = why_of(self._house, self._facilitation.policy, situation)
+            words = f"{words} {answers_words(why)}"
+        return clean(f"{words} What should Tangy do?")
+
+    def _sees(self) -> str:
+        world, house = self._facilitation.world, self._house
+        words = state_words(house.activity, self._question.state, world.scene(), house.name)
+        return clean(f"Now: {words}")
