@@ -44,6 +44,9 @@ def _grounds(house: House, present: Demonstration, situation: Situation) -> Why:
     from tangy_tui.learning.explaining import explain, foresee
     from tangy_tui.learning.library import read_library
 
-    policy = foresee(house.store, house.activity, present)
-    shown = {d.id: d for d in read_library(house.store, house.activity.name).finished}
-    return explain(policy, list((shown | {present.id: present}).values()), situation)
+    library = read_library(house.store, house.activity.name)
+    there = {d.id: d for d in library.finished}
+    if present.id not in library.entries:  # not a step of its own yet, so nothing to open
+        return explain(foresee(house.store, house.activity, None), list(there.values()), situation)
+    shown = list((there | {present.id: present}).values())
+    return explain(foresee(house.store, house.activity, present), shown, situation)

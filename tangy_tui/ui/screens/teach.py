@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
+from textual.screen import Screen
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
@@ -43,6 +44,8 @@ from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
+
+T = TypeVar("T")
 
 AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
 """Typed: from which step on the present game is to be shown again."""
@@ -209,9 +212,22 @@ class TeachScreen(TangyScreen[bool]):
                 yes="go back",
                 no="go on here",
             )
-            if not await self.app.push_screen_wait(dialog):
+            if not await self._alone(dialog):
                 return
         self._apply(command)
+
+    async def _alone(self, dialog: Screen[T]) -> T:
+        """Wait for an answer, and listen to nothing meanwhile."""
+        self._free.clear()
+        if self._ears is not None:
+            self._ears.shut()
+        answer = await self.app.push_screen_wait(dialog)
+        while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
+            await asyncio.sleep(0)
+        if self._ears is not None:
+            self._ears.open()
+        self._free.set()
+        return answer
 
     def action_coverage(self) -> None:
         """Show which situations were shown, where the steps are seen, or the steps again."""
@@ -330,11 +346,7 @@ class TeachScreen(TangyScreen[bool]):
             confidence=asked.confidence if asked.confidence < 1 else None,
             alternatives=[behaviours[name].question for name in asked.alternatives],
         )
-        answer = await self.app.push_screen_wait(dialog)
-        while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
-            await asyncio.sleep(0)
-        if self._ears is not None:
-            self._ears.open()
+        answer = await self._alone(dialog)
         chosen = None if answer.alternative is None else answer.alternative + 1
         self._apply(Reply(answer.yes, chosen))
 
