@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -13,7 +15,7 @@ import pytest
 
 TANGY = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
 SMALL = {
-    1: ("--seeds", "2", "--users", "2", "--no-typing"),
+    1: ("--seeds", "1", "--users", "2", "--no-typing"),
     2: ("--people", "6", "--seed", "5"),
 }
 
@@ -38,10 +40,19 @@ def run(*words: str) -> subprocess.CompletedProcess[str]:
 @pytest.fixture(scope="session", params=[1, 2])
 def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Ran:
     """One scenario after another."""
-    folder = tmp_path_factory.mktemp("scenario")
+    shared = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        shared = shared.parent  # of all workers of this session: the first one runs it
+    folder = shared / f"scenario-{request.param}"
+    folder.mkdir(exist_ok=True)
     words = ("experiment", str(request.param), *SMALL[request.param], "--jobs", "1")
-    words += ("--data", str(folder / "data"), "--report", str(folder / "report.html"))
-    done = run(*words, "--json")
-    assert (done.returncode, done.stderr) == (0, "")
+    words += ("--data", str(folder / "data"))
+    kept = folder / "document.json"
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            done = run(*words, "--json", "--report", str(folder / "report.html"))
+            assert (done.returncode, done.stderr) == (0, "")
+            kept.write_text(done.stdout, encoding="utf-8")
     page = (folder / "report.html").read_text(encoding="utf-8")
-    return Ran(json.loads(done.stdout), page, folder, words)
+    return Ran(json.loads(kept.read_text(encoding="utf-8")), page, folder, words)

@@ -27,7 +27,7 @@ def share(value: Any) -> bool:
 def test_the_contract(ran: Ran) -> None:
     document = ran.document
     if document["experiment"] == 1:
-        assert document["seeds"] == 2
+        assert document["seeds"] == 1
         assert share(document["guided"]["exact_after_one"])
         assert list(document["random"]["exact_within"]) == ["1", "2", "3", "4"]
         assert all(share(value) for value in document["random"]["exact_within"].values())
@@ -68,7 +68,6 @@ def test_it_is_told_in_words_too(ran: Ran) -> None:
         assert (
             f"{row.what}\n  paper: {row.paper}\n  here:  {row.here}\n  {row.words}" in done.stdout
         )
-    assert done.stdout.endswith("report.html.\n")
 
 
 def test_a_page_is_well_formed_and_needs_nothing_else(ran: Ran) -> None:

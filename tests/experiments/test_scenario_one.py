@@ -28,7 +28,7 @@ def test_one_guided_demonstration_is_enough_for_one_to_eight_people(users: int) 
 
 
 def test_by_chance_it_takes_a_few_and_wrong_decisions_are_flagged_until_then() -> None:
-    done = [incremental.until_exact(SETTINGS, (RANDOM, 4, 7000 + seed)) for seed in range(12)]
+    done = [incremental.until_exact(SETTINGS, (RANDOM, 4, 7000 + seed)) for seed in range(8)]
     games = [one["games"] for one in done]
     assert all(games)
     assert 1 < max(games) <= 6
