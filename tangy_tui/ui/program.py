@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from textual.app import SystemCommand
 from textual.screen import Screen
 from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
@@ -182,6 +183,46 @@ class Program(TangyApp):
             screen = PlayScreen(self.house, facilitation, games=games, speed=speed, teacher=teacher)
             await self.push_screen(screen)
 
+    def action_compare(self) -> None:
+        """Compare two policies, or what two teachers show."""
+        self.run_worker(self.compare())
+
+    async def compare(self, first: str | None = None) -> None:
+        """Open the comparison of two policies that are chosen; `first` is one of them already."""
+        from tangy_tui.learning.comparing import find_policy
+        from tangy_tui.ui.screens.compare import CompareScreen, choose_two
+
+        house = self.house
+        wanted = await choose_two(self, house, first)
+        if len(wanted) < 2:
+            return
+        found = await self._in_thread(
+            "Tangy is recalling both ...",
+            lambda: [find_policy(house.store, house.activity, one) for one in wanted],
+        )
+        if found is not None:
+            (a, of_a), (b, of_b) = found
+            await self.push_screen(CompareScreen(house, a, b, [*of_a, *of_b]))
+
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """List what the command palette offers, with what no key of home leads to."""
+        yield from super().get_system_commands(screen)
+        yield SystemCommand(
+            "Compare policies", "Teacher against teacher, before against after", self.action_compare
+        )
+
+    def action_other_policy(self) -> None:
+        """Look at another policy that was kept."""
+        self.run_worker(self._other_policy())
+
+    async def _other_policy(self) -> None:
+        from tangy_tui.ui.screens.compare import choose_policy
+
+        chosen = await choose_policy(self, self.house)
+        policy = None if chosen is None else await self._load_policy(chosen)
+        if policy is not None:
+            await self._open_policy(policy)
+
     async def _open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
         from tangy_tui.ui.screens.policy import PolicyScreen
 
@@ -200,9 +241,19 @@ class Program(TangyApp):
         if loaded is None:
             return None
         policy, notices = loaded
-        if notices:
-            await self._tell("\n".join(notices), title="Policy")
-        return policy
+        return policy if not notices or await self._accept(policy, notices[0], wanted) else None
+
+    async def _accept(self, policy: Policy, notice: str, wanted: str) -> bool:
+        """Show how a policy differs from what was kept of it, and ask before it is used."""
+        from tangy_tui.ui.dialogs.difference import DifferenceDialog
+
+        house = self.house
+        kept = policies.need_policy(house.store, house.activity, wanted)
+        changes = policies.changes(kept["rows"], policy)
+        answer = await self.push_screen_wait(DifferenceDialog(house.activity, notice, changes))
+        if answer == "keep":
+            policies.keep_policy(house.store, policy)
+        return answer != "back"
 
     async def _tell(self, text: str, title: str) -> None:
         from tangy_tui.ui.dialogs.message import MessageDialog

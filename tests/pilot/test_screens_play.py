@@ -230,6 +230,10 @@ async def test_home_leads_everywhere_and_back(run: Run, house: House, policy: Po
                 await pilot.press("escape")  # out of the command line
             await pilot.press("escape")
             await pilot.pause()
+            if kind is PlayScreen:
+                assert "Leave in the middle of the game?" in screen_text(pilot.app)
+                await pilot.press("y")
+                await pilot.pause()
             assert isinstance(pilot.app.screen, HomeScreen), key
 
 

@@ -1,11 +1,12 @@
-"""Choosing one of some words."""
+"""Choosing one of several: policies, teachers."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
-from textual import events
+from rich.cells import cell_len
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
@@ -13,65 +14,66 @@ from textual.content import Content
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
-from tangy_tui.ui.widgets.rows import Row
+from tangy_tui.ui.widgets.page import Line, Page
+from tangy_tui.ui.widgets.rows import fit, shorten
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One of several: the word it is known by, its name, and what is to be said of it."""
+
+    id: str
+    name: str
+    note: str = ""
 
 
 class ChooseDialog(Dialog[str | None]):
-    """Shows words; up and down, or their first letter, go to one, and Enter chooses it."""
+    """Up and down choose, Enter takes it; the answer is the word of the option, or None."""
 
     DEFAULT_CSS = """
-    ChooseDialog > .box { width: 50; padding: 0 1; }
-    ChooseDialog ChoiceList { height: auto; max-height: 16; }
-    ChooseDialog.-low ChoiceList { max-height: 11; }
+    ChooseDialog > .box { width: 70; padding: 0 1; }
+    ChooseDialog Page { height: auto; max-height: 1fr; }
     """
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "nothing", "Choose it")]
-    HELP = "Go to one with up and down, or with its first letter, and press Enter. Esc goes back."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,q", "close", "Choose none", key_display="esc"),
+    ]
+    HELP = "Choose with up and down, and take it with Enter; esc goes back without a choice."
 
-    def __init__(self, title: str, words: Sequence[str], *, clock: Clock | None = None) -> None:
+    def __init__(self, question: str, options: Sequence[Option]) -> None:
         super().__init__(None)
-        self._title = clean(title)
-        self._words = tuple(words)
-        self._clock = clock
-        self._keys = FreshKeys()
+        self._question = clean(question)
+        self._options = tuple(options)
 
     def compose(self) -> ComposeResult:
-        """Lay out the words."""
-        box = Vertical(ChoiceList("", self.HELP), id="choose", classes="box")
-        box.border_title = Content(self._title)
-        box.border_subtitle = "enter chooses   esc goes back"
+        """Lay out the list."""
+        box = Vertical(Page(self._write), id="choose", classes="box")
+        box.border_title = Content(self._question)
+        box.border_subtitle = "enter takes it   esc goes back"
         yield box
 
     def on_mount(self) -> None:
-        """Show the words, and take note of the moment from which keys count."""
-        words = self.query_one(ChoiceList)
-        words.styles.height = len(self._words)
-        words.show(lambda width, height: [Line(_row(word), word) for word in self._words])
-        words.focus()
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        """Let the arrows choose."""
+        self.query_one(Page).focus()
 
-    def on_key(self, event: events.Key) -> None:
-        """Choose with Enter, go back with esc, jump to a first letter."""
-        words = self.query_one(ChoiceList)
-        if event.key in ("enter", "escape"):
-            if self._keys.take(event):
-                self.answer(str(words.chosen) if event.key == "enter" else None)
-        elif event.character and event.character.isalpha():
-            event.stop()
-            self._jump(words, event.character.lower())
+    def on_page_chosen(self, event: Page.Chosen) -> None:
+        """Take what was chosen."""
+        event.stop()
+        self.answer(self._options[event.index].id)
 
-    def _jump(self, words: ChoiceList, letter: str) -> None:
-        """Put the cursor on the next word that begins with a letter."""
-        at = self._words.index(str(words.chosen))
-        turned = self._words[at + 1 :] + self._words[: at + 1]
-        found = next((word for word in turned if word.lower().startswith(letter)), None)
-        if found is not None:
-            words.action_choose(self._words.index(found) - at)
+    def action_close(self) -> None:
+        """Take none."""
+        self.answer(None)
 
-    def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
-
-
-def _row(word: str) -> Row:
-    return ((clean(word), "text"),)
+    def _write(self, width: int) -> list[Line]:
+        label = min(width // 2, max((cell_len(clean(o.name)) for o in self._options), default=0))
+        return [
+            Line(
+                (
+                    (" ", "text"),
+                    (fit(clean(option.name), label), "strong"),
+                    (shorten(f"  {clean(option.note)}", width - label - 1), "dim"),
+                ),
+                number,
+            )
+            for number, option in enumerate(self._options)
+        ]

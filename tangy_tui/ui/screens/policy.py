@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -14,9 +14,12 @@ from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.policy_options import DIGEST_SHOWN
+from tangy_tui.ui.reasons import why_row
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.wording import counted
 
 
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:
@@ -45,9 +48,16 @@ class PolicyScreen(TangyScreen[None]):
     HELP = (
         "One row for each situation that can come about: what Tangy does, which share of the "
         "trees voted for it, and how often it was demonstrated. Below: what was seen to follow "
-        "each behaviour. A situation that was never shown needs another demonstration."
+        "each behaviour. Choose a row and press Enter or w to see why; c compares with another "
+        "policy or a teacher, o shows another policy. Where nothing was shown, or demonstrations "
+        "disagree, Tangy asks in the game."
     )
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,enter", "leave", "Back")]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("w", "why", "Why this"),
+        Binding("c", "compare", "Compare with another"),
+        Binding("o", "app.other_policy", "Another policy"),
+        Binding("escape", "leave", "Back"),
+    ]
 
     def __init__(
         self, house: House, policy: Policy, effects: Effects, leave_after: float | None = None
@@ -61,11 +71,15 @@ class PolicyScreen(TangyScreen[None]):
 
     def compose(self) -> ComposeResult:
         """Lay out the table and the effects."""
-        yield StatusLine(Status(mode="policy", note=self._policy.name))
+        note = f"{self._policy.name} {self._policy.digest[:DIGEST_SHOWN]}"
+        yield StatusLine(Status(mode="policy", note=note))
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(PolicyTable())
         yield panel(LogView(id="effects"), "What follows")
-        yield key_line(("tab", "next panel"), ("up down", "scroll"), ("esc", "back"), ("?", "help"))
+        yield key_line(
+            ("w", "why"), ("c", "compare"), ("o", "others"), ("tab", "next panel"),
+            ("up down", "choose"), ("esc", "back"), ("?", "help"),
+        )  # fmt: skip
 
     def on_mount(self) -> None:
         """Fill both."""
@@ -84,16 +98,35 @@ class PolicyScreen(TangyScreen[None]):
         if self._leave_after is not None:
             self.set_timer(self._leave_after, self.action_leave)
 
+    def action_why(self) -> None:
+        """Tell why, for the chosen row (the first, where none is)."""
+        self._explain(self.query_one(PolicyTable).chosen or 0)
+
+    def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
+        """Tell why, for the row that was chosen with Enter."""
+        event.stop()
+        self._explain(event.index)
+
+    def _explain(self, index: int) -> None:
+        situation = self._house.activity.situations[index]
+        self.app.push_screen(why_row(self._house, self._policy, situation))
+
+    def action_compare(self) -> None:
+        """Compare this policy with another, or with what a teacher shows."""
+        app: Any = self.app
+        app.run_worker(app.compare(f"policy:{self._policy.digest}"))
+
     def action_leave(self) -> None:
         """Go back."""
         self.dismiss(None)
 
     def _summary(self) -> str:
         policy, activity = self._policy, self._house.activity
-        shown = sum(1 for s in activity.situations if policy.decide(s).seen)
-        count = len(policy.demonstrations)
-        plural = "" if count == 1 else "s"
-        return (
-            f"Learnt from {count} demonstration{plural}: {shown} of {len(activity.situations)} "
-            f"situations were shown."
-        )
+        decisions = [policy.decide(s) for s in activity.situations]
+        shown = sum(1 for decision in decisions if decision.seen)
+        contested = sum(1 for decision in decisions if decision.contested)
+        unsure = sum(1 for d in decisions if d.seen and not d.sure and not d.contested)
+        said = f"Learnt from {counted(len(policy.demonstrations), 'demonstration')}: "
+        said += f"{shown} of {len(decisions)} situations were shown"
+        said += f", {contested} contested" if contested else ""
+        return said + (f", {unsure} not sure." if unsure else ".")

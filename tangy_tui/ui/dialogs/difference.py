@@ -1,0 +1,91 @@
+"""A policy that does not come out as it was kept: looked at, row by row, before it is used."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, Literal
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+
+from tangy_profiles.activity import Activity
+from tangy_tui.learning.policies import Change
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+
+Use = Literal["use", "keep", "back"]
+"""What is done with it: used this time, kept as it is now and used, or not used."""
+
+ANSWERS: dict[str, Use] = {"y": "use", "k": "keep", "n": "back", "escape": "back"}
+
+
+class DifferenceDialog(Dialog[Use]):
+    """Says why the policy is another one, shows the rows that differ, and asks before using it."""
+
+    DEFAULT_CSS = """
+    DifferenceDialog > .box { width: 76; padding: 0 1; }
+    DifferenceDialog Page { height: auto; max-height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("y", "nothing", "Use it this time"),
+        Binding("k", "nothing", "Keep it as it is now, and use it"),
+        Binding("n", "nothing", "Go back, and do not use it"),
+    ]
+    HELP = (
+        "The policy was learnt again from its demonstrations, and did not come out as it was "
+        "kept. Look at the rows that differ: y uses it this time, k keeps it as it is now, so "
+        "that it is not asked about again, and n or esc goes back."
+    )
+
+    def __init__(
+        self,
+        activity: Activity,
+        notice: str,
+        changes: Sequence[Change],
+        *,
+        clock: Clock | None = None,
+    ) -> None:
+        super().__init__("back")
+        self._activity = activity
+        self._notice = notice
+        self._changes = tuple(changes)
+        self._clock = clock
+        self._keys = FreshKeys()
+
+    def compose(self) -> ComposeResult:
+        """Lay out the notice, the rows, and the keys."""
+        box = Vertical(Page(self._write), id="difference", classes="box")
+        box.border_title = Content("The policy is not the one that was kept")
+        box.border_subtitle = "y use it   k keep it so   n go back"
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the arrows scroll, and take note of the moment from which keys count."""
+        self.query_one(Page).focus()
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+
+    def on_key(self, event: events.Key) -> None:
+        """Answer by y, k, n or esc; the arrows scroll."""
+        answer = ANSWERS.get(event.key.lower())
+        if answer is not None and self._keys.take(event):
+            self.answer(answer)
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def _write(self, width: int) -> list[Line]:
+        lines = paragraph(clean(self._notice), width)
+        if not self._changes:
+            same = "It decides the same everywhere; only the votes differ."
+            return [*lines, *paragraph(same, width)]
+        lines += heading("What it does otherwise")
+        for change in self._changes:
+            words = clean(self._activity.in_words(change.situation))
+            lines += paragraph(words, width, "strong")
+            lines += paragraph(f"  was {clean(change.before)}, is now {clean(change.after)}", width)
+        return lines

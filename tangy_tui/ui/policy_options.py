@@ -1,0 +1,41 @@
+"""What can be looked at and compared: every policy that was kept, and every teacher."""
+
+from __future__ import annotations
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.store import Store
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policies import kept_policies
+from tangy_tui.ui.dialogs.choose import Option
+from tangy_tui.wording import counted
+
+DIGEST_SHOWN = 8
+"""Characters of a digest that are shown: enough to tell policies apart."""
+
+
+def policy_options(store: Store, activity: Activity) -> list[Option]:
+    """Return every kept policy once, the latest first."""
+    found: dict[str, Option] = {}
+    for kept in reversed(kept_policies(store, activity.name)):
+        digest = str(kept["digest"])
+        shown = counted(len(kept["demonstrations"]), "demonstration")
+        when = str(kept["at"])[:16].replace("T", " ")
+        note = f"{digest[:DIGEST_SHOWN]}  {shown}  {when}"
+        found.setdefault(digest, Option(digest, str(kept["name"]), note))
+    return list(found.values())
+
+
+def comparison_options(store: Store, activity: Activity) -> list[Option]:
+    """Return what two policies can be compared of: kept ones, and what each teacher shows."""
+    options = [
+        Option(f"policy:{option.id}", option.name, option.note)
+        for option in policy_options(store, activity)
+    ]
+    given: dict[str, int] = {}
+    for shown in read_library(store, activity.name).finished:
+        given[shown.teacher] = given.get(shown.teacher, 0) + 1
+    options += [
+        Option(f"teacher:{teacher}", teacher, f"what {counted(times, 'demonstration')} teach")
+        for teacher, times in given.items()
+    ]
+    return options

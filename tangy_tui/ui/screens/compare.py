@@ -1,0 +1,183 @@
+"""Two policies side by side, row by row: teacher against teacher, before against after."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from rich.cells import cell_len
+from textual.app import App, ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Static
+
+from tangy_tui.house import House
+from tangy_tui.learning.comparing import Row, compare
+from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.policy_options import DIGEST_SHOWN, comparison_options, policy_options
+from tangy_tui.ui.reasons import why_row
+from tangy_tui.ui.widgets.page import Line, Page
+from tangy_tui.ui.widgets.rows import Span, fit
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.wording import counted
+
+SIDE_BY_SIDE = 110
+"""From this width a situation and both policies stand on one line."""
+
+
+NOTHING_TO_COMPARE = (
+    "There is only one policy so far, or none: learn again after another demonstration, or let "
+    "somebody else teach."
+)
+
+
+async def choose_two(app: App[Any], house: House, first: str | None) -> list[str]:
+    """Let two policies or teachers be chosen; `first` is one already. Fewer than two: no choice."""
+    options = comparison_options(house.store, house.activity)
+    if len(options) < 2:
+        await app.push_screen_wait(MessageDialog(NOTHING_TO_COMPARE, title="Nothing to compare"))
+        return []
+    wanted = [] if first is None else [first]
+    for question in ("Compare A: which?", "With B: which?")[len(wanted) :]:
+        left = [option for option in options if option.id not in wanted]
+        chosen = await app.push_screen_wait(ChooseDialog(question, left))
+        if chosen is None:
+            return []
+        wanted.append(chosen)
+    return wanted
+
+
+async def choose_policy(app: App[Any], house: House) -> str | None:
+    """Let one of the policies that were kept be chosen."""
+    options = policy_options(house.store, house.activity)
+    return await app.push_screen_wait(ChooseDialog("Look at which policy?", options))
+
+
+def decision_words(decision: Decision) -> str:
+    """Write what is done and the share of the votes, or why Tangy would ask."""
+    if not decision.seen:
+        return "asks: never shown"
+    if decision.contested:
+        return "asks: contested"
+    asks = "" if decision.sure else " (asks)"
+    return f"{decision.behaviour} {decision.share:.0%}{asks}"
+
+
+class CompareScreen(TangyScreen[None]):
+    """Every situation with what A and B do there; rows that differ come first and have a mark."""
+
+    TITLE = "Compare"
+    CSS = """
+    CompareScreen #summary { height: auto; max-height: 5; padding: 0 1; margin: 1 0 0 0; }
+    CompareScreen #comparison { height: 1fr; }
+    """
+    HELP = (
+        "Two policies side by side: in each situation what both do, and which share of the trees "
+        "voted for it. Rows that differ come first and have a mark; d shows only these. a and b "
+        "tell why the one and the other does so; Enter is a."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("d", "differences", "Only the differences, or all"),
+        Binding("a", "why(0)", "Why does A do so"),
+        Binding("b", "why(1)", "Why does B do so"),
+        Binding("c", "choose", "Compare others"),
+        Binding("escape", "leave", "Back"),
+    ]
+
+    def __init__(self, house: House, a: Policy, b: Policy, notices: Sequence[str] = ()) -> None:
+        """Make the screen; `notices` are what must be said of the policies."""
+        super().__init__()
+        self._house = house
+        self._pair = (a, b)
+        self._notices = tuple(notices)
+        rows = compare(house.activity, a, b)
+        self._all = sorted(rows, key=lambda row: row.same)
+        self._only = False
+
+    @property
+    def rows(self) -> list[Row]:
+        """What is shown."""
+        return [row for row in self._all if not (self._only and row.same)]
+
+    def compose(self) -> ComposeResult:
+        """Lay out what is compared above the rows."""
+        yield StatusLine(Status(mode="compare", note=" : ".join(p.name for p in self._pair)))
+        yield Static(self._summary(), id="summary", markup=False)
+        yield panel(Page(self._write, id="comparison"), "Comparison")
+        yield key_line(
+            ("a b", "why"), ("d", "differences"), ("c", "others"), ("esc", "back"), ("?", "help")
+        )
+
+    def on_mount(self) -> None:
+        """Let the arrows choose."""
+        self.query_one(Page).focus()
+
+    def action_differences(self) -> None:
+        """Show only the rows that differ, or all."""
+        self._only = not self._only
+        self.query_one(Page).show(self._write)
+
+    def action_why(self, which: int) -> None:
+        """Tell why the one or the other does what it does in the chosen row."""
+        chosen, rows = self.query_one(Page).chosen, self.rows
+        if chosen is not None and chosen < len(rows):
+            policy = self._pair[which]
+            self.app.push_screen(why_row(self._house, policy, rows[chosen].situation))
+
+    def on_page_chosen(self, event: Page.Chosen) -> None:
+        """Tell why A does so."""
+        event.stop()
+        self.action_why(0)
+
+    async def action_choose(self) -> None:
+        """Compare others."""
+        self.dismiss(None)
+        await self.run_action("app.compare")
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.dismiss(None)
+
+    def _summary(self) -> str:
+        differ = sum(not row.same for row in self._all)
+        count = counted(len(self._all), "situation")
+        said = f"They differ in {differ} of {count}." if differ else f"They agree in all {count}."
+        names = [
+            f"{letter}: {policy.name} ({policy.digest[:DIGEST_SHOWN]}, "
+            f"{counted(len(policy.demonstrations), 'demonstration')})"
+            for letter, policy in zip("AB", self._pair, strict=True)
+        ]
+        return clean(" ".join(["   ".join(names) + ".", said, *self._notices]))
+
+    def _write(self, width: int) -> list[Line]:
+        rows = self.rows
+        if not rows:
+            return [Line((("They do the same everywhere; d shows all rows.", "dim"),))]
+        activity = self._house.activity
+        words = [clean(activity.in_words(row.situation)) for row in rows]
+        label = max(cell_len(word) for word in words) + 2
+        wide = width >= SIDE_BY_SIDE
+        half = max(8, (width - (label if wide else 0) - 4) // 2)
+        lines: list[Line] = []
+        for number, (row, word) in enumerate(zip(rows, words, strict=True)):
+            head: tuple[Span, ...] = (
+                ("  " if row.same else "! ", "warn"),
+                (fit(word, label if wide else width - 2), "text" if row.same else "strong"),
+            )
+            both = (
+                *self._side("A", row.a, row.same, half),
+                *self._side("B", row.b, row.same, half),
+            )
+            if wide:
+                lines.append(Line((*head, *both), number))
+            else:
+                lines += [Line(head, number), Line((("    ", "text"), *both), number)]
+        return lines
+
+    def _side(self, letter: str, decision: Decision, same: bool, width: int) -> tuple[Span, ...]:
+        ink = "text" if same else ("strong" if decision.sure else "warn")
+        return ((f"{letter} ", "dim"), (fit(clean(decision_words(decision)), width - 2), ink))

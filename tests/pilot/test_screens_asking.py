@@ -1,0 +1,367 @@
+"""Asking in place: the game waits for an answer, learns it, and goes on; walked with keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_profiles.store import StoreError
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import ENDED
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.fresh_keys import Clock
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.interaction.gaps import learnt, otherwise, without
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot, screen_text
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+
+FEW = ForestSettings(trees=5)
+TINY = (60, 18)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+def gap(house: House) -> Situation:
+    """Return the situation that is left out: what comes first when a number is called."""
+    expected = house.activity.expected
+    return next(s for s in house.activity.situations if expected[s] == "call number")
+
+
+@pytest.fixture
+def gappy(house: House, cover: Cover) -> Policy:
+    """A policy that was never shown one situation."""
+    shown = [without(d, gap(house)) for d in cover("bingo", 1, 4)]
+    return learnt(house.store, house.activity, shown, FEW)
+
+
+def playing(
+    house: House, policy: Policy, *, speed: float = 1000, clock: Clock | None = None
+) -> Program:
+    """Make the program with the playing screen open."""
+
+    async def start(program: Program) -> None:
+        facilitation = house.facilitation(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(house, facilitation, speed=speed, teacher="ann"))
+
+    return Program(house, start, clock=clock or StillClock())
+
+
+async def asked(pilot: TangyPilot) -> PlayScreen:
+    """Wait until Tangy asks and a command can be typed."""
+    while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
+        await pilot.pause(0.02)
+    while pilot.app.screen.query_one(CommandBar).closed:
+        await pilot.pause(0.02)
+    return pilot.app.screen
+
+
+async def questioned(pilot: TangyPilot) -> None:
+    """Wait until the question that verifies an answer takes keys."""
+    while not isinstance(pilot.app.screen, QuestionDialog):
+        await pilot.pause(0.02)
+    while pilot.app.screen._keys._from is None:
+        await pilot.pause(0.02)
+
+
+async def answer(pilot: TangyPilot, words: str = "call number") -> None:
+    """Type an answer and verify it."""
+    pilot.type(*words, "enter")
+    await questioned(pilot)
+    await pilot.press("y")
+
+
+async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
+    """Wait until the game is over."""
+    while not screen._facilitation.over:
+        await pilot.pause(0.02)
+    await pilot.pause()
+
+
+@pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
+async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
+    run: Run, house: House, gappy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, gappy), size=size) as pilot:
+        screen = await asked(pilot)
+        count = screen.query_one(Transcript).count
+        seen = " ".join(screen_text(pilot.app).split())
+        assert "robot ASKS" in seen
+        assert "Nobody has shown Tangy what to do here yet" in seen
+        await answer(pilot)
+        while screen.query_one(Transcript).count == count:
+            await pilot.pause(0.02)
+        await pilot.press("e")
+        await over(pilot, screen)
+        said = " ".join(screen.query_one(LogView).sentences)
+        assert "Learnt from ann: " in said
+        assert "earlier steps were gone through: nothing else changed." in said
+        assert "The game is over" in said
+        words = house.activity.in_words(gap(house))
+        row = next(r for r in screen.query_one(PolicyTable).rows if r.situation == words)
+        assert (row.behaviour, row.seen) == ("call number", 1)
+        assert screen._tally.answers == 1
+    made = read_library(house.store, house.activity.name).finished[-1]
+    assert (made.origin, made.teacher) == ("asked", "ann")
+
+
+async def test_what_was_learnt_is_said_in_a_message(run: Run, house: House, gappy: Policy) -> None:
+    async with run(app=playing(house, gappy, speed=1), notifications=True) as pilot:
+        await pilot.press("e")
+        screen = await asked(pilot)
+        screen._skipping = False
+        await answer(pilot)
+        while "gone through" not in screen_text(pilot.app):
+            await pilot.pause(0.02)
+        assert "earlier" in screen_text(pilot.app)
+        assert "else changed." in screen_text(pilot.app)
+
+
+async def test_nothing_happens_before_a_yes(run: Run, house: House, gappy: Policy) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        before = list(house.store.events())
+        pilot.type(*"call number", "enter")
+        await questioned(pilot)
+        assert "Did you say: call number?" in screen_text(pilot.app)
+        await pilot.press("enter", "space", "n")
+        await pilot.pause()
+        assert screen.query_one(CommandBar).text == "call number"
+        assert "Give a new command" in screen_text(pilot.app)
+        await pilot.press("enter")
+        await questioned(pilot)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert list(house.store.events()) == before
+        assert screen._facilitation.question is not None
+
+
+async def test_keys_typed_ahead_answer_nothing(run: Run, house: House, gappy: Policy) -> None:
+    async with run(app=playing(house, gappy, speed=1)) as pilot:
+        await pilot.press("p")
+        screen: Any = pilot.app.screen
+        while screen.query_one(Transcript).count < 1:
+            await pilot.press("n")
+            await pilot.pause()
+        pilot.type("n", *"xxx", "enter", "y")
+        screen = await asked(pilot)
+        await pilot.pause()
+        assert screen.query_one(CommandBar).text == ""
+        assert screen._facilitation.question is not None
+        assert isinstance(pilot.app.screen, PlayScreen)
+
+
+async def test_words_that_mean_nothing_are_given_back(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        pilot.type(*"make some tea", "enter")
+        await pilot.pause()
+        assert "I do not know what 'make some tea' means" in screen_text(pilot.app)
+        assert screen.query_one(CommandBar).text == "make some tea"
+
+
+async def test_why_it_asks_is_told_by_word_and_by_key(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        await asked(pilot)
+        pilot.type(*"why", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert "Nobody has shown Tangy what to do here" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("escape", "w")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+
+
+@pytest.mark.parametrize("way", ["word", "key"])
+async def test_the_game_is_given_up_on_purpose(
+    run: Run, house: House, gappy: Policy, way: str
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        if way == "word":
+            pilot.type(*"quit", "enter")
+        else:
+            await pilot.press("escape", "escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await pilot.press("n")
+        await pilot.pause()
+        assert screen._facilitation.question is not None
+        if way == "word":
+            pilot.type(*"quit", "enter")
+        else:
+            await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("y")
+        await over(pilot, screen)
+        assert not screen.query(AskingPanel)
+        ended = house.store.last(ENDED)
+        assert ended is not None
+        assert "Nobody has shown Tangy" in str(ended.body["stopped"])
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        pilot.type(*"call number", "enter")
+        await questioned(pilot)
+        before = list(house.store.events())
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PlayScreen)
+        assert "STOPPED" in screen_text(pilot.app)
+        assert "press p to go on first" in screen_text(pilot.app)
+        await pilot.press("n", "e")
+        await pilot.press("colon", "enter")
+        await pilot.pause()
+        assert list(house.store.events()) == before
+        assert screen._facilitation.question is not None
+        await pilot.press("escape", "p")
+        await pilot.pause()
+        assert "STOPPED" not in screen_text(pilot.app)
+        await pilot.press("enter")
+        await questioned(pilot)
+        await pilot.press("y")
+        while screen._facilitation.question is not None:
+            await pilot.pause(0.02)
+
+
+async def test_pausing_while_tangy_asks_pauses_after_the_answer(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        await pilot.press("escape", "p", "e", "colon")
+        assert "Tangy asks first" in screen.query_one(LogView).sentences[-1]
+        count = screen.query_one(Transcript).count
+        await answer(pilot)
+        while screen.query_one(Transcript).count == count:
+            await pilot.pause(0.02)
+        for _ in range(5):
+            await pilot.pause(0.02)
+        assert screen.query_one(Transcript).count == count + 1
+        assert screen.query_one(StatusLine).status.note == "paused"
+
+
+async def test_demonstrations_that_disagree_are_shown_with_the_question(
+    run: Run, house: House, cover: Cover
+) -> None:
+    shown = cover("bingo", 1, 4)
+    other = otherwise(shown[0], gap(house), "joke", "ben")
+    contested = learnt(house.store, house.activity, [*shown, other], FEW)
+    async with run(app=playing(house, contested), size=LARGE) as pilot:
+        screen = await asked(pilot)
+        seen = " ".join(screen_text(pilot.app).split())
+        assert "Demonstrations disagree" in seen
+        assert "by ben)" in seen
+        assert "contested" in seen
+        await answer(pilot)
+        while screen._facilitation.question is not None:
+            await pilot.pause(0.02)
+        await pilot.pause()
+        assert "set aside" in " ".join(screen.query_one(LogView).sentences)
+
+
+async def test_an_answered_step_says_who_answered(run: Run, house: House, gappy: Policy) -> None:
+    async with run(app=playing(house, gappy), size=LARGE) as pilot:
+        screen = await asked(pilot)
+        await pilot.press("escape", "p", "colon")
+        await answer(pilot)
+        while screen._facilitation.question is not None:
+            await pilot.pause(0.02)
+        await pilot.pause()
+        await pilot.press("w")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert "Tangy asked, and ann answered: call number." in screen_text(pilot.app)
+
+
+async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
+    run: Run, house: House, gappy: Policy, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    append = house.store.append
+
+    def refuse(kind: str, *rest: object, **more: object) -> int:
+        if kind == "policy learnt":
+            raise StoreError("The log cannot be written: the disk is full.")
+        return append(kind, *rest, **more)  # type: ignore[arg-type]
+
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        policy = screen._facilitation.policy
+        with monkeypatch.context() as broken:
+            broken.setattr(house.store, "append", refuse)
+            await answer(pilot)
+            while not isinstance(pilot.app.screen, MessageDialog):
+                await pilot.pause(0.02)
+        assert "the disk is full" in screen_text(pilot.app)
+        assert screen._facilitation.policy is policy
+        await pilot.press("enter")
+        await pilot.pause()
+        await pilot.press("p")
+        await asked(pilot)
+        await answer(pilot)
+        while screen._facilitation.question is not None:
+            await pilot.pause(0.02)
+        assert screen._facilitation.policy is not policy
+
+
+async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        await asked(pilot)
+        await pilot.press("ctrl+q")
+    ended = house.store.last(ENDED)
+    assert ended is not None
+    assert ended.body["stopped"] == "It was left before its end."
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_asking_looks(
+    run: Run,
+    house: House,
+    gappy: Policy,
+    size: tuple[int, int],
+    picture: Callable[[App[None]], None],
+) -> None:
+    async with run(app=playing(house, gappy), size=size) as pilot:
+        await asked(pilot)
+        await pilot.pause()
+        picture(pilot.app)

@@ -1,0 +1,196 @@
+"""Policies compared, chosen and looked at before they are used; walked with keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_tui.house import House
+from tangy_tui.learning.policies import POLICY, keep_policy, last_policy
+from tangy_tui.learning.policy import ForestSettings
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.difference import DifferenceDialog
+from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.compare import CompareScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.policy import PolicyScreen
+from tests.interaction.gaps import learnt, otherwise, without
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot, screen_text
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+
+FEW = ForestSettings(trees=5)
+TINY = (60, 18)
+
+
+def found(house: House, behaviour: str) -> Situation:
+    """Return the situation in which something is expected."""
+    expected = house.activity.expected
+    return next(s for s in house.activity.situations if expected[s] == behaviour)
+
+
+@pytest.fixture
+def house(tmp_path: Path, cover: Cover) -> Iterator[House]:
+    """A house with a policy that lacks a row, a later one that has it, and another teacher."""
+    opened = House(tmp_path / "data")
+    shown = cover("bingo", 1, 4)
+    gap = found(opened, "call number")
+    keep_policy(
+        opened.store,
+        learnt(opened.store, opened.activity, [without(shown[0], gap), *shown[1:]], FEW),
+    )
+    keep_policy(opened.store, learnt(opened.store, opened.activity, [], FEW))
+    other = [otherwise(d, gap, "joke", "ben") for d in shown]
+    keep_policy(opened.store, learnt(opened.store, opened.activity, other, FEW))
+    yield opened
+    opened.close()
+
+
+async def shown(pilot: TangyPilot, kind: type) -> Any:
+    """Wait for a screen."""
+    while not isinstance(pilot.app.screen, kind):
+        await pilot.pause(0.02)
+    await pilot.pause()
+    return pilot.app.screen
+
+
+async def compare_teachers(pilot: TangyPilot) -> CompareScreen:
+    """Choose the two teachers, who stand at the end of the list."""
+    program: Any = pilot.app
+    program.action_compare()
+    await shown(pilot, ChooseDialog)
+    await pilot.press("end", "up", "enter")
+    await pilot.pause()
+    await shown(pilot, ChooseDialog)
+    await pilot.press("end", "enter")
+    screen: CompareScreen = await shown(pilot, CompareScreen)
+    return screen
+
+
+@pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
+async def test_teacher_is_compared_with_teacher(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+        screen = await compare_teachers(pilot)
+        assert "They differ in 1 of 11 situations." in " ".join(screen_text(pilot.app).split())
+        first = screen.rows[0]
+        assert (first.situation, first.same) == (found(house, "call number"), False)
+        assert {first.a.behaviour, first.b.behaviour} == {"call number", "joke"}
+        assert "A call number 100%" in screen_text(pilot.app)
+        await pilot.press("d")
+        await pilot.pause()
+        assert len(screen.rows) == 1
+        await pilot.press("b")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert "by ben." in screen_text(pilot.app)
+        await pilot.press("escape", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert "by test." in screen_text(pilot.app)
+        await pilot.press("escape", "escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_the_policy_screen_tells_why_and_says_what_is_contested(
+    run: Run, house: House
+) -> None:
+    async with run(app=Program(house, clock=StillClock()), size=LARGE) as pilot:
+        await pilot.press("o")
+        screen = await shown(pilot, PolicyScreen)
+        digest = str((last_policy(house.store, house.activity.name) or {})["digest"])
+        assert digest[:8] in screen_text(pilot.app)
+        assert "1 contested" in screen_text(pilot.app)
+        assert "contested" in [row.behaviour for row in screen.query_one("#policy").rows]
+        await pilot.press("down", "down", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert "Votes of the trees" in screen_text(pilot.app)
+        await pilot.press("escape", "w")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, WhyDialog)
+
+
+async def test_before_is_compared_with_after_from_the_policy_screen(run: Run, house: House) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("o")
+        await shown(pilot, PolicyScreen)
+        await pilot.press("c")
+        await shown(pilot, ChooseDialog)
+        await pilot.press("enter")
+        screen = await shown(pilot, CompareScreen)
+        assert any(not row.same for row in screen.rows)
+        assert "asks: contested" in screen_text(pilot.app)
+
+
+async def test_an_earlier_policy_can_be_looked_at(run: Run, house: House) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("o")
+        last = await shown(pilot, PolicyScreen)
+        await pilot.press("o")
+        await shown(pilot, ChooseDialog)
+        await pilot.press("end", "enter")
+        while not isinstance(pilot.app.screen, PolicyScreen) or pilot.app.screen is last:
+            await pilot.pause(0.02)
+        screen: Any = pilot.app.screen
+        assert len(screen._policy.demonstrations) < len(last._policy.demonstrations)
+
+
+def spoil(house: House) -> None:
+    """Keep the last policy as another version would have learnt it."""
+    kept = dict(last_policy(house.store, house.activity.name) or {})
+    rows = [list(row) for row in kept["rows"]]
+    rows[0][3] = "something else"
+    versions = {**kept["versions"], "scikit-learn": "0.1"}
+    house.store.append(POLICY, {**kept, "digest": "0" * 64, "rows": rows, "versions": versions})
+
+
+@pytest.mark.parametrize(("key", "used", "kept"), [("n", 0, 0), ("y", 1, 0), ("k", 1, 1)])
+async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
+    run: Run, house: House, key: str, used: int, kept: int
+) -> None:
+    spoil(house)
+    before = sum(1 for _ in house.store.events(POLICY))
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("o")
+        dialog = await shown(pilot, DifferenceDialog)
+        while dialog._keys._from is None:
+            await pilot.pause(0.02)
+        text = " ".join(screen_text(pilot.app).split())
+        assert "does not come out as it was kept" in text
+        assert "scikit-learn" in text
+        assert "was something else" in text
+        await pilot.press("enter", "space")
+        await pilot.pause()
+        assert pilot.app.screen is dialog
+        await pilot.press(key)
+        await shown(pilot, PolicyScreen if used else HomeScreen)
+        assert sum(1 for _ in house.store.events(POLICY)) == before + kept
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_comparing_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+        await compare_teachers(pilot)
+        picture(pilot.app)
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
+async def test_how_a_policy_looks(
+    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+) -> None:
+    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+        await pilot.press("o")
+        await shown(pilot, PolicyScreen)
+        picture(pilot.app)
