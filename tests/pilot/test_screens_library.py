@@ -15,8 +15,8 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.house import House
 from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.policies import last_policy, load_policy
-from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.words import WordsDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.conflicts import ConflictsScreen
 from tangy_tui.ui.screens.demonstration import DemonstrationScreen
@@ -285,7 +285,7 @@ async def test_answers_are_taken_back_and_learning_can_be_left(run: Run, house: 
 async def test_something_else_can_be_right(run: Run, house: House) -> None:
     async with run(app=program(house)) as pilot:
         await press(pilot, "l", "o")
-        assert isinstance(pilot.app.screen, ChooseDialog)
+        assert isinstance(pilot.app.screen, WordsDialog)
         await press(pilot, "j", "enter")  # joke
         assert library_of(house).resolutions[0].right == ("joke",)
 

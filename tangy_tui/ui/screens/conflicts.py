@@ -17,7 +17,7 @@ from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.dialogs.words import WordsDialog
 from tangy_tui.ui.fresh_keys import FreshKeys, clock_of
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.answer_steps import AnswerSteps
@@ -142,7 +142,7 @@ class ConflictsScreen(TangyScreen[bool]):
     async def _other(self, conflict: Conflict) -> None:
         """Let another behaviour be chosen that nobody showed here."""
         others = [b for b in self._house.activity.behaviours if b not in conflict.answers]
-        dialog = ChooseDialog("What is right here?", others)
+        dialog = WordsDialog("What is right here?", others)
         chosen = await self.app.push_screen_wait(dialog)
         if chosen is not None and conflict is self._present:
             await self._resolve(conflict, chosen)

@@ -15,6 +15,8 @@ from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
 from tangy_tui.ui.widgets.rows import shorten
 from tangy_tui.wording import counted
 
+LINES_OF_A_STEP = 3
+
 
 class AnswerSteps(ChoiceList):
     """The steps that gave one answer: where, by whom, and what followed; Enter opens one."""
@@ -52,11 +54,12 @@ class AnswerSteps(ChoiceList):
             name = self._library.name(shown.demonstration)
             entry = self._library.entries.get(shown.demonstration)
             when = f", {local_time(entry.at)}" if entry is not None else ""
-            where = f"step {shown.number} of {name}"
-            who = f"  {clean(shown.teacher)}{when}"
+            where = f"{name}, step {shown.number}"
+            who = f" {clean(shown.teacher)}{when}"
             lines.append(Line(((shorten(where, width), "text"),), index))
             lines.append(Line(((shorten(who, width), "dim"),), index))
-            lines.append(Line(((shorten(self._followed(shown), width), "dim"),), index))
+            if height >= LINES_OF_A_STEP:
+                lines.append(Line(((shorten(self._followed(shown), width), "dim"),), index))
         return lines
 
     def _followed(self, shown: Shown) -> str:
@@ -64,7 +67,7 @@ class AnswerSteps(ChoiceList):
         step = shown.step
         whom = f"for {self._house.name(step.target)}, " if step.target else ""
         then = self._house.activity.in_words(step.after.situation)
-        return clean(f"  {whom}then {then}")
+        return clean(f" {whom}then {then}")
 
     def _tell(self, index: int) -> None:
         self.post_message(self.Chosen(self, self._steps[index]))
