@@ -10,8 +10,8 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
-from tangy_profiles.store import StoreError
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.learning.library import read_library
@@ -319,7 +319,7 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 
     def refuse(kind: str, *rest: object, **more: object) -> int:
         if kind == "policy learnt":
-            raise StoreError("The log cannot be written: the disk is full.")
+            raise TangyError("The log cannot be written: the disk is full.")
         return append(kind, *rest, **more)  # type: ignore[arg-type]
 
     async with run(app=playing(house, gappy)) as pilot:

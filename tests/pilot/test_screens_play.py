@@ -15,7 +15,9 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.story import learn
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.screens.play import PlayScreen
@@ -264,3 +266,58 @@ async def test_two_letters_at_home_are_one_choice(run: Run, house: House, policy
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = await pause_at_once(pilot)
+        while not any(ground.acted.choice for ground in screen._picture.grounds):
+            await pilot.press("n")
+            await pilot.pause()
+        ground = screen._picture.grounds[-1]
+        assert ground.acted.choice is not None
+        await pilot.press("w")
+        await pilot.pause()
+        text = screen_text(pilot.app)
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert f"Step {len(screen._picture.grounds)}: why this?" in text
+        for number in ground.acted.choice.draws.values():
+            assert f"{number:.3f}" in text
+        await pilot.press("escape", "2", "home", "enter")
+        await pilot.pause()
+        assert "Step 1: why this?" in screen_text(pilot.app)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, DemonstrationScreen)
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert screen.query_one(Transcript).chosen is None
+        assert "Leave" not in screen_text(pilot.app)
+
+
+async def test_leaving_in_mid_game_is_asked_and_logged(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "Leave in the middle of the game?" in screen_text(pilot.app)
+        await pilot.press("n")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PlayScreen)
+        assert pilot.app.screen.query_one(StatusLine).status.note == "x1"
+        assert house.store.last("game ended") is None
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+    ended = house.store.last("game ended")
+    assert ended is not None
+    assert ended.body["stopped"] == "It was left before its end."

@@ -126,7 +126,8 @@ async def test_how_it_looks(
     run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
     why = why_of(house, persuading(house))
-    async with run(app=showing(house, why, a_choice(house)), size=size) as pilot:
+    async with run(size=size) as pilot:  # above an empty screen, so that it alone is compared
+        await pilot.app.push_screen(WhyDialog(house, why, a_choice(house)))
         await pilot.pause()
         picture(pilot.app)
 

@@ -29,6 +29,9 @@ SIDE_BY_SIDE = 110
 """From this width a situation and both policies stand on one line."""
 
 
+WIDEST = 44
+"""Columns that one policy has at the most, so that both can be looked at together."""
+
 NOTHING_TO_COMPARE = (
     "There is only one policy so far, or none: learn again after another demonstration, or let "
     "somebody else teach."
@@ -161,7 +164,7 @@ class CompareScreen(TangyScreen[None]):
         words = [clean(activity.in_words(row.situation)) for row in rows]
         label = max(cell_len(word) for word in words) + 2
         wide = width >= SIDE_BY_SIDE
-        half = max(8, (width - (label if wide else 0) - 4) // 2)
+        half = min(WIDEST, max(8, (width - (label if wide else 0) - 4) // 2))
         lines: list[Line] = []
         for number, (row, word) in enumerate(zip(rows, words, strict=True)):
             head: tuple[Span, ...] = (

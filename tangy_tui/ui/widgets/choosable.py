@@ -89,13 +89,15 @@ class Choosable(ScrollView, can_focus=True):
         raise NotImplementedError
 
     def _mark(self) -> None:
-        """Mark the line that the cursor is on, and let it be seen."""
+        """Mark the lines that the cursor is on, and let them be seen."""
         places = range(0) if self._cursor is None else self._places(self._cursor)
         self._rows.mark(dict.fromkeys(places, "cursor"))
-        self._reveal(places)
+        if self._cursor is not None:
+            self._reveal(self._cursor)
 
-    def _reveal(self, places: range) -> None:
-        """Scroll as little as needed for lines to be seen; the first one brings the head along."""
+    def _reveal(self, index: int) -> None:
+        """Scroll as little as needed for a choice to be seen; the first brings the head along."""
+        places = self._places(index)
         if places:
-            self._rows.show(0 if self._cursor == 0 else places[0])
+            self._rows.show(0 if index == 0 else places[0])
             self._rows.show(places[-1])

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 from rich.cells import cell_len
-from textual import events
-from textual.binding import Binding, BindingType
 from textual.message import Message
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit
+from tangy_tui.ui.widgets.choosable import Choosable
+from tangy_tui.ui.widgets.rows import Row, Span, fit
 
 UNSURE = 0.7
 """A share of the votes below this one is written as a warning."""
@@ -47,26 +42,13 @@ def bar(share: float, width: int) -> str:
     return ("█" * full + (EIGHTHS[rest] if rest else "")).ljust(width)
 
 
-class PolicyTable(ScrollView, can_focus=True):
+class PolicyTable(Choosable):
     """Rows of situation and behaviour; up and down choose one, Enter tells of it.
 
     `highlight` marks the row that is in use at the moment. Where there is no room for a situation
     and its behaviour side by side they stand one under the other.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    PolicyTable { overflow-x: hidden; scrollbar-size-vertical: 1; scrollbar-gutter: stable; }
-    """
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up,k", "choose(-1)", "Previous row", show=False),
-        Binding("down,j", "choose(1)", "Next row", show=False),
-        Binding("pageup", "choose(-10)", "Ten rows back", show=False),
-        Binding("pagedown", "choose(10)", "Ten rows on", show=False),
-        Binding("home", "choose(-1000000)", "First row", show=False),
-        Binding("end", "choose(1000000)", "Last row", show=False),
-        Binding("enter", "tell", "Tell of the row", show=False),
-    ]
     HELP = (
         "What Tangy has learnt: in which situation it does what, the share of the votes for it, "
         "and how often the situation was shown to it."
@@ -98,9 +80,7 @@ class PolicyTable(ScrollView, can_focus=True):
         self._table: tuple[PolicyRow, ...] = ()
         self._empty = clean(empty)
         self._now: int | None = None
-        self._chosen: int | None = None
         self._stacked = False
-        self._rows = Rows(self)
 
     @property
     def rows(self) -> tuple[PolicyRow, ...]:
@@ -110,12 +90,12 @@ class PolicyTable(ScrollView, can_focus=True):
     @property
     def chosen(self) -> int | None:
         """The row that the cursor is on."""
-        return self._chosen
+        return self._cursor
 
     def show(self, rows: Sequence[PolicyRow], highlight: str | None = None) -> None:
         """Show these rows; `highlight` names the situation that is in use."""
         self._table = tuple(rows)
-        self._chosen = None
+        self._cursor = None
         self._now = self._index(highlight)
         self._show()
 
@@ -124,30 +104,11 @@ class PolicyTable(ScrollView, can_focus=True):
         self._now = self._index(situation)
         self._mark()
 
-    def action_choose(self, by: int) -> None:
-        """Move the cursor."""
-        if self._table:
-            at = (-1 if by > 0 else len(self._table)) if self._chosen is None else self._chosen
-            self._chosen = min(len(self._table) - 1, max(0, at + by))
-            self._mark()
+    def _length(self) -> int:
+        return len(self._table)
 
-    def action_tell(self) -> None:
-        """Post `Chosen` for the row under the cursor."""
-        if self._chosen is not None:
-            self.post_message(self.Chosen(self, self._chosen, self._table[self._chosen]))
-
-    def on_resize(self, event: events.Resize) -> None:
-        """Lay out anew."""
-        self._show()
-
-    def notify_style_update(self) -> None:
-        """Draw in the new colours."""
-        super().notify_style_update()
-        self._rows.forget()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw one line."""
-        return self._rows.strip(y)
+    def _tell(self, index: int) -> None:
+        self.post_message(self.Chosen(self, index, self._table[index]))
 
     def _index(self, situation: str | None) -> int | None:
         return next((n for n, r in enumerate(self._table) if r.situation == situation), None)
@@ -203,15 +164,13 @@ class PolicyTable(ScrollView, can_focus=True):
 
     def _mark(self) -> None:
         marks: dict[int, str] = {}
-        for index, ink in ((self._chosen, "cursor"), (self._now, "now")):
+        for index, ink in ((self._cursor, "cursor"), (self._now, "now")):
             if index is not None:
                 marks.update(dict.fromkeys(self._places(index), ink))
         self._rows.mark(marks)
-        seen = self._chosen if self._chosen is not None else self._now
+        seen = self._cursor if self._cursor is not None else self._now
         if seen is not None:
-            places = self._places(seen)
-            self._rows.show(0 if seen == 0 else places[0])
-            self._rows.show(places[-1])
+            self._reveal(seen)
 
     def _places(self, index: int) -> range:
         """Return the lines that a row of the table stands on."""
