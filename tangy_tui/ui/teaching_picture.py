@@ -86,14 +86,14 @@ class TeachingPicture:
         state = teaching.world.observe()
         found = self._shown.now()
         self._coverage(found)
-        guided = ", guided" if shown.guided else ""
+        guided = "guided, " if shown.guided else ""
         self._screen.query_one(StatusLine).show(
             Status(
                 mode="teach",
                 stage=state.stage if not teaching.world.over else "over",
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),
-                note=f"{teaching.teacher}'s game {shown.seed}{guided}",
+                note=f"{guided}{teaching.teacher}'s game {shown.seed}",
             )
         )
         words = (
