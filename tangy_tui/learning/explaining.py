@@ -79,8 +79,12 @@ def foresee(store: Store, activity: Activity, present: Demonstration | None) -> 
     return learn_policy(activity, list(shown.values()), resolutions=library.resolutions)
 
 
-def why_words(activity: Activity, why: Why) -> list[str]:
-    """Put the grounds of a decision into sentences, the most important first."""
+def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
+    """Put the grounds of a decision into sentences, the most important first.
+
+    Args:
+        votes: with a sentence on the votes; without it, they are drawn beside the sentences.
+    """
     decision = why.decision
     sentences = [f"Situation: {activity.in_words(why.situation)}."]
     teachers = dict.fromkeys(shown.teacher for shown in why.rests_on)
@@ -104,11 +108,12 @@ def why_words(activity: Activity, why: Why) -> list[str]:
             sentences.append(
                 f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
             )
-    votes = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
-    sentences.append(f"Votes of the trees: {votes}.")
+    if votes:
+        shares = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
+        sentences.append(f"Votes of the trees: {shares}.")
     if why.near:
         guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
-        sentences.append(f"They guess from what was shown nearby: {'; '.join(guesses)}.")
+        sentences.append(f"The trees guess from what was shown nearby: {'; '.join(guesses)}.")
     return sentences
 
 

@@ -105,7 +105,8 @@ class WhyDialog(Dialog[None]):
 
     def _write(self, width: int) -> list[Line]:
         lines: list[Line] = []
-        for sentence in (*self._remarks, *why_words(self._house.activity, self._why)):
+        words = why_words(self._house.activity, self._why, votes=False)
+        for sentence in (*self._remarks, *words):
             lines += paragraph(clean(sentence), width)
         lines += vote_lines(self._why, width)
         if self._choice is not None:

@@ -113,7 +113,7 @@ class AskingPanel(Vertical):
         yield Static(self._sees(), classes="now", markup=False)
         yield CommandBar(
             lambda typed: self._phrasebook.complete(typed),
-            placeholder="what should Tangy do? why: why it asks; quit: give the game up",
+            placeholder="what should Tangy do? (or: why, help, quit)",
             resting="w why   : answer   p pause   esc give the game up",
             id="command",
         )
