@@ -188,6 +188,8 @@ class Teaching:
             entries = read_library(self._store, self.activity.name).entries.values()
             for entry in reversed(entries):
                 kept = entry.demonstration
+                if self.guided and not kept.guided:
+                    continue  # a guided game was asked for
                 if kept.teacher == self.teacher and not kept.finished and not entry.hidden:
                     world = self._replay(kept)
                     if world is not None:

@@ -88,6 +88,8 @@ class Program(TangyApp):
         match event.id:
             case "teach":
                 self.teach(self.house.teaching(teacher_name(), None))
+            case "guided":
+                self.teach(self.house.teaching(teacher_name(), None, guided=True))
             case "library":
                 self.library()
             case "learn":

@@ -261,3 +261,14 @@ def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path:
         assert event.resumed
         resumed.apply(Redo())
         assert resumed.demonstration == whole
+
+
+def test_a_guided_game_is_begun_beside_one_that_is_not_and_taken_up_before_it(
+    house: House,
+) -> None:
+    steps(begun(house), 2)
+    guided = house.teaching("Ada", None, guided=True)
+    guided.begin()
+    assert guided.demonstration.guided
+    steps(guided, 2)
+    assert begun(house).demonstration == guided.demonstration

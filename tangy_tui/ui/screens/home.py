@@ -36,6 +36,7 @@ class Choice:
 
 CHOICES = (
     Choice("t", "Teach", "show Tangy how the activity is run"),
+    Choice("g", "Guided", "teach in one game that shows everything"),
     Choice("i", "Library", "all demonstrations: look, mend, delete"),
     Choice("l", "Learn", "make a policy from what was shown"),
     Choice("p", "Play", "let Tangy run the activity"),
