@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from tangy_profiles.activity import Action, Activity
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import ActivityState, Outcome
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tangy_profiles.activity import Activity, Behaviour, StageRule
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import FRONT, ActivityState, Request, Situation, UserState
 
 READS = ("beside requester",)

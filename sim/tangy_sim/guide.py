@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from random import Random
 from typing import TypeVar
 
-from tangy_profiles.activity import Action, Activity
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.cards import CardState
 from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.compliance import Preferences

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from random import Random
 
-from tangy_profiles.activity import Behaviour
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.experiments.classroom import Steps
 from tangy_tui.learning.demonstrating import Executed, Teaching, Undo

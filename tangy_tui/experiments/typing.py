@@ -16,7 +16,8 @@ from tempfile import TemporaryDirectory
 from time import monotonic
 from typing import Any
 
-from tangy_profiles.activity import Activity, Behaviour
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.store import Store

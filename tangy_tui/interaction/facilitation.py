@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.activity import Action, Activity, Behaviour
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Step
 from tangy_profiles.person import Person

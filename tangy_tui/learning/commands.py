@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from tangy_profiles.activity import Activity, Behaviour
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.person import Person
 
 LONGEST_TEXT = 200  # characters of a command that are looked at

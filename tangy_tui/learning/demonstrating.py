@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from tangy_profiles.activity import Action, Activity, Behaviour
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person

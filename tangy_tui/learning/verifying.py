@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from tangy_profiles.activity import Activity, Behaviour
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import ActivityState
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech import UNDERSTOOD

@@ -12,7 +12,8 @@ from __future__ import annotations
 from statistics import median
 from time import perf_counter
 
-from tangy_profiles.activity import Action, load_activity
+from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld

@@ -8,7 +8,8 @@ from random import Random
 
 import pytest
 
-from tangy_profiles.activity import Action, Activity
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Outcome, Situation

@@ -9,14 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import (
-    EFFECTS,
-    SLOTS,
-    Activity,
-    load_activity,
-    read_activity,
-    shipped_activities,
-)
+from tangy_profiles.activity import Activity, load_activity, read_activity, shipped_activities
+from tangy_profiles.behaviour import EFFECTS, SLOTS
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.state import Situation
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import Action, load_activity, read_activity
+from tangy_profiles.activity import load_activity, read_activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.person import load_people
 from tangy_profiles.scene import Scene

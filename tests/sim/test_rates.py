@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from tangy_profiles.activity import Action, load_activity
+from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import Action
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
 

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import Action, load_activity
+from tangy_profiles.activity import load_activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.person import load_people
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.users import UserModel, load_users

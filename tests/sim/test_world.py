@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.activity import Action, Activity, load_activity
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.behaviour import Action
 from tangy_profiles.person import load_people
 from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.users import UserModel, load_users

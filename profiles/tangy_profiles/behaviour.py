@@ -1,0 +1,133 @@
+"""A behaviour that an activity gives the robot, and an action: one way to execute it.
+
+Each action is ac = f(theta, sp, im, l, ps) of Section III-A-3-i: posture, speech, image, place
+and persuasive strategy.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from string import Formatter
+from types import MappingProxyType
+
+from tangy_profiles.reading import Table, nearest
+
+EFFECTS = (
+    "none",  # something is said or shown
+    "draw",  # the next number is called
+    "clear wrong marks",  # the attended person is asked to take markers off
+    "set missing marks",  # the attended person is asked to mark called numbers
+    "bring card closer",  # the attended person is asked to move the card into view
+    "go to user",
+    "go to front",
+    "finish",  # the activity is over
+)
+"""What a behaviour does to the world. A world implements these; an activity chooses among them."""
+
+CLOSINGS = ("never", "always", "when correct")
+PLACES = ("front", "attended", "here")
+SLOTS = ("name", "call", "numbers")
+"""What a speech or a screen may have filled in: {name}, {call}, {numbers}."""
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """A primitive behaviour b that the robot has from the start (Section III-A-3-i).
+
+    `posture` is theta by name (the robot's profile has the joint angles), `speech` holds sp for
+    each persuasive strategy, `image` is what the chest screen shows (im), and `place` is l.
+    `persuades` marks behaviours that need a person to comply; `closes` says when the attended
+    person's request is over; `needs` lists the user states in which it can succeed (all if empty).
+    """
+
+    name: str
+    question: str
+    effect: str
+    place: str
+    posture: str
+    image: str
+    speech: Mapping[str, str]
+    persuades: bool
+    closes: str
+    needs: tuple[str, ...]
+    phrases: tuple[str, ...]
+    keywords: tuple[tuple[str, ...], ...]
+
+    @property
+    def attends(self) -> bool:
+        """Whether it is directed at the attended person rather than at the group."""
+        return self.place == "attended"
+
+
+@dataclass(frozen=True)
+class Action:
+    """One way to execute a behaviour: ac = f(theta, sp, im, l, ps), and for whom.
+
+    `speech` and `image` still hold their slots: only the world that executes the action knows
+    which number it calls. `Activity.fill` puts the words in.
+    """
+
+    behaviour: Behaviour
+    target: str | None
+    strategy: str
+    posture: str
+    speech: str
+    image: str
+    place: str
+
+
+def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) -> Behaviour:
+    """Read one [[behaviours]] entry.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
+    name = entry.text("name")
+    spoken = entry.table("speech")
+    speech = {s: _template(spoken, s) for s in strategies if s in spoken or len(strategies) == 1}
+    spoken.close(also=strategies)
+    persuades = entry.flag("persuades", False)
+    if persuades and len(speech) < len(strategies):
+        missing = next(s for s in strategies if s not in speech)
+        raise entry.wrong("speech", f"has no words for the strategy {missing!r}.")
+    if not speech:
+        raise entry.wrong("speech", "must say something in at least one strategy.")
+    first = next(iter(speech.values()))
+    return Behaviour(
+        name=name,
+        question=entry.text("question", name),
+        effect=entry.choice("effect", EFFECTS),
+        place=entry.choice("place", PLACES),
+        posture=entry.text("posture"),
+        image=_template(entry, "image"),
+        speech=MappingProxyType({s: speech.get(s, first) for s in strategies}),
+        persuades=persuades,
+        closes=entry.choice("closes", CLOSINGS, "never"),
+        needs=entry.words("needs", states, ()),
+        phrases=tuple(_spoken(entry, "phrases", p) for p in entry.words("phrases")),
+        keywords=tuple(
+            tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")
+        ),
+    )
+
+
+def _template(table: Table, key: str) -> str:
+    text = table.text(key)
+    try:
+        slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
+    except ValueError:
+        raise table.wrong(key, "has an unpaired brace.") from None
+    for slot, form, conversion in slots:
+        if slot not in SLOTS:
+            raise table.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
+        if form or conversion:
+            raise table.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
+    return text
+
+
+def _spoken(table: Table, key: str, phrase: str) -> str:
+    if not re.fullmatch(r"[a-z']+( [a-z']+)*", phrase):
+        raise table.wrong(key, f"{phrase!r} must be lower-case words, as they are spoken.")
+    return phrase
