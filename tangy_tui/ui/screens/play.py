@@ -325,6 +325,8 @@ class PlayScreen(TangyScreen[Tally]):
     def _tell(self, events: list[GameEvent], *, known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
+        if not self.query(LogView):
+            return  # the screen is going, and its panels go before its game does
         self._picture.tell(events, 0 if self._skipping else self._speed)
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
@@ -336,8 +338,8 @@ class PlayScreen(TangyScreen[Tally]):
     async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
         if self._leave_after is None:
-            dialog = MessageDialog(f"{reason}\n{then}", title="The game stopped")
-            await self.app.push_screen_wait(dialog)
+            text = f"{reason}\n{then}"
+            await self.app.push_screen_wait(MessageDialog(text, title="The game stopped"))
 
     # -------------------------------------------------------------------------------- asking
 
