@@ -93,12 +93,19 @@ class Phrasebook:
     """
 
     phrases: Mapping[str, str]
+    people: tuple[str, ...]
+    """The ids of those who can be gone to."""
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         self._behaviours = tuple(activity.behaviours)
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
+        self.people = tuple(person.id for person in people)
         self._numbers = _numbers_of(people)
         self._names = _names_of(people)
+        self._nouns = {
+            name: (*_words(name), *_words(" ".join(activity.behaviours[name].phrases[:1])))[-1]
+            for name in self._to_people
+        }
         self._phrases: dict[Words, _Phrase] = {}
         self._keywords: list[_Phrase] = []
         for behaviour in activity.behaviours.values():
@@ -132,7 +139,7 @@ class Phrasebook:
         words = _words(heard)
         if (exact := self._exact(words)) is not None:
             return self._command(exact, 1.0, heard, words)
-        if any(word in REFUSALS and word not in self._weights for word in words):
+        if self._refuses(words) or self._stranger(words) is not None:
             return None
         mended, trust = self._mend(words)
         found, confidence = self._find(words, mended)
@@ -140,6 +147,13 @@ class Phrasebook:
         if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(words, found):
             return None
         return self._command(found, confidence, heard, mended)
+
+    def stranger(self, text: str) -> str | None:
+        """Return whom a text goes to if that is nobody here: "user 7", or a name alone."""
+        words = _words(_clean(text))
+        if self._exact(words) is not None or self._refuses(words):
+            return None
+        return self._stranger(words)
 
     def suggestions(self, text: str) -> tuple[str, ...]:
         """Return up to three phrases that a text comes nearest to, of different behaviours."""
@@ -206,6 +220,37 @@ class Phrasebook:
 
     def _exact(self, words: Words) -> _Phrase | None:
         return self._phrases.get(words) or self._bare.get(" ".join(_bare(words)))
+
+    def _refuses(self, words: Words) -> bool:
+        return any(word in REFUSALS and word not in self._weights for word in words)
+
+    def _stranger(self, words: Words) -> str | None:
+        """Find a number that is nobody's, or one unknown word in the place of a person."""
+        if not self.people:
+            return None
+        mended, _ = self._mend(words)
+        numbers = [word for word in words if word.isdigit()]
+        if numbers:
+            found, confidence = self._find(words, mended)
+            if (
+                found is None
+                or found.behaviour not in self._to_people
+                or confidence < ALTERNATIVE_AT_LEAST
+                or any(number in self._numbers for number in numbers)
+            ):
+                return None
+            return f"{self._nouns[found.behaviour]} {numbers[0]}"
+        said = _bare(mended)
+        if not said or said[-1] in self._weights or said[-1] not in words:
+            return None
+        *way, name = said
+        for phrase in self._phrases.values():
+            if phrase.behaviour in self._to_people and phrase.user is None:
+                if tuple(way) == phrase.bare:
+                    return f"{phrase.bare[-1]} {name}"
+                if len(way) > 1 and tuple(way) == phrase.bare[:-1]:
+                    return name
+        return None
 
     def _word_weights(self) -> dict[str, float]:
         """Weigh every word of the phrasebook: the more behaviours share it, the less it tells."""

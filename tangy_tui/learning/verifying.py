@@ -103,6 +103,10 @@ class Verifier:
         command = self._phrasebook.understand(said.text)
         if command is not None:
             command = replace(command, confidence=command.confidence * said.confidence)
+        if command is None and said.confidence >= UNDERSTOOD:
+            stranger = self._phrasebook.stranger(said.text)
+            if stranger is not None:
+                return Refused(self._nobody(stranger), said.text)
         if command is None or (said.confidence < 1 and command.confidence < UNDERSTOOD):
             return NotUnderstood(said.text, self._phrasebook.suggestions(said.text))
         return self._ask(command, command.behaviour)
@@ -152,10 +156,17 @@ class Verifier:
         goes = behaviour.effect == "go to user"
         if target is None:
             way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
-            return f"Nobody asks for help.{way}"
+            return f"That cannot be done now: nobody asks for help.{way}"
         if not goes and self._observe().place != target:
             return f"Tangy is not with {self._name(target)} yet: it has to go there first."
         return None
+
+    def _nobody(self, stranger: str) -> str:
+        """Say that there is nobody of that name or number, and who there is."""
+        *others, last = [self._name(person) for person in self._phrasebook.people]
+        who = f"{', '.join(others)} and {last} take part" if others else f"{last} takes part"
+        there = "There is no" if " " in stranger else "There is nobody called"
+        return f"{there} {stranger}: {who}."
 
     def _name(self, person: str) -> str:
         return self._names.get(person, person)

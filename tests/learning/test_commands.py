@@ -104,6 +104,42 @@ class TestUnderstanding:
         assert BOOK.understand(text) is None
 
     @pytest.mark.parametrize(
+        ("text", "stranger"),
+        [
+            ("go to user 7", "user 7"),
+            ("go to usr seven", "user 7"),
+            ("drive over to user number 9", "user 9"),
+            ("go to the player zorro", "player zorro"),
+            ("go to zorro", "zorro"),
+            ("go to user 2", None),
+            ("go to user 1 2", None),
+            ("go to front 7", None),
+            ("call number 7", None),
+            ("don't go to user 7", None),
+            ("help the user", None),
+            ("qwertz", None),
+            ("", None),
+        ],
+    )
+    def test_whom_nobody_is_called_is_told_from_what_is_not_understood(
+        self, text: str, stranger: str | None
+    ) -> None:
+        assert BOOK.stranger(text) == stranger
+        if stranger is not None:
+            assert BOOK.understand(text) is None
+
+    def test_strangers_are_known_in_the_words_of_any_activity(
+        self, lanterns: Activity, people: tuple[Person, ...]
+    ) -> None:
+        book = Phrasebook(lanterns, people)
+        for behaviour in lanterns.behaviours.values():
+            for phrase in behaviour.phrases:
+                goes = behaviour.effect == "go to user"
+                noun = phrase.split()[-1]
+                assert book.stranger(f"{phrase} 9") == (f"{noun} 9" if goes else None)
+        assert Phrasebook(lanterns, ()).stranger("go to user 9") is None
+
+    @pytest.mark.parametrize(
         ("text", "behaviour"),
         [
             ("hello", "greeting"),

@@ -124,7 +124,7 @@ def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> 
     for phrase in ("encourage", "remove markers", "go to user", "celebrate"):
         refused = teaching.apply(Say(phrase))[0]
         assert isinstance(refused, Refused)
-        assert "Nobody asks for help" in refused.reason
+        assert refused.reason.startswith("That cannot be done now: nobody asks for help.")
     assert teaching.question is None
 
 
@@ -136,7 +136,22 @@ def test_the_robot_can_be_sent_to_a_person_who_takes_part_by_number_or_name(stor
         assert (asked.target, asked.question) == ("user2", "go to the user (User 2)")
     teaching.apply(YES)
     assert teaching.world.observe().place == "user2"
-    assert not isinstance(teaching.apply(Say("go to user 7"))[0], Asked)
+
+
+@pytest.mark.parametrize("phrase", ["go to user 7", "Go to user seven, please", "go to 7"])
+def test_who_is_not_there_is_said_with_those_who_are(store: Store, phrase: str) -> None:
+    refused = begun(store).apply(Say(phrase))[0]
+    everybody = "User 1, User 2, User 3 and User 4 take part."
+    assert refused == Refused(f"There is no user 7: {everybody}", phrase)
+
+
+def test_a_name_that_is_nobodys_is_said_as_well(store: Store) -> None:
+    teaching = begun(store)
+    refused = teaching.apply(Say("go to Zorro"))[0]
+    assert isinstance(refused, Refused)
+    assert refused.reason.startswith("There is nobody called zorro: User 1, ")
+    mumbled = teaching.apply(Say("go to Zorro", confidence=0.1))[0]
+    assert isinstance(mumbled, NotUnderstood), "what was hardly heard is no name"
 
 
 def test_after_the_game_only_the_next_one_or_undo_is_possible(store: Store) -> None:
