@@ -95,6 +95,9 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
     if not speech:
         raise entry.wrong("speech", "must say something in at least one strategy.")
     first = next(iter(speech.values()))
+    phrases = tuple(_spoken(entry, "phrases", p) for p in entry.words("phrases"))
+    if not phrases:
+        raise entry.wrong("phrases", "must hold at least one phrase to ask for it with.")
     return Behaviour(
         name=name,
         question=entry.text("question", name),
@@ -106,7 +109,7 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
         persuades=persuades,
         closes=entry.choice("closes", CLOSINGS, "never"),
         needs=entry.words("needs", states, ()),
-        phrases=tuple(_spoken(entry, "phrases", p) for p in entry.words("phrases")),
+        phrases=phrases,
         keywords=tuple(
             tuple(_spoken(entry, "keywords", k).split()) for k in entry.words("keywords")
         ),

@@ -18,7 +18,8 @@ class Step:
     """One behaviour-state pair, with the state that followed (from which effects are learnt).
 
     `completed` says whether the world could carry the behaviour out. `id` is the step's number in
-    the log, which it keeps in every demonstration that it is copied into (0: not logged).
+    the log, which it keeps in every demonstration that it is copied into (0: not logged), and
+    `teacher` who showed it there.
     """
 
     behaviour: str
@@ -27,6 +28,7 @@ class Step:
     after: ActivityState
     completed: bool = True
     id: int = field(default=0, compare=False)
+    teacher: str = field(default="", compare=False)
 
     def to_json(self) -> dict[str, Any]:
         """Return the step as the log keeps it."""
@@ -39,7 +41,7 @@ class Step:
         }
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any], id: int = 0) -> Step:
+    def from_json(cls, body: Mapping[str, Any], id: int = 0, teacher: str = "") -> Step:
         """Read a step that `to_json` wrote."""
         return cls(
             str(body["behaviour"]),
@@ -48,6 +50,7 @@ class Step:
             ActivityState.from_json(body["after"]),
             bool(body.get("completed", True)),
             id,
+            teacher,
         )
 
 

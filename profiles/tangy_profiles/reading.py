@@ -18,7 +18,9 @@ LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
 
-_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]")
+_UNPRINTABLE = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
+)
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
@@ -33,7 +35,11 @@ def nearest(word: str, words: Iterable[str]) -> str:
 
 
 def plain(text: str) -> str:
-    """Replace what would act on a terminal instead of being read on it (controls, bidi marks)."""
+    """Replace what would act on a terminal instead of being read on it (controls, bidi marks).
+
+    Bytes that were no text come from the command line as lone surrogates, which no file and no
+    terminal takes: they are replaced as well.
+    """
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 

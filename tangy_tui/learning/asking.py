@@ -13,24 +13,26 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.conflicts import find_conflicts, shown_steps
+from tangy_tui.learning.conflicts import Resolution, find_conflicts, joined, shown_steps
 from tangy_tui.learning.editing import Editor, new_id
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
-from tangy_tui.learning.policies import Change, keep_policy
-from tangy_tui.learning.policy import Decision, Policy, learn_policy
+from tangy_tui.learning.library import BEGUN, FINISHED, STEP, Library, read_library
+from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
+from tangy_tui.learning.policy import Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
 class Replay:
     """All demonstrated steps gone through with two policies.
 
-    `steps` were looked at, `changed` are the other situations that are answered otherwise now, and
-    `overruled` are the earlier steps in the answered situation that said something else.
+    `steps` were looked at, `changed` are the other situations that are answered otherwise now,
+    `overruled` are the earlier steps in the answered situation that the answer sets aside, and
+    `unsettled` says what is still to be settled there.
     """
 
     steps: int
     changed: tuple[Change, ...]
-    overruled: int
+    overruled: int = 0
+    unsettled: str = ""
 
     def words(self) -> str:
         """Say what came out in a sentence or two."""
@@ -43,11 +45,10 @@ class Replay:
             first = f"All {self.steps} earlier steps were gone through. Changed as well: {rows}."
         else:
             first = f"All {self.steps} earlier steps were gone through: nothing else changed."
-        if self.overruled == 1:
-            return f"{first} One earlier step said otherwise, and is set aside."
-        if self.overruled:
-            return f"{first} {self.overruled} earlier steps said otherwise, and are set aside."
-        return first
+        aside = {0: "", 1: " One earlier step said otherwise, and is set aside."}.get(
+            self.overruled, f" {self.overruled} earlier steps said otherwise, and are set aside."
+        )
+        return " ".join(part for part in (first + aside, self.unsettled) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,27 +78,56 @@ class Answers:
             teacher: who answered.
             seed, people: of the game in which Tangy asked.
         """
-        situation = step.state.situation
         with self._store.transaction():
             made = self._log(step, teacher, seed, tuple(people))
-            entries = read_library(self._store, self._activity.name).entries
+            library = read_library(self._store, self._activity.name)
+            entries = library.entries
             earlier = [entries[id].demonstration for id in policy.demonstrations if id in entries]
-            resolutions = list(policy.resolutions)
-            overruled = 0
-            for conflict in find_conflicts([*earlier, made], resolutions):
-                if conflict.situation == situation:
-                    Editor(self._store, self._activity).resolve(conflict, step.behaviour)
-                    resolutions.append(conflict.resolved(step.behaviour))
-                    overruled = len(conflict.steps) - len(conflict.answers[step.behaviour])
+            settled = _settle(policy, earlier, made)
+            if settled is not None:
+                self._settle_library(library, settled)
+            learnt = self._learn(policy, [*earlier, made], settled)
+            keep_policy(self._store, learnt)
+        gone_through = replay(policy, learnt, earlier, step.state.situation)
+        return Lesson(
+            made,
+            learnt,
+            replace(
+                gone_through,
+                overruled=len(settled.wrong) if settled is not None else 0,
+                unsettled=_unsettled(learnt, library, step),
+            ),
+        )
+
+    def _settle_library(self, library: Library, settled: Resolution) -> None:
+        """Settle the conflict for later learning too, unless a teacher has settled it otherwise."""
+        said = joined(library.resolutions).get(settled.situation)
+        if said is not None and not set(settled.right) <= set(said.right):
+            return  # both will be shown before Tangy learns again
+        for conflict in library.conflicts:
+            if conflict.situation == settled.situation:
+                Editor(self._store, self._activity).resolve(conflict, *settled.right)
+
+    def _learn(
+        self, policy: Policy, shown: Sequence[Demonstration], settled: Resolution | None
+    ) -> Policy:
+        """Fit the forest anew; an answer that agrees with what was shown is enough to act on."""
+        said = [*policy.resolutions, *([settled] if settled is not None else [])]
+        answer = shown[-1].steps[-1]
+        situation = answer.state.situation
+        for again in (False, True):
             learnt = learn_policy(
                 self._activity,
-                [*earlier, made],
-                resolutions=list({r.situation: r for r in resolutions}.values()),
+                shown,
+                resolutions=list(joined(said).values()),
                 settings=policy.settings,
                 name="" if policy.named_by_count else policy.name,
             )
-            keep_policy(self._store, learnt)
-        return Lesson(made, learnt, replay(policy, learnt, earlier, situation, overruled))
+            decision = learnt.decide(situation)
+            if again or decision.sure or decision.contested:
+                break
+            said.append(Resolution(situation, (answer.behaviour,), frozenset()))
+        return unused_name(self._store, learnt)
 
     def _log(self, step: Step, teacher: str, seed: int, people: tuple[str, ...]) -> Demonstration:
         made = Demonstration(
@@ -125,19 +155,39 @@ def replay(
     after: Policy,
     demonstrations: Sequence[Demonstration],
     answered: Situation,
-    overruled: int = 0,
 ) -> Replay:
     """Go through demonstrations with two policies; `answered` is where they are meant to differ."""
     steps = list(shown_steps(demonstrations))
     situations = dict.fromkeys(shown.step.state.situation for shown in steps)
     changed = tuple(
-        Change(situation, _does(before.decide(situation)), _does(after.decide(situation)))
+        Change(situation, does(before.decide(situation)), does(after.decide(situation)))
         for situation in situations
-        if situation != answered
-        and _does(before.decide(situation)) != _does(after.decide(situation))
+        if situation != answered and does(before.decide(situation)) != does(after.decide(situation))
     )
-    return Replay(len(steps), changed, overruled)
+    return Replay(len(steps), changed)
 
 
-def _does(decision: Decision) -> str:
-    return decision.behaviour if decision.sure else "asks"
+def _settle(
+    policy: Policy, earlier: Sequence[Demonstration], made: Demonstration
+) -> Resolution | None:
+    """Settle a conflict by an answer that somebody has given before; a new one settles nothing."""
+    answer = made.steps[-1]
+    for conflict in find_conflicts([*earlier, made], policy.resolutions):
+        if conflict.situation == answer.state.situation:
+            given = conflict.answers[answer.behaviour]
+            if any(shown.demonstration != made.id for shown in given):
+                return conflict.resolved(answer.behaviour)
+    return None
+
+
+def _unsettled(learnt: Policy, library: Library, step: Step) -> str:
+    """Say what is still to be settled in the answered situation."""
+    if learnt.decide(step.state.situation).contested:
+        return (
+            "Nobody has answered so before: Tangy goes on asking here until a teacher settles "
+            "which answer is right."
+        )
+    said = joined(library.resolutions).get(step.state.situation)
+    if said is not None and step.behaviour not in said.right:
+        return "A teacher said otherwise before: both are shown before Tangy learns again."
+    return ""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
+from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import kept_policies, load_policy
+from tangy_tui.learning.policies import kept_policies, load_policy, place_of
 from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
@@ -38,7 +41,7 @@ def compare(activity: Activity, a: Policy, b: Policy) -> list[Row]:
 def choices(store: Store, activity: Activity) -> list[str]:
     """Return what can be compared: names of policies, the latest first, and of teachers."""
     names = [str(kept["name"]) for kept in reversed(kept_policies(store, activity.name))]
-    teachers = [d.teacher for d in read_library(store, activity.name).finished]
+    teachers = _teachers(read_library(store, activity.name).finished)
     return list(dict.fromkeys([*names, *teachers]))
 
 
@@ -47,36 +50,43 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
 
     It means, the first that fits: `last` or `last~N` (the last policy learnt, or the N-th before
     it), the name of a policy or how its digest begins, or the name of a teacher, from whose
-    finished demonstrations a policy is learnt for the occasion. `policy:` or `teacher:` before it
-    says which is meant.
+    finished demonstrations, as they were shown, a policy is learnt for the occasion. `policy:` or
+    `teacher:` before it says which is meant.
 
     Raises:
         TangyError: nothing fits; says what is nearest.
     """
     kind, _, name = wanted.partition(":") if ":" in wanted else ("", "", wanted)
     kept = kept_policies(store, activity.name)
-    if kind != "teacher" and (place := _place(name)) is not None:
-        if place >= len(kept):
-            raise TangyError(
-                plain(f"{name}: only {len(kept)} policies of {activity.title} were learnt.")
-            )
-        return load_policy(store, activity, str(kept[-1 - place]["digest"]))
     known = {str(one["name"]) for one in kept}
     if kind != "teacher" and (
-        name in known or any(len(name) >= 4 and one["digest"].startswith(name) for one in kept)
+        place_of(name) is not None
+        or name in known
+        or any(len(name) >= 4 and one["digest"].startswith(name) for one in kept)
     ):
         return load_policy(store, activity, name)
     library = read_library(store, activity.name)
-    shown = [d for d in library.finished if d.teacher == name]
+    shown = _shown_by(name, library.finished)
     if kind == "policy" or not shown:
-        words = {*known, *(d.teacher for d in library.finished), "last"}
+        words = {*known, *_teachers(library.finished), "last"}
         raise TangyError(plain(f"There is no policy or teacher {wanted!r}: {nearest(name, words)}"))
-    return learn_policy(activity, shown, resolutions=library.resolutions, name=name), []
+    return learn_policy(activity, shown, name=name), []
 
 
-def _place(word: str) -> int | None:
-    """Return how far before the last policy a word points: last is 0, last~2 is 2."""
-    head, tilde, number = word.partition("~")
-    if head != "last" or (tilde and not number.isdecimal()):
-        return None
-    return int(number) if tilde else 0
+def _teachers(demonstrations: Iterable[Demonstration]) -> dict[str, None]:
+    """Return who showed a step, in the order in which they first did."""
+    return dict.fromkeys(shown.teacher for shown in shown_steps(demonstrations))
+
+
+def _shown_by(teacher: str, demonstrations: Iterable[Demonstration]) -> list[Demonstration]:
+    """Return demonstrations with just the steps that one teacher showed."""
+    found = []
+    for demonstration in demonstrations:
+        steps = tuple(
+            step
+            for step in demonstration.steps
+            if (step.teacher or demonstration.teacher) == teacher
+        )
+        if steps:
+            found.append(replace(demonstration, steps=steps))
+    return found

@@ -77,6 +77,20 @@ class Conflict:
         return Resolution(self.situation, tuple(dict.fromkeys(right)), frozenset(wrong))
 
 
+def joined(resolutions: Iterable[Resolution]) -> dict[Situation, Resolution]:
+    """Join what was said of each situation, one time after another.
+
+    What was called right last is right; a step that was set aside once stays so, unless its
+    answer is right by now.
+    """
+    settled: dict[Situation, Resolution] = {}
+    for said in resolutions:
+        before = settled.get(said.situation)
+        wrong = said.wrong if before is None else said.wrong | before.wrong
+        settled[said.situation] = Resolution(said.situation, said.right, wrong)
+    return settled
+
+
 def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
     """Yield every step with where it stands; a step that was copied, only where it is first."""
     known: set[int] = set()
@@ -85,7 +99,8 @@ def shown_steps(demonstrations: Iterable[Demonstration]) -> Iterator[Shown]:
             if step.id and step.id in known:
                 continue
             known.add(step.id)
-            yield Shown(demonstration.id, demonstration.teacher, number, step)
+            teacher = step.teacher or demonstration.teacher
+            yield Shown(demonstration.id, teacher, number, step)
 
 
 def find_conflicts(
@@ -93,10 +108,10 @@ def find_conflicts(
 ) -> list[Conflict]:
     """Return the conflicts that no resolution settles, in the order in which they came about.
 
-    The latest resolution of a situation counts. Two answers that were both called right are no
-    conflict; a step with another answer, made since, is one.
+    Two answers that were both called right are no conflict; a step with another answer, made
+    since, is one.
     """
-    settled = {r.situation: r for r in resolutions}
+    settled = joined(resolutions)
     answers: dict[Situation, dict[str, list[Shown]]] = {}
     for shown in shown_steps(demonstrations):
         said = settled.get(shown.step.state.situation)
@@ -116,19 +131,26 @@ def find_conflicts(
 
 def training_rows(
     demonstrations: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
-) -> list[tuple[Situation, str]]:
-    """Return the training set: situation and behaviour of every step, in order.
+) -> tuple[list[tuple[Situation, str]], list[tuple[Situation, str]]]:
+    """Return the training set, situation and behaviour: what was shown, and what was only said.
 
-    Steps that a resolution calls wrong are left out; an answer that it calls right and that no
-    step shows stands at the end.
+    Shown is every step, in order, but for those that a resolution calls wrong and copies of a
+    step. Said is an answer that a resolution calls right where all steps showed others.
     """
-    settled = {r.situation: r for r in resolutions}
+    settled = joined(resolutions)
     rows: list[tuple[Situation, str]] = []
-    for demonstration in demonstrations:
-        for step in demonstration.steps:
-            said = settled.get(step.state.situation)
-            if said is None or not said.sets_aside(step):
-                rows.append((step.state.situation, step.behaviour))
-    shown = set(rows)
-    rows += [(s, b) for s, said in settled.items() for b in said.right if (s, b) not in shown]
-    return rows
+    met: set[Situation] = set()
+    for shown in shown_steps(demonstrations):
+        situation = shown.step.state.situation
+        met.add(situation)
+        said = settled.get(situation)
+        if said is None or not said.sets_aside(shown.step):
+            rows.append((situation, shown.step.behaviour))
+    learnt = set(rows)
+    told = [
+        (situation, behaviour)
+        for situation, said in settled.items()
+        for behaviour in said.right
+        if situation in met and (situation, behaviour) not in learnt
+    ]
+    return rows, told

@@ -255,18 +255,21 @@ class Teaching:
         if not 0 <= kept < steps:
             return [Refused(f"There is no step {kept + 1} to show again.")]
         before, undone = (self.demonstration, self.world), self._undone
+        logged = self._logged
         try:
             with self._store.transaction():
                 return [event for _ in range(steps - kept) for event in self._undo()]
         except BaseException:  # nothing of it is in the log
             self._enter(*before)
-            self._undone = undone
+            self._undone, self._logged = undone, logged
             raise
 
     def _begin_again(self, again: Again) -> list[TeachingEvent]:
         library = read_library(self._store, self.activity.name)
-        source = library.find(again.demonstration).demonstration
-        kept = again.kept
+        entry = library.find(again.demonstration)
+        source, kept = entry.demonstration, again.kept
+        if entry.hidden not in ("", "deleted"):
+            return [Refused(f"It is not in use ({entry.hidden}): show again what took its place.")]
         if not source.replayable:
             return [Refused("It was not shown in one game, so there is no game to go back to.")]
         if not 0 <= kept < len(source.steps):

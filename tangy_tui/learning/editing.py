@@ -58,25 +58,29 @@ class Editor:
         entries = self._choose(wanted)
         for entry in entries:
             if entry.hidden:
-                raise NotPossible(f"{entry.demonstration.id} is not in use: {entry.hidden}.")
+                name = self.library.name(entry.demonstration.id)
+                raise NotPossible(f"{name} is not in use: {entry.hidden}.")
         return self._edit("delete", entries)
 
     def restore(self, *wanted: str) -> Edit:
         """Take demonstrations into use again that were deleted."""
-        entries = self._choose(wanted)
+        library, entries = self.library, self._choose(wanted)
         for entry in entries:
-            if entry.hidden == "shown again":  # only one of the two can be in use
-                raise NotPossible(
-                    f"{entry.demonstration.id} was shown again: delete the new one, "
-                    "and it is in use."
+            name = library.name(entry.demonstration.id)
+            if entry.hidden == "shown again" or library.repeats(entry):
+                raise NotPossible(  # only one of the two can be in use
+                    f"{name} was shown again: delete the new one, and it is in use."
                 )
-            if entry.hidden in ("merged", "split", "undone"):
+            if entry.hidden in ("merged", "split"):
                 raise NotPossible(
-                    f"{entry.demonstration.id} was {entry.hidden}: "
-                    "undo that with `tangy demonstrations undo`."
+                    f"{name} was {entry.hidden}: undo that with `tangy demonstrations undo`."
+                )
+            if entry.hidden == "undone":
+                raise NotPossible(
+                    f"What made {name} was taken back: `tangy demonstrations redo` makes it again."
                 )
             if not entry.hidden:
-                raise NotPossible(f"{entry.demonstration.id} is in use already.")
+                raise NotPossible(f"{name} is in use already.")
         return self._edit("restore", entries)
 
     def merge(self, *wanted: str) -> Edit:
@@ -94,9 +98,9 @@ class Editor:
         steps = len(entries[0].demonstration.steps)
         if not 1 <= kept < steps:
             choice = f"choose from 1 to {steps - 1}" if steps > 1 else "it is too short"
+            name = self.library.name(entries[0].demonstration.id)
             raise NotPossible(
-                f"{entries[0].demonstration.id} has {steps} steps and cannot be split after "
-                f"{kept}: {choice}."
+                f"{name} has {steps} steps and cannot be split after {kept}: {choice}."
             )
         made = [self._make_id(), self._make_id()]
         return self._edit("split", entries, kept=kept, made=made)
@@ -142,10 +146,11 @@ class Editor:
     def _need_use(self, entries: Sequence[Entry]) -> None:
         for entry in entries:
             shown = entry.demonstration
+            name = self.library.name(shown.id)
             if entry.hidden:
-                raise NotPossible(f"{shown.id} is not in use: {entry.hidden}.")
+                raise NotPossible(f"{name} is not in use: {entry.hidden}.")
             if not shown.finished:
-                raise NotPossible(plain(f"{shown.id} by {shown.teacher} is not finished yet."))
+                raise NotPossible(plain(f"{name} by {shown.teacher} is not finished yet."))
 
     def _edit(self, what: str, entries: Sequence[Entry], **more: object) -> Edit:
         ids = [entry.demonstration.id for entry in entries]

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import FRONT, ActivityState
-from tangy_tui.learning.conflicts import Resolution
+from tangy_tui.learning.conflicts import Resolution, joined
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ def learn_effects(
     What follows a behaviour that the world could not carry out, or that a teacher called wrong
     there, is no effect to be expected of it.
     """
-    settled = {r.situation: r for r in resolutions}
+    settled = joined(resolutions)
     values: dict[str, dict[str, set[str]]] = {}
     for demonstration in demonstrations:
         for step in demonstration.steps:

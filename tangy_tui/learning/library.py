@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import nearest, plain
+from tangy_profiles.reading import plain
 from tangy_profiles.store import Event, Store
-from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts
+from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts, joined
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
     from tangy_tui.learning.effects import Effects
@@ -58,12 +58,17 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change of the library: what was done to which demonstrations, by the event `seq`."""
+    """A change of the library: what was done to which demonstrations, by the event `seq`.
+
+    `found` are the demonstrations as they were then, those that other edits made left out: a
+    demonstration may grow or shrink afterwards, and what was made of it does not.
+    """
 
     seq: int
     at: str
     what: str
     body: Mapping[str, Any]
+    found: Mapping[str, Demonstration] = field(default_factory=dict)
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -94,9 +99,9 @@ class Library:
 
     @property
     def resolutions(self) -> tuple[Resolution, ...]:
-        """What teachers said of conflicts; of each situation the latest."""
-        said = [Resolution.from_json(e.body) for e in self.done if e.what == "resolve"]
-        return tuple({r.situation: r for r in said}.values())
+        """What teachers said of conflicts, joined for each situation."""
+        said = (Resolution.from_json(e.body) for e in self.done if e.what == "resolve")
+        return tuple(joined(said).values())
 
     @property
     def conflicts(self) -> list[Conflict]:
@@ -125,10 +130,16 @@ class Library:
             return found[0]
         if not entries:
             raise NoDemonstration("There are no demonstrations yet: begin with `tangy teach`.")
-        known = [str(n + 1) for n in range(len(entries))] + list(self.entries)
         problem = "More than one" if found else "No"
-        raise NoDemonstration(
-            plain(f"{problem} demonstration is called {wanted!r}: {nearest(wanted, known)}")
+        choice = f"choose from 1 to {len(entries)}" if len(entries) > 1 else "there is only 1"
+        raise NoDemonstration(plain(f"{problem} demonstration is called {wanted!r}: {choice}."))
+
+    def repeats(self, entry: Entry) -> bool:
+        """Say whether a demonstration was shown again by one that is complete and in use."""
+        return any(
+            entry.demonstration.id in other.demonstration.of
+            for other in self.entries.values()
+            if _takes_place(other)
         )
 
     def number(self, id: str) -> int:
@@ -160,7 +171,7 @@ def read_library(store: Store, activity: str) -> Library:
                 library.entries[entry.demonstration.id] = changed
         elif body["activity"] == activity:
             if event.kind == EDITED:
-                edits.append(Edit(event.seq, event.at, str(body["what"]), body))
+                edits.append(_edit(library, event))
                 library.done.append(edits[-1])
                 library.undone.clear()
                 made.update((str(id), event.seq) for id in body.get("made", ()))
@@ -219,7 +230,7 @@ def _stepped(entry: Entry, event: Event) -> Entry:
     shown = entry.demonstration
     match event.kind:
         case "demonstration step":
-            step = Step.from_json(event.body, event.seq)
+            step = Step.from_json(event.body, event.seq, shown.teacher)
             return replace(entry, demonstration=shown.with_step(step), undone=())
         case "demonstration step undone":
             return replace(
@@ -236,6 +247,18 @@ def _stepped(entry: Entry, event: Event) -> Entry:
 
 
 # --------------------------------------------------------------------------------- the edits
+
+
+def _edit(library: Library, event: Event) -> Edit:
+    ids = (str(id) for id in event.body.get("ids", ()))
+    entries = library.entries
+    found = {id: entries[id].demonstration for id in ids if id in entries}
+    return Edit(event.seq, event.at, str(event.body["what"]), event.body, found)
+
+
+def _as_it_was(library: Library, edit: Edit, id: str) -> Demonstration:
+    """Return a demonstration as an edit found it."""
+    return edit.found[id] if id in edit.found else library.entries[id].demonstration
 
 
 def _hide(library: Library, ids: Sequence[str], why: str) -> None:
@@ -259,15 +282,17 @@ def _resolve(library: Library, edit: Edit, in_force: bool) -> None:
 
 
 def _merge(library: Library, edit: Edit, in_force: bool) -> None:
-    sources = [library.entries[id].demonstration for id in edit.ids]
+    sources = [_as_it_was(library, edit, id) for id in edit.ids]
     steps = tuple(step for source in sources for step in source.steps)
-    _make(library, edit, str(edit.body["made"][0]), sources[0], steps, "merged", in_force)
+    teachers = dict.fromkeys(source.teacher for source in sources)
+    source = replace(sources[0], teacher=" and ".join(teachers))
+    _make(library, edit, str(edit.body["made"][0]), source, steps, "merged", in_force)
     if in_force:
         _hide(library, edit.ids, "merged")
 
 
 def _split(library: Library, edit: Edit, in_force: bool) -> None:
-    source = library.entries[edit.ids[0]].demonstration
+    source = _as_it_was(library, edit, edit.ids[0])
     at = int(edit.body["kept"])
     for id, steps in zip(edit.body["made"], (source.steps[:at], source.steps[at:]), strict=True):
         _make(library, edit, str(id), source, steps, "split", in_force)
@@ -308,8 +333,13 @@ STILL_USED = ("", "merged", "split", "shown again")
 def _replace_repeated(library: Library) -> None:
     """Hide what was shown again from some step, from the moment the new one is complete."""
     for entry in list(library.entries.values()):
-        made = entry.demonstration
-        if made.origin == "again" and made.finished and entry.hidden in STILL_USED:
-            for id in made.of:
+        if _takes_place(entry):
+            for id in entry.demonstration.of:
                 if id in library.entries and not library.entries[id].hidden:
                     _hide(library, [id], "shown again")
+
+
+def _takes_place(entry: Entry) -> bool:
+    """Say whether a demonstration stands in the place of those that it shows again."""
+    made = entry.demonstration
+    return made.origin == "again" and made.finished and entry.hidden in STILL_USED

@@ -6,8 +6,8 @@ when it is loaded, and never used silently if it does not come out as it was.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tangy_profiles.activity import Activity
@@ -17,9 +17,14 @@ from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import Resolution
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+from tangy_tui.learning.policy import SURE, Decision, ForestSettings, Policy, learn_policy
 
 POLICY = "policy learnt"
+ASKS = "to ask"
+"""What a policy does where it is not sure."""
+GONE = "no situation any more"
+RESERVED = ("last", "policy", "teacher")
+"""Words that a name must not begin with: they say which policy is meant."""
 
 
 class NoPolicy(TangyError):
@@ -58,7 +63,8 @@ def last_policy(store: Store, activity: str) -> Mapping[str, Any] | None:
 def need_policy(store: Store, activity: Activity, wanted: str = "") -> Mapping[str, Any]:
     """Return what was kept of a policy: of the last one, or of the last one of a name or digest.
 
-    `wanted` is a name, or how a digest begins (four characters or more).
+    `wanted` is `last` or `last~N` (the N-th before it), a name, or how a digest begins (four
+    characters or more).
 
     Raises:
         NoPolicy: none has been learnt, says how to; or there is none of that name.
@@ -69,8 +75,12 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> Mapping[s
             f"Tangy has not learnt {activity.title} yet: "
             "demonstrate it with `tangy teach`, then run `tangy learn`."
         )
-    if not wanted:
-        return kept[-1]
+    place = place_of(wanted or "last")
+    if place is not None:
+        if place >= len(kept):
+            there = "1 policy was" if len(kept) == 1 else f"{len(kept)} policies were"
+            raise NoPolicy(f"{wanted}: only {there} learnt.")
+        return kept[-1 - place]
     by_name = [one for one in kept if one["name"] == wanted]
     enough = len(wanted) >= 4
     found = by_name or [one for one in kept if enough and one["digest"].startswith(wanted)]
@@ -78,6 +88,34 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> Mapping[s
         names = [str(one["name"]) for one in kept]
         raise NoPolicy(plain(f"There is no policy {wanted!r}: {nearest(wanted, names)}"))
     return found[-1]
+
+
+def place_of(word: str) -> int | None:
+    """Return how far before the last policy a word points: last is 0, last~2 is 2."""
+    head, tilde, number = word.partition("~")
+    if head != "last" or (tilde and not number.isdecimal()):
+        return None
+    return int(number) if tilde else 0
+
+
+def check_name(name: str) -> None:
+    """Refuse a name by which a policy could not be found again.
+
+    Raises:
+        TangyError: it is a word that means another policy.
+    """
+    if name.partition("~")[0].partition(":")[0] in RESERVED:
+        raise TangyError(plain(f"A policy cannot be called {name!r}: choose another name."))
+
+
+def unused_name(store: Store, policy: Policy) -> Policy:
+    """Give a policy that is only named by count a name that no other one has."""
+    taken = {str(k["name"]): str(k["digest"]) for k in kept_policies(store, policy.activity)}
+    name, count = policy.name, 1
+    while policy.named_by_count and taken.get(name, policy.digest) != policy.digest:
+        count += 1
+        name = f"{policy.name}.{count}"
+    return policy if name == policy.name else replace(policy, name=name)
 
 
 def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Policy, list[str]]:
@@ -110,16 +148,27 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
     return policy, _explain(kept, policy)
 
 
-def changes(rows: Sequence[Sequence[Any]], policy: Policy) -> list[Change]:
-    """Compare kept rows (stage, request, user state, behaviour, share) with a policy."""
-    found: list[Change] = []
-    for stage, request, user_state, behaviour, _ in rows:
-        situation = Situation(stage, request, user_state)
+def changes(kept: Mapping[str, Any], policy: Policy) -> list[Change]:
+    """Compare what was kept of a policy with a policy: what it does, or that it asks."""
+    unsure = {tuple(row) for row in kept.get("asks", ())}
+    was: dict[Situation, str] = {}
+    for stage, request, user_state, behaviour, share in kept["rows"]:
+        asks = (stage, request, user_state) in unsure or ("asks" not in kept and share < SURE)
+        was[Situation(stage, request, user_state)] = ASKS if asks else behaviour
+    situations = dict.fromkeys([*was, *policy.table])
+    found = []
+    for situation in situations:
         decision = policy.table.get(situation)
-        now = decision.behaviour if decision else "nothing"
-        if now != behaviour:
-            found.append(Change(situation, behaviour, now))
+        now = GONE if decision is None else does(decision)
+        before = was.get(situation, ASKS)
+        if now != before:
+            found.append(Change(situation, before, now))
     return found
+
+
+def does(decision: Decision) -> str:
+    """Say what a policy does by a decision: the behaviour, or that it asks."""
+    return decision.behaviour if decision.sure else ASKS
 
 
 def _explain(kept: Mapping[str, Any], policy: Policy) -> list[str]:
@@ -127,9 +176,9 @@ def _explain(kept: Mapping[str, Any], policy: Policy) -> list[str]:
     moved = [f"{part} {was.get(part)} -> {now[part]}" for part in now if was.get(part) != now[part]]
     why = f" ({', '.join(moved)})" if moved else " (its demonstrations have changed since)"
     notices = [f"The policy {policy.name!r} does not come out as it was kept{why}."]
-    different = changes(kept["rows"], policy)
+    different = changes(kept, policy)
     if not different:
-        notices.append("It decides the same everywhere; only the votes differ.")
+        notices.append("It does the same everywhere; only the votes differ.")
     for change in different:
         notices.append(
             f"{' / '.join(change.situation)}: was {change.before}, is now {change.after}."

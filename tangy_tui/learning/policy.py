@@ -72,8 +72,9 @@ class Decision:
 
         Where a teacher has called answers right, no majority is needed among them.
         """
-        agreed = self.behaviour in self.right or self.share >= SURE
-        return self.seen > 0 and agreed and not self.contested
+        if self.contested:
+            return False
+        return self.behaviour in self.right or (self.seen > 0 and self.share >= SURE)
 
 
 @dataclass(frozen=True)
@@ -103,8 +104,11 @@ class Policy:
         return self.name == _name_by_count(self.activity, self.demonstrations)
 
     def exact(self, activity: Activity) -> bool:
-        """Say whether it agrees with all that is expected of a facilitator of the activity."""
-        return not self.errors(activity)
+        """Say whether it agrees with all that is expected of a facilitator of the activity.
+
+        Of an activity that does not say what is expected, nobody can tell: False.
+        """
+        return bool(activity.expected) and not self.errors(activity)
 
     def errors(self, activity: Activity) -> dict[Situation, str]:
         """Return the expected situations that are answered otherwise, and with what."""
@@ -127,7 +131,12 @@ class Policy:
             "rows": [
                 [*situation, decision.behaviour, decision.share]
                 for situation, decision in self.table.items()
-                if decision.seen
+                if decision.seen or decision.right
+            ],
+            "asks": [
+                list(situation)
+                for situation, decision in self.table.items()
+                if (decision.seen or decision.right) and not decision.sure
             ],
         }
 
@@ -157,7 +166,8 @@ def learn_policy(
         NothingToLearnFrom: the demonstrations hold no step.
         NotOfThisActivity: they were made before the activity was changed.
     """
-    rows = training_rows(demonstrations, resolutions)
+    shown, told = training_rows(demonstrations, resolutions)
+    rows = shown + told
     contested = {conflict.situation for conflict in find_conflicts(demonstrations, resolutions)}
     right = {resolution.situation: resolution.right for resolution in resolutions}
     situations = list(all_situations(activity))
@@ -186,7 +196,7 @@ def learn_policy(
     forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
     shares = forest.predict_proba(np.array([encode(s) for s in situations]))
     behaviours = [str(name) for name in forest.classes_]
-    seen = Counter(situation for situation, _ in rows)
+    seen = Counter(situation for situation, _ in shown)
     table: dict[Situation, Decision] = {}
     for situation, row in zip(situations, shares.tolist(), strict=True):
         votes = sorted(

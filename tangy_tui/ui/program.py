@@ -251,7 +251,7 @@ class Program(TangyApp):
 
         house = self.house
         kept = policies.need_policy(house.store, house.activity, wanted)
-        changes = policies.changes(kept["rows"], policy)
+        changes = policies.changes(kept, policy)
         answer = await self.push_screen_wait(DifferenceDialog(house.activity, notice, changes))
         if answer == "keep":
             policies.keep_policy(house.store, policy)

@@ -29,6 +29,7 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.asking import Answers
+from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import POLICY, load_policy
 from tangy_tui.learning.policy import PAPER, SURE, Policy
@@ -284,3 +285,79 @@ def test_whatever_was_left_out_is_asked_once_and_known_from_then_on(
             decision = facilitation.policy.decide(situation)
             assert decision.sure
             assert decision.behaviour == activity.expected[situation]
+
+
+# --------------------------------------------------------------------------- what it settles
+
+
+def disagreeing(store: Store, activity: Activity, cover: Cover) -> tuple[Situation, Policy]:
+    """Let ben joke in the first situation, against everybody else; return it and the policy."""
+    shown = cover("bingo", 1, 4)
+    where = activity.situations[0]
+    other = otherwise(shown[0], where, "joke", "ben")
+    return where, learnt(store, activity, [*shown, other], FEW)
+
+
+def answered(facilitation: Facilitation, activity: Activity, behaviour: str) -> Taught:
+    until_asked(facilitation)
+    events = facilitation.answer(activity.behaviours[behaviour], None, "ann")
+    (taught,) = [event for event in events if isinstance(event, Taught)]
+    return taught
+
+
+def test_an_answer_that_somebody_gave_settles_the_conflict_for_later_learning_too(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    where, policy = disagreeing(store, activity, cover)
+    facilitation = asking(store, activity, policy)
+    lesson = answered(facilitation, activity, activity.expected[where]).lesson
+    assert lesson.policy.decide(where).sure
+    assert lesson.replay.unsettled == ""
+    assert "One earlier step said otherwise" in lesson.replay.words()
+    assert read_library(store, "bingo").conflicts == []
+
+
+def test_an_answer_that_nobody_gave_before_settles_nothing(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    where, policy = disagreeing(store, activity, cover)
+    facilitation = asking(store, activity, policy)
+    lesson = answered(facilitation, activity, "celebrate").lesson
+    assert lesson.policy.decide(where).contested
+    assert lesson.replay.overruled == 0
+    assert "goes on asking here" in lesson.replay.words()
+    (conflict,) = read_library(store, "bingo").conflicts
+    assert set(conflict.answers) == {activity.expected[where], "joke", "celebrate"}
+    assert until_asked(facilitation).state.situation == where
+
+
+def test_what_a_teacher_has_settled_is_not_unsettled_by_an_answer_to_an_older_policy(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    where, policy = disagreeing(store, activity, cover)
+    editor = Editor(store, activity)
+    (conflict,) = editor.library.conflicts
+    editor.resolve(conflict, activity.expected[where])
+    settled = read_library(store, "bingo").resolutions
+    facilitation = asking(store, activity, policy)
+    lesson = answered(facilitation, activity, "joke").lesson
+    assert lesson.policy.decide(where).behaviour == "joke"  # the game goes on
+    assert "A teacher said otherwise before" in lesson.replay.words()
+    library = read_library(store, "bingo")
+    assert library.resolutions == settled
+    (left,) = library.conflicts
+    assert [s.teacher for s in left.answers["joke"]] == ["ann"]
+
+
+def test_an_answer_that_agrees_is_enough_where_the_trees_do_not(
+    store: Store, activity: Activity, cover: Cover
+) -> None:
+    policy = learnt(store, activity, cover("bingo", 1, 4), PAPER)
+    unsure = [s for s, d in policy.table.items() if d.seen and not d.sure]
+    assert unsure  # bagging leaves votes below the threshold on rare rows
+    facilitation = asking(store, activity, policy)
+    question = until_asked(facilitation)
+    reply(facilitation, activity)
+    decision = facilitation.policy.decide(question.state.situation)
+    assert decision.sure
+    assert read_library(store, "bingo").conflicts == []

@@ -272,3 +272,35 @@ def test_a_guided_game_is_begun_beside_one_that_is_not_and_taken_up_before_it(
     assert guided.demonstration.guided
     steps(guided, 2)
     assert begun(house).demonstration == guided.demonstration
+
+
+def test_what_gave_way_is_not_shown_again_beside_what_took_its_place(house: House) -> None:
+    first = begun(house)
+    list(ScriptedTeacher(first).demonstrate())
+    list(ScriptedTeacher(begun(house, "Bea", Again("1", 10))).demonstrate())
+    with pytest.raises(TangyError, match=r"not in use \(shown again\)"):
+        begun(house, "Cleo", Again("1", 5))
+    begun(house, "Cleo", Again("2", 5))
+
+
+def test_a_game_shown_again_whose_first_undo_fails_is_kept_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    house = House(tmp_path / "data")
+    with house.store.transaction():
+        list(ScriptedTeacher(begun(house)).demonstrate())
+    again = begun(house, "Bea", Again("1", 10))
+    append, calls = Store.append, iter(range(9))
+
+    def failing(self: Store, *arguments: object, **options: object) -> int:
+        if next(calls) == 2:
+            raise StoreError("the disk is full")
+        return append(self, *arguments, **options)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patch, pytest.raises(StoreError):
+        patch.setattr(Store, "append", failing)
+        again.apply(Again(again.demonstration.id, 5))
+    with house.store.transaction():
+        list(ScriptedTeacher(again).demonstrate())
+    assert kept(house, again.demonstration.id) == again.demonstration
+    house.close()

@@ -22,7 +22,7 @@ from tangy_tui.learning.conflicts import (
     training_rows,
 )
 from tangy_tui.learning.effects import learn_effects
-from tangy_tui.learning.policy import ForestSettings, learn_policy
+from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
 from tangy_tui.learning.reachable import joint_states
 
 Demonstrate = Callable[[str, int, int], Demonstration]
@@ -123,6 +123,33 @@ def test_the_same_wrong_answer_given_again_later_is_a_conflict_again(activity: A
     assert settled.decide(where).behaviour == "encourage"
 
 
+def test_mistakes_settled_at_different_times_stay_settled(activity: Activity) -> None:
+    where = Situation("help", "AR", "occluded")
+    shown = [showing((where, "move card closer"), (where, "encourage"))]
+    said: list[Resolution] = []
+    for n, mistake in enumerate(("joke", "greeting", "encourage", "joke"), 3):
+        (conflict,) = find_conflicts(shown, said)
+        said.append(conflict.resolved("move card closer"))
+        assert find_conflicts(shown, said) == []
+        shown.append(showing((where, mistake), id=f"later {n}", first=n))
+    said.append(find_conflicts(shown, said)[0].resolved("move card closer"))
+    assert training_rows(shown, said) == ([(where, "move card closer")], [])
+    decision = learn_policy(activity, shown, resolutions=said, settings=FEW).decide(where)
+    assert (decision.behaviour, decision.sure) == ("move card closer", True)
+
+
+def test_what_was_said_of_a_situation_that_nobody_shows_any_more_is_not_learnt(
+    activity: Activity,
+) -> None:
+    where = Situation("help", "AR", "occluded")
+    both = showing((where, "joke"), (where, "encourage"))
+    said = find_conflicts([both])[0].resolved("move card closer")
+    other = showing((Situation("start", "ANR", "occluded"), "greeting"), id="other", first=9)
+    assert training_rows([other], [said]) == ([(other.steps[0].state.situation, "greeting")], [])
+    with pytest.raises(NothingToLearnFrom):
+        learn_policy(activity, [], resolutions=[said], settings=FEW)
+
+
 def test_both_may_be_right_but_not_a_third(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     shown = showing((where, "move card closer"), (where, "encourage"))
@@ -138,15 +165,16 @@ def test_an_answer_that_nobody_showed_can_be_the_right_one(activity: Activity) -
     where = Situation("help", "AR", "occluded")
     shown = showing((where, "joke"), (where, "encourage"))
     said = find_conflicts([shown])[0].resolved("move card closer")
-    assert training_rows([shown], [said]) == [(where, "move card closer")]
+    assert training_rows([shown], [said]) == ([], [(where, "move card closer")])
     decision = learn_policy(activity, [shown], resolutions=[said], settings=FEW).decide(where)
-    assert (decision.behaviour, decision.sure, decision.seen) == ("move card closer", True, 1)
+    assert (decision.behaviour, decision.sure, decision.seen) == ("move card closer", True, 0)
 
 
-def test_copies_of_a_step_do_not_disagree_with_themselves(activity: Activity) -> None:
+def test_copies_of_a_step_are_one_step(activity: Activity) -> None:
     where = Situation("help", "AR", "occluded")
     one = showing((where, "encourage"))
     copy = replace(one, id="copy")
+    assert training_rows([one, copy]) == ([(where, "encourage")], [])
     assert [s.demonstration for s in shown_steps([one, copy])] == ["made"]
 
 
@@ -183,7 +211,7 @@ def test_after_every_conflict_is_settled_there_is_none_and_nothing_else_is_lost(
     ]
     assert find_conflicts([shown], said) == []
     right = {r.situation: set(r.right) for r in said}
-    learnt = training_rows([shown], said)
+    learnt = [row for rows in training_rows([shown], said) for row in rows]
     assert {s for s, _ in learnt} == set(answers)
     assert all(b in right.get(s, answers[s]) for s, b in learnt)
     assert [r for r in learnt if r[0] not in right] == [r for r in rows if r[0] not in right]

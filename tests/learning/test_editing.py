@@ -18,11 +18,13 @@ from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_profiles.store import Store
+from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.editing import Editor, NotPossible
 from tangy_tui.learning.library import (
     BEGUN,
     FINISHED,
     STEP,
+    UNDONE,
     Library,
     NoDemonstration,
     read_library,
@@ -31,11 +33,18 @@ from tangy_tui.learning.library import (
 BINGO = load_activity("bingo")
 
 
-def logged(store: Store, id: str, behaviours: list[str], *, finished: bool = True) -> None:
+def logged(
+    store: Store,
+    id: str,
+    behaviours: list[str],
+    *,
+    finished: bool = True,
+    teacher: str = "Ada",
+) -> None:
     """Log a demonstration in which each behaviour is the answer to the next situation."""
     store.append(
         BEGUN,
-        {"demonstration": id, "activity": "bingo", "teacher": "Ada", "seed": 1, "people": ["a"]},
+        {"demonstration": id, "activity": "bingo", "teacher": teacher, "seed": 1, "people": ["a"]},
     )
     for number, behaviour in enumerate(behaviours):
         situation = BINGO.situations[number % len(BINGO.situations)]
@@ -129,7 +138,7 @@ def test_a_new_edit_ends_what_could_be_done_again(editor: Editor) -> None:
     ("change", "reason"),
     [
         (lambda e: e.delete("9"), "No demonstration is called '9'"),
-        (lambda e: e.delete("zz"), "choose one of|did you mean"),
+        (lambda e: e.delete("zz"), "choose from 1 to 3"),
         (lambda e: e.delete(), "Name a demonstration"),
         (lambda e: e.delete("1", "aaa"), "named twice"),
         (lambda e: e.merge("1"), "needs two"),
@@ -156,6 +165,42 @@ def test_what_gave_way_comes_back_by_undo_only(editor: Editor) -> None:
             editor.restore(wanted)
         with pytest.raises(NotPossible, match="not in use: merged"):
             editor.delete(wanted)
+
+
+def test_what_was_made_of_a_demonstration_does_not_change_with_it(
+    editor: Editor, store: Store
+) -> None:
+    steps = used(editor.library)
+    editor.split("aaa", 2)
+    store.append(UNDONE, {"demonstration": "aaa", "step": 3})
+    now = used(editor.library)
+    assert (now["new1"], now["new2"]) == (steps["aaa"][:2], steps["aaa"][2:])
+
+
+def test_merged_steps_keep_who_showed_them(editor: Editor, store: Store) -> None:
+    logged(store, "ddd", ["joke"], teacher="Bea")
+    editor.merge("aaa", "ddd")
+    made = editor.library.entries["new1"].demonstration
+    assert made.teacher == "Ada and Bea"
+    told = [shown.teacher for shown in shown_steps([made])]
+    assert told == ["Ada", "Ada", "Ada", "Bea"]
+
+
+def test_only_one_of_two_that_show_the_same_game_is_restored(editor: Editor, store: Store) -> None:
+    editor.delete("aaa")
+    body = {"activity": "bingo", "teacher": "Bea", "seed": 1, "people": ["a"]}
+    again = {"demonstration": "bbb2", "origin": "again", "of": ["aaa"], "kept": 1, **body}
+    store.append(BEGUN, again)
+    store.append(FINISHED, {"demonstration": "bbb2"})
+    with pytest.raises(NotPossible, match="was shown again: delete the new one"):
+        editor.restore("aaa")
+
+
+def test_what_was_taken_back_is_made_again_by_redo(editor: Editor) -> None:
+    editor.merge("1", "2")
+    editor.undo()
+    with pytest.raises(NotPossible, match="demonstrations redo"):
+        editor.restore("new1")
 
 
 def test_an_unfinished_demonstration_is_not_merged(editor: Editor, store: Store) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.library import (
@@ -20,12 +21,16 @@ from tangy_tui.learning.library import (
     read_demonstrations,
 )
 from tangy_tui.learning.policies import (
+    ASKS,
+    GONE,
     POLICY,
     Change,
     NoPolicy,
     changes,
+    check_name,
     keep_policy,
     load_policy,
+    unused_name,
 )
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 
@@ -168,7 +173,7 @@ def test_another_version_that_votes_alike_is_said(
     with_kept(store, {"digest": "other", "versions": versions})
     _, notices = load_policy(store, activity)
     assert f"scikit-learn 0.1 -> {policy.versions['scikit-learn']}" in notices[0]
-    assert notices[1] == "It decides the same everywhere; only the votes differ."
+    assert notices[1] == "It does the same everywhere; only the votes differ."
     assert "tangy learn" in notices[-1]
 
 
@@ -194,9 +199,45 @@ def test_a_step_undone_after_learning_is_said(
     assert "its demonstrations have changed since" in notices[0]
 
 
-def test_policies_are_compared_row_by_row(activity: Activity, shown: list[Demonstration]) -> None:
+def test_policies_are_compared_by_what_they_do(
+    activity: Activity, shown: list[Demonstration]
+) -> None:
     policy = learn_policy(activity, shown, settings=FEW)
-    rows = policy.to_json()["rows"]
-    assert changes(rows, policy) == []
+    kept = policy.to_json()
+    assert changes(kept, policy) == []
     gone = ["nowhere", "AR", "odd", "joke", 1.0]
-    assert changes([gone], policy) == [Change(Situation("nowhere", "AR", "odd"), "joke", "nothing")]
+    (change,) = changes({**kept, "rows": [*kept["rows"], gone]}, policy)
+    assert change == Change(Situation("nowhere", "AR", "odd"), "joke", GONE)
+    start = activity.situations[0]
+    assert changes({**kept, "asks": [list(start)]}, policy) == [Change(start, ASKS, "greeting")]
+    fewer = [row for row in kept["rows"] if row[0] != "start"]
+    assert changes({**kept, "rows": fewer}, policy) == [Change(start, ASKS, "greeting")]
+    older = {key: value for key, value in kept.items() if key != "asks"}
+    assert changes(older, policy) == []
+
+
+def test_a_row_that_becomes_contested_is_a_difference(
+    activity: Activity, shown: list[Demonstration]
+) -> None:
+    kept = learn_policy(activity, shown, settings=FEW).to_json()
+    first = shown[0].steps[0]
+    stray = replace(shown[0], steps=(replace(first, behaviour="joke"), *shown[0].steps))
+    now = learn_policy(activity, [stray, *shown[1:]], settings=FEW)
+    assert changes(kept, now) == [Change(first.state.situation, "greeting", ASKS)]
+
+
+def test_a_name_by_count_is_never_given_to_two_policies(
+    store: Store, activity: Activity, shown: list[Demonstration]
+) -> None:
+    first = learn_policy(activity, shown[:1], settings=FEW)
+    other = learn_policy(activity, shown[1:], settings=FEW)
+    keep_policy(store, unused_name(store, first))
+    assert unused_name(store, first).name == "bingo-1"
+    named = unused_name(store, other)
+    assert named.name == "bingo-1.2"
+    keep_policy(store, named)
+    assert load_policy(store, activity, "bingo-1")[0] == first
+    for name in ("last", "last~2", "policy:x", "teacher:Ada"):
+        with pytest.raises(TangyError, match="choose another name"):
+            check_name(name)
+    check_name("lasting")

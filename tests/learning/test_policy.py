@@ -186,7 +186,7 @@ def test_votes_are_shares_most_first_and_the_first_is_done(covered: Policy) -> N
 def test_it_says_how_often_each_situation_was_shown(
     activity: Activity, cover: Cover, covered: Policy
 ) -> None:
-    rows = training_rows(cover("bingo", 1, 4))
+    rows, _ = training_rows(cover("bingo", 1, 4))
     counts = Counter(situation for situation, _ in rows)
     assert {s: d.seen for s, d in covered.table.items() if d.seen} == counts
 

@@ -1,0 +1,106 @@
+"""What is said of a person is true, however little is known and whatever is switched off."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.beliefs import Beta
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_tui.interaction.memory import Known, Memory
+from tangy_tui.interaction.methods import Thompson
+from tangy_tui.interaction.record import (
+    Record,
+    best_of_those_on,
+    on_of,
+    read_records,
+    settled_of,
+)
+from tangy_tui.interaction.saying import sentence
+
+NAMES = ("neutral", "praise", "suggestion", "scarcity")
+NOW = datetime(2026, 5, 22, 15, tzinfo=UTC)
+Counts = Mapping[str, tuple[int, int]]
+
+
+@pytest.fixture
+def noted(tmp_path: Path) -> Callable[..., Record]:
+    """Read the record of Rosa from a log with these counts and switches."""
+
+    def note(
+        counts: Counts, off: tuple[str, ...] = (), strategies: tuple[str, ...] = NAMES
+    ) -> Record:
+        with Store.open(tmp_path / "data") as store:
+            for strategy, (yes, no) in counts.items():
+                for complied in [True] * yes + [False] * no:
+                    store.append(
+                        "response", {}, person="user1", strategy=strategy, complied=complied
+                    )
+            memory = Memory(store, strategies)
+            for strategy in off:
+                memory.feedback.switch("user1", strategy, False, strategies)
+            (record,) = read_records(store, memory, [Person("user1", "Rosa")])
+            return record
+
+    return note
+
+
+def test_of_one_strategy_that_alone_is_on_nothing_is_said_to_be_best(
+    noted: Callable[..., Record],
+) -> None:
+    record = noted({"suggestion": (0, 1)}, ("neutral", "praise", "scarcity"))
+    assert sentence(record).startswith("only suggestion is switched on for Rosa: 0 of 1, last seen")
+    assert record.settled is record.leading is None
+
+
+def test_an_activity_with_one_strategy_has_none_that_is_settled(
+    noted: Callable[..., Record],
+) -> None:
+    record = noted({"quiet": (8, 1)}, strategies=("quiet",))
+    assert sentence(record).startswith("quiet is the only strategy for Rosa: 8 of 9, last seen")
+    assert record.settled is None
+
+
+@pytest.mark.parametrize(
+    ("counts", "said"),
+    [
+        ({"praise": (0, 1)}, "Rosa has not complied yet: 0 of 1"),
+        ({name: (0, 40) for name in NAMES[1:]} | {"neutral": (0, 1)}, "Rosa has not complied yet"),
+        ({name: (1, 60) for name in NAMES[1:]} | {"neutral": (0, 1)}, "not clear yet what works"),
+        ({"praise": (9, 1), "neutral": (0, 4), "suggestion": (0, 4), "scarcity": (0, 4)},
+         "praise works with Rosa: 9 of 10"),
+    ],
+)  # fmt: skip
+def test_what_never_worked_is_not_said_to_work(
+    counts: Counts, said: str, noted: Callable[..., Record]
+) -> None:
+    record = noted(counts)
+    assert sentence(record).startswith(said)
+    assert (record.settled is not None) == ("praise works" in said)
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), min_size=1, max_size=4),
+    st.sets(st.sampled_from(NAMES)),
+)
+def test_it_works_only_where_somebody_complied_and_there_was_a_choice(
+    counts: list[tuple[int, int]], off: set[str]
+) -> None:
+    beliefs = {n: Beta(1 + yes, 1 + no) for n, (yes, no) in zip(NAMES, counts, strict=False)}
+    known = Known(Thompson(), beliefs, beliefs, frozenset(off & set(beliefs)))
+    best, on = best_of_those_on(beliefs, known.off), on_of(beliefs, known.off)
+    settled = settled_of(on, best)
+    record = Record(Person("user1", "Rosa"), known, best, settled, (), (), None, NOW)
+    words = sentence(record)
+    if re.search(r"^\w+ (works|may work)", words):
+        strategy = words.split()[0]
+        assert beliefs[strategy].complied and strategy in on and len(on) > 1
+    if not any(yes for yes, _ in counts):
+        assert "work" not in words
