@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person, load_people
-from tangy_profiles.reading import nearest, plain
+from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.state import FRONT
@@ -91,10 +91,10 @@ class House:
         found = by_id or [p for p in self.people if p.name.casefold() == wanted.casefold()]
         if len(found) == 1:
             return found[0]
-        known = [word for p in self.people for word in {p.id, p.name}]
         if found:
             raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
-        raise TangyError(plain(f"There is nobody called {wanted!r}: {nearest(wanted, known)}"))
+        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess at a person
+        raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
 
     def rename(self, person: Person, name: str) -> None:
         """Give a person another name, one that nobody else answers to.

@@ -28,8 +28,9 @@ class Record:
     """Everything that is told of one person.
 
     `best` is, for each strategy, the probability that it is the best of those that are switched
-    on (of one that is off: 0); `settled` is the one that is as good as known. `seen` is when the
-    person last took part, and `now` when all this was read.
+    on (of one that is off: 0); `settled` is the one that is as good as known, which where one
+    alone is on nobody can tell. `seen` is when the person last took part, and `now` when all this
+    was read.
     """
 
     person: Person
@@ -47,9 +48,14 @@ class Record:
         return self.known.beliefs
 
     @property
+    def on(self) -> tuple[str, ...]:
+        """Return the strategies that are used with the person."""
+        return tuple(on_of(self.beliefs, self.known.off))
+
+    @property
     def leading(self) -> str | None:
-        """Return the strategy that is most probably the best; None where several are."""
-        return leading(self.best)
+        """Return the one that is most probably the best of several; None where none stands out."""
+        return leading(self.best) if len(self.on) > 1 else None
 
 
 def read_records(store: Store, memory: Memory, people: Iterable[Person]) -> list[Record]:
@@ -83,7 +89,7 @@ def _record(
         person=person,
         known=known,
         best=best,
-        settled=settled(best),
+        settled=settled_of(on_of(known.beliefs, known.off), best),
         history=history,
         games=_games(history, begun),
         seen=max(times, default=None),
@@ -93,9 +99,19 @@ def _record(
 
 def best_of_those_on(beliefs: Beliefs, off: frozenset[str] = frozenset()) -> dict[str, float]:
     """Return P(best) of each strategy among those that are switched on; 0 for the others."""
-    on = {strategy: b for strategy, b in beliefs.items() if strategy not in off} or beliefs
-    best = probability_best(on)
+    best = probability_best(on_of(beliefs, off))
     return {strategy: best.get(strategy, 0.0) for strategy in beliefs}
+
+
+def on_of(beliefs: Beliefs, off: frozenset[str]) -> Beliefs:
+    """Return the beliefs in the strategies that are on; in all, where none of these is."""
+    return {strategy: b for strategy, b in beliefs.items() if strategy not in off} or beliefs
+
+
+def settled_of(on: Beliefs, best: Mapping[str, float]) -> str | None:
+    """Return the strategy that is settled on: the best of several, and one that ever worked."""
+    found = settled(best)
+    return found if found is not None and len(on) > 1 and on[found].complied else None
 
 
 def _games(history: Sequence[Entry], begun: Mapping[str, datetime]) -> tuple[Game, ...]:

@@ -23,6 +23,11 @@ def sentence(record: Record) -> str:
 def _what_works(record: Record) -> str:
     name, best = record.person.name, record.leading
     responses = sum(belief.trials for belief in record.beliefs.values())
+    complied = sum(belief.complied for belief in record.beliefs.values())
+    if len(record.on) == 1:
+        return _only(record)
+    if responses and not complied:
+        return f"{name} has not complied yet: {complied} of {responses}"
     if best is None:
         if not responses:
             return f"nothing is known of {name} yet"
@@ -31,13 +36,24 @@ def _what_works(record: Record) -> str:
     if not belief.trials:
         if not responses:
             return f"nothing is known of {name} yet; {best} worked best with earlier people"
-        others = sum(b.complied for b in record.beliefs.values())
-        return f"{best} is yet to be tried with {name}: others {others} of {responses}"
+        return f"{best} is yet to be tried with {name}: others {complied} of {responses}"
+    if not belief.complied:
+        return f"not clear yet what works with {name}: {complied} of {responses} so far"
     if record.settled != best:
         return f"{best} may work best with {name}: {tally(belief)} so far"
     if belief.mean < SELDOM:
         return f"{best} works best with {name}, though seldom: {tally(belief)}"
     return f"{best} works with {name}: {tally(belief)}"
+
+
+def _only(record: Record) -> str:
+    """Say how often the one strategy that is left was complied with: nothing is best of one."""
+    (only,) = record.on
+    name, belief = record.person.name, record.beliefs[only]
+    words = f"only {only} is switched on for {name}"
+    if not record.known.off:
+        words = f"{only} is the only strategy for {name}"
+    return f"{words}: {tally(belief)}" if belief.trials else f"{words}: no response yet"
 
 
 def tally(belief: Beta) -> str:

@@ -20,6 +20,10 @@ from tangy_tui.interaction.saying import (
     tally,
 )
 
+LEGEND = "P(best): probability of being the best of those on. "
+STAR = "*: the most probable one."
+SETTLED = "settled: at least 0.9."
+
 
 def print_people(records: Sequence[Record]) -> None:
     """Print everybody with the strategies tried on them, and what works with whom in words."""
@@ -30,6 +34,7 @@ def print_people(records: Sequence[Record]) -> None:
         cells = (_short(record, strategy) for strategy in strategies)
         table.add_row(Text(plain(record.person.name)), *cells)
     console.print(table)
+    _print_legend(console, STAR)
     for record in records:
         console.print(Text(f"{record.person.id}: {plain(sentence(record))}"))
 
@@ -52,6 +57,7 @@ def print_person(record: Record) -> None:
             _mark(record, strategy),
         )
     console.print(table)
+    _print_legend(console, SETTLED)
     console.print(Text(plain(sentence(record))))
     console.print(Text(f"Method: {method_words(record)}; it {prior_words(record.known.prior)}."))
     print_history(record)
@@ -85,6 +91,10 @@ def _mark(record: Record, strategy: str) -> str:
     if strategy in record.known.off:
         return "switched off"
     return "settled" if strategy == record.settled else ""
+
+
+def _print_legend(console: Console, mark: str) -> None:
+    console.print(Text(LEGEND + mark, style="dim"))
 
 
 def _table(title: str, *columns: str) -> Table:

@@ -15,14 +15,35 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, open_h
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
+    from tangy_profiles.persuading import Persuading
     from tangy_tui.house import House
     from tangy_tui.interaction.feedback import Entry
     from tangy_tui.interaction.record import Record
 
-app = typer.Typer(rich_markup_mode=None, help="Who takes part, and what works with them.")
+app = typer.Typer(
+    rich_markup_mode=None,
+    help="Who takes part, and what works with them. Without a verb: list, with its options.",
+)
 
 Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
 Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the activity.")]
+
+
+@app.callback(invoke_without_command=True)
+def people(
+    context: typer.Context,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """List the people, where no verb is given."""
+    if context.invoked_subcommand is None:
+        people_list(activity, seed, data, users, as_json)
+    elif (activity, seed, data, users, as_json) != ("bingo", None, None, 4, False):
+        verb = context.invoked_subcommand
+        raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
 
 
 @app.command("list")
@@ -101,7 +122,9 @@ def people_void(
     with _changing(data, activity, users, person, as_json) as (house, found):
         feedback = house.memory().feedback
         entry = _numbered(feedback.history(found.id), number, found)
-        feedback.void(found.id, entry.seq, why)
+        feedback.void(found.id, entry.seq, plain(why))
+        if not as_json:
+            print(plain(f"Void: {_entry_words(entry)}."))
 
 
 @app.command("feedback")
@@ -131,7 +154,9 @@ def people_feedback(
         history = feedback.history(found.id)
         request = None if seen else _awaiting(history, strategy, of, found)
         of_seq = None if request is None else request.seq
-        feedback.give(found.id, strategy, complied == "yes", of_seq)
+        given = feedback.give(found.id, strategy, complied == "yes", of_seq)
+        if not as_json:
+            print(plain(f"Said: {_entry_words(given)}."))
 
 
 @app.command("switch")
@@ -161,7 +186,8 @@ def people_method(
         typer.Argument(
             metavar="WORDS...",
             help="thompson or bayes-ucb; uniform or people (where beliefs begin); a share that is "
-            "kept, such as 0.98, with each interaction or day. Or: default.",
+            "kept, such as 0.98, with each interaction or day (1: all is kept). What is not said "
+            "stays as it is. Or: default.",
         ),
     ],
     activity: ActivityName = "bingo",
@@ -170,12 +196,16 @@ def people_method(
     users: Users = 4,
     as_json: Json = False,
 ) -> None:
-    """Choose how Tangy persuades one person; `default` is as the activity has it."""
-    from tangy_profiles.persuading import DEFAULT, spoken_persuading
+    """Choose how Tangy persuades one person; what is not said stays as it is for them.
+
+    Only `default` goes back to how the activity has it.
+    """
+    from tangy_profiles.persuading import DEFAULT
 
     with _changing(data, activity, users, person, as_json) as (house, found):
-        chosen = None if words == [DEFAULT] else spoken_persuading(words)
-        house.memory().feedback.choose_method(found.id, chosen)
+        memory = house.memory()
+        chosen = None if words == [DEFAULT] else _changed(memory.recall(found.id).chosen, words)
+        memory.feedback.choose_method(found.id, chosen)
 
 
 @app.command("undo")
@@ -187,7 +217,10 @@ def people_undo(
     users: Users = 4,
     as_json: Json = False,
 ) -> None:
-    """Take back the last of these changes to a person; again takes back the one before."""
+    """Take back the last void, feedback, switch or method of a person; again: the one before.
+
+    A name is not taken back: rename again.
+    """
     from tangy_tui.interaction.saying import change_words
 
     with _changing(data, activity, users, person, as_json) as (house, found):
@@ -220,7 +253,7 @@ def _changing(
     data: Path | None, activity: str, users: int, person: str, as_json: bool
 ) -> Iterator[tuple[House, Person]]:
     """Open the house for a change to a person, and say afterwards what is now known of them."""
-    from tangy_tui.interaction.saying import sentence
+    from tangy_tui.interaction.saying import method_words, sentence
 
     with open_house(data, activity, users) as house:
         found = house.find_person(person)
@@ -229,7 +262,27 @@ def _changing(
         if not _printed(record, as_json):
             print(plain(f"Now: {sentence(record)}."))
             off = sorted(record.known.off)
-            print(plain(f"Method: {record.known.method.words}.") + _off_words(off))
+            print(plain(f"Method: {method_words(record)}.") + _off_words(off))
+
+
+def _changed(chosen: Persuading, words: list[str]) -> Persuading:
+    """Change what the words say of a choice of method, and nothing else."""
+    from dataclasses import replace
+
+    from tangy_profiles.persuading import METHODS, PERIODS, PRIORS, spoken_persuading
+
+    spoken = spoken_persuading(words)  # which refuses what is none of them
+    known = dict.fromkeys(METHODS, "method") | dict.fromkeys(PRIORS, "prior")
+    known |= dict.fromkeys(PERIODS, "forgetting_per")
+    said = {known.get(word.casefold(), "forgetting") for word in words}
+    return replace(chosen, **{key: getattr(spoken, key) for key in said})
+
+
+def _entry_words(entry: Entry) -> str:
+    """Name a line of a history: its number, strategy, time, and what came of it."""
+    from tangy_tui.interaction.saying import entry_words, on_day
+
+    return f"number {entry.number}, {entry.strategy}, {on_day(entry.at)}, {entry_words(entry)}"
 
 
 def _off_words(off: list[str]) -> str:

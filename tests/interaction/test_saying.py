@@ -72,8 +72,8 @@ def test_an_activity_with_one_strategy_has_none_that_is_settled(
     ("counts", "said"),
     [
         ({"praise": (0, 1)}, "Rosa has not complied yet: 0 of 1"),
-        ({name: (0, 40) for name in NAMES[1:]} | {"neutral": (0, 1)}, "Rosa has not complied yet"),
-        ({name: (1, 60) for name in NAMES[1:]} | {"neutral": (0, 1)}, "not clear yet what works"),
+        (dict.fromkeys(NAMES[1:], (0, 40)) | {"neutral": (0, 1)}, "Rosa has not complied yet"),
+        (dict.fromkeys(NAMES[1:], (1, 60)) | {"neutral": (0, 1)}, "not clear yet what works"),
         ({"praise": (9, 1), "neutral": (0, 4), "suggestion": (0, 4), "scarcity": (0, 4)},
          "praise works with Rosa: 9 of 10"),
     ],

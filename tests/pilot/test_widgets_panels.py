@@ -269,6 +269,21 @@ async def test_what_is_settled_is_said_beside_the_name(run: Run) -> None:
         assert "settled" not in pilot.text()
 
 
+@pytest.mark.parametrize(
+    "beliefs",
+    [{"quiet": Beta(9, 2)}, {"neutral": Beta(1, 2), "praise": Beta(2, 60), "merry": Beta(2, 60)}],
+)
+async def test_one_alone_is_not_settled_nor_what_never_worked(
+    run: Run, beliefs: dict[str, Beta]
+) -> None:
+    view = Posteriors()
+    async with run(One(view)) as pilot:
+        view.show({"u": beliefs}, {"u": "Rosa"})
+        await pilot.pause()
+        assert "settled" not in pilot.text()
+        assert len(beliefs) > 1 or "★" not in pilot.text()
+
+
 async def test_nothing_is_the_best_before_anything_is_known(run: Run) -> None:
     view = Posteriors()
     async with run(One(view)) as pilot:

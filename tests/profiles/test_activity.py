@@ -116,6 +116,8 @@ def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
         ('"tell a joke",', '"tell a joke", "greet everyone",', ("'greet everyone'", "'greeting'")),
         ('"tell a joke",', '"Tell a joke!",', ("'Tell a joke!'", "lower-case")),
         ('"tell a joke",', f'"{"A" * 99_999}",', ("phrases = ['AA", "must be lower-case words")),
+        ('phrases = [\n    "tell a joke"', 'phrases = []\nx = [\n"tell a joke"',
+         ("behaviours[joke].phrases = []", "at least one")),
         ('keywords = ["joke", "funny"]', "keywords = 3", ("keywords = 3", "list of texts")),
         ("patience = 10.0", "patience = nan", ("patience = nan", "0.1 to 600")),
         ("patience = 10.0", "patience = inf", ("patience = inf", "0.1 to 600")),

@@ -101,12 +101,13 @@ def test_the_nearest_word_is_named_or_all_words_are_listed() -> None:
     assert nearest("zzz", []) == "there is none to choose from."
 
 
-@given(st.text())
+@given(st.text(st.characters(exclude_categories=())))
 def test_plain_text_has_nothing_that_acts_on_a_terminal(text: str) -> None:
     shown = plain(text)
     assert len(shown) == len(text)
     assert plain(shown) == shown
-    for char in "\x00\x07\x08\x1b\r\n\t\x7f\x9b\x9d\u200b\u202e\u2066\ufeff":
+    assert shown.encode().decode() == shown
+    for char in "\x00\x07\x08\x1b\r\n\t\x7f\x9b\x9d\u200b\u202e\u2066\ufeff\ud800\udcff":
         assert char not in shown
     assert all(a in (b, "\N{REPLACEMENT CHARACTER}") for a, b in zip(shown, text, strict=True))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -89,6 +90,17 @@ def test_in_words_it_is_what_a_nurse_would_say(people: Tangy) -> None:
     assert "no response yet" in people("history", "Rosa").stdout
 
 
+def test_without_a_verb_the_people_are_listed(people: Tangy) -> None:
+    assert people().stdout == people("list").stdout
+    assert document(people("--json")) == document(people("list", "--json"))
+
+
+def test_what_stands_in_the_tables_is_explained_below_them(people: Tangy) -> None:
+    best = "P(best): probability of being the best of those on. "
+    assert f"\n{best}*: the most probable one.\nuser1: " in people("list").stdout
+    assert f"\n{best}settled: at least 0.9.\npraise works " in people("show", "Rosa").stdout
+
+
 def test_the_star_stands_where_one_alone_leads(people: Tangy) -> None:
     rows = {line.split()[0]: line for line in people("list").stdout.splitlines() if "/" in line}
     assert "7/9 (0.9" in rows["Rosa"]
@@ -119,6 +131,30 @@ def test_a_response_is_void_by_its_number_and_counts_again_after_undo(people: Ta
     assert counts(people("void", "Rosa", "--json"), "scarcity") == (0, 1)
     assert counts(people("undo", "Rosa", "--json"), "scarcity") == (0, 2)
     assert counts(people("undo", "Rosa", "--json"), "praise") == (7, 9)
+
+
+def test_it_is_said_what_is_void_and_what_was_said(people: Tangy) -> None:
+    last, first = people("void", "Rosa").stdout, people("void", "Rosa", 1).stdout
+    when = r"\d+ \w+ \d{4} \d\d:\d\d"
+    assert re.match(rf"Void: number 16, scarcity, {when}, did not comply\.\nNow: ", last)
+    assert re.match(rf"Void: number 1, praise, {when}, complied\.\nNow: ", first)
+    said = people("feedback", "Rosa", "suggestion", "yes").stdout
+    assert re.match(rf"Said: number 18, suggestion, {when}, complied, said later\.\nNow: ", said)
+
+
+def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Tangy) -> None:
+    assert people("void", "Rosa", 1, "--why", "sl\udcffept").returncode == 0
+    history = document(people("history", "Rosa", "--json"))
+    assert history[0]["why"] == "sl\N{REPLACEMENT CHARACTER}ept"
+
+
+def test_undecodable_bytes_are_replaced_in_every_name_that_is_kept(
+    tangy: Tangy, taught: Path
+) -> None:
+    learnt = tangy("learn", "--name", "a\udcffb", "--data", taught)
+    assert (learnt.returncode, learnt.stderr) == (0, "")
+    shown = tangy("policy", "--data", taught, "--json")
+    assert document(shown)["name"] == "a\N{REPLACEMENT CHARACTER}b"
 
 
 def test_a_request_that_waits_is_answered_once(people: Tangy) -> None:
@@ -164,10 +200,23 @@ def test_a_method_of_ones_own_is_chosen_in_words(people: Tangy) -> None:
     assert document(people("method", "user2", "default", "--json"))["method"]["own"] is False
 
 
+def test_what_is_not_said_of_a_method_stays_as_it_is(people: Tangy) -> None:
+    people("method", "Rosa", "bayes-ucb")
+    told = people("method", "Rosa", "0.98", "day").stdout
+    assert "Method: Bayes-UCB, forgetting 2% a day (for this person)." in told
+    told = people("method", "Rosa", "people", "0.9").stdout
+    assert "Method: Bayes-UCB from earlier people, forgetting 10% a day (for this" in told
+    told = people("method", "Rosa", "default").stdout
+    assert "Method: Thompson sampling (as the activity has it)." in told
+    assert "stays as it is" in people("method", "--help").stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("show", "Rosie"), "There is nobody called 'Rosie': did you mean 'Rosa'?"),
+        (("show", "Rosie"), "There is nobody called 'Rosie': user1 is Rosa, user2 is User 2, "),
+        (("show", "User 1"), "There is nobody called 'User 1': user1 is Rosa, user2 is User 2, "),
+        (("--users", 3, "list"), "Options of `tangy people list` stand after list."),
         (("switch", "Rosa", "prays", "off"), "no strategy 'prays': did you mean 'praise'?"),
         (("switch", "Rosa", "praise", "of"), "There is no state 'of': did you mean 'off'?"),
         (("switch", "Rosa", "praise", "on"), "praise is switched on already."),

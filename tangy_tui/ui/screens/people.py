@@ -228,13 +228,15 @@ class PeopleScreen(TangyScreen[None]):
 
 PEOPLE_HELP = (
     "Everybody, with what works and on how many responses that rests. It is said to work when it "
-    "is at least 90% probable that no other way of asking is better. Up and down choose a person."
+    "is at least 90% probable that no other way of asking is better; of one that alone is switched "
+    "on nobody can tell. Up and down choose a person."
 )
 STRATEGIES_HELP = (
     "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
     "often the person complied of how often it was tried, the mean, the interval in which the "
-    "truth lies with 90%, and the probability of being the best. Then how the next one is chosen, "
-    "and where the beliefs began. x switches the chosen one off for this person, or on again."
+    "truth lies with 90%, and the probability of being the best of those that are on. Then how "
+    "the next one is chosen, and where the beliefs began. x switches the chosen one off for this "
+    "person, or on again."
 )
 HISTORY_HELP = (
     "What was asked and what came of it, the newest game first. v voids the chosen response; what "

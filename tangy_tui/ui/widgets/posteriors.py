@@ -120,6 +120,8 @@ class Posteriors(ScrollView, can_focus=True):
                 rows.append(self._compact(person, name, profile, width))
                 continue
             known = settled(self._best[person])
+            if known is not None and (len(profile) == 1 or not profile[known].complied):
+                known = None  # one alone is no choice, and what never worked is no answer
             head: Row = ((fit(name, width), "person"),)
             if known is not None:
                 mark = f"  settled: {clean(known)}"
@@ -136,7 +138,7 @@ class Posteriors(ScrollView, can_focus=True):
     def _line(self, person: str, strategy: str, belief: Beta, width: int) -> Row:
         """One strategy: name, curve, counts, mean, P(best)."""
         best = self._best[person]
-        leads = leading(best) == strategy and belief.trials > 0
+        leads = len(best) > 1 and leading(best) == strategy and belief.trials > 0
         label = min(12, max(cell_len(s) for s in self._beliefs[person]))
         word = " best " if width >= WORDS_FROM else ""
         tail: tuple[Span, ...] = (
@@ -162,7 +164,7 @@ class Posteriors(ScrollView, can_focus=True):
         if self._highlight is not None and self._highlight[0] == person:
             strategy = self._highlight[1]
         belief = profile[strategy]
-        leads = leading(best) == strategy and belief.trials > 0
+        leads = len(best) > 1 and leading(best) == strategy and belief.trials > 0
         label = min(10, max(cell_len(s) for s in profile))
         tail = f" {_counts(belief)} {share(belief.mean)}"
         mark = "★" if leads else " "
