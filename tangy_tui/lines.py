@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import asyncio
 import re
+import shlex
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from threading import Thread
 from typing import Any
 
+from tangy_profiles.reading import plain
+from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.demonstrating import (
     Again,
     Begun,
@@ -47,9 +50,32 @@ MEANINGS = (
     ("next", "begin another demonstration"),
     ("quit", "leave; what you confirmed is kept"),
 )
-
+ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
+ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+ANSWER_MEANINGS = (
+    ("y", "yes, execute it"),
+    ("n", "no, do nothing; give a new command"),
+    ("quit", "leave without executing it"),
+)
+NO_QUESTION = "There is no question open: give a command."
 
 _AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
+_AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
+
+
+def command_line(verb: str, **options: str | None) -> str:
+    """Write a command as it is to be typed, with those of its options that have a value."""
+    given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
+    return plain(" ".join(["tangy", verb, *given]))
+
+
+def answer_help(alternatives: int) -> list[str]:
+    """Say what can be answered to "Did you say ...?", a line each."""
+    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
+    if alternatives:
+        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
+        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
+    return lines
 
 
 class TeachingLines:
@@ -65,11 +91,15 @@ class TeachingLines:
         scripted: bool = False,
         seen: Callable[[], list[str]] = list,
         why: Callable[[], list[str]] = list,
+        resume: str = "tangy teach",
+        learn: str = "tangy learn",
     ) -> None:
         """Make the session.
 
         Args:
-            seen, why: say what was demonstrated so far, and what Tangy would do now.
+            seen: counts in a sentence what was demonstrated so far; then what was not, a line each.
+            why: says what Tangy would do now.
+            resume, learn: the commands to go on with this demonstration, and to learn from it.
             ears: spoken commands, if there are any; their questions are answered from `read`.
             scripted: the lines are all there already, so what is spoken goes before them.
         """
@@ -80,6 +110,10 @@ class TeachingLines:
         self._ears = ears
         self._seen = seen
         self._why = why
+        self._resume = resume
+        self._learn = learn
+        self._kept = False  # something of the present demonstration is in the log
+        self._complete = False  # a demonstration was completed in this session
         self._spoken: asyncio.Future[Say | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
         if ears is not None:
@@ -97,12 +131,20 @@ class TeachingLines:
                 break
             if not isinstance(command, str):
                 self._tell(teaching.apply(command))
-        demonstration = teaching.demonstration
-        if not demonstration.finished and demonstration.steps:
-            write(
-                f"Left after {counted(len(demonstration.steps), 'step')}. What you confirmed is "
-                "kept: the next `tangy teach` goes on from here."
+        self._leave()
+
+    def _leave(self) -> None:
+        """Say what becomes of what was shown, and what to do next."""
+        shown = self._teaching.demonstration
+        if shown.finished or (self._complete and not shown.steps):
+            self._write(f"Let Tangy learn from it: `{self._learn}`.")
+        elif shown.steps and self._kept:
+            self._write(
+                f"Left after {counted(len(shown.steps), 'step')}. What you confirmed is kept: "
+                f"`{self._resume}` goes on from here."
             )
+        elif shown.steps:
+            self._write("You confirmed nothing, so nothing was changed.")
 
     async def _next_line(self) -> str | Say | None:
         """Return what comes next: the spoken command if one is due, otherwise a line.
@@ -151,11 +193,13 @@ class TeachingLines:
         if not text or text.startswith("#"):
             return "nothing"
         if self._teaching.question is not None and lower != "quit":
-            if lower in ("y", "n"):
-                return Reply(yes=lower == "y")
-            if lower.isdigit():
+            if lower in ANSWERS:
+                return Reply(yes=ANSWERS[lower])
+            if lower.isdecimal():
                 return Reply(yes=False, alternative=int(lower))
-            self._write("Please answer Y to execute it, or N to give a new command.")
+            asks_help = lower in ("help", "?")
+            others = len(self._teaching.question.alternatives)
+            self._write_all(answer_help(others) if asks_help else [ANSWER_HELP])
             return "nothing"
         match lower:
             case "quit" | "exit" | "leave":
@@ -166,8 +210,15 @@ class TeachingLines:
                 return Redo()
             case _ if (again := _AGAIN.fullmatch(lower)) is not None:
                 return Again(self._teaching.demonstration.id, int(again[1]) - 1)
+            case _ if _AGAIN_FROM_WHERE.fullmatch(lower):
+                self._write("Say which step: again 5 goes back before step 5.")
+            case _ if lower in ANSWERS:
+                self._write(NO_QUESTION)
             case "seen":
-                self._write_all(self._seen())
+                count, *missing = self._seen() or [""]
+                self._write(count)
+                if missing:
+                    self._write_all([NOT_SHOWN, *missing])
             case "why":
                 self._write_all(self._why())
             case "next":
@@ -198,8 +249,17 @@ class TeachingLines:
 
     def _tell(self, events: Iterable[TeachingEvent]) -> None:
         for event in events:
-            for line in teaching_lines(event, self._teaching):
-                self._write(line)
+            match event:
+                case Begun():
+                    self._kept = event.resumed
+                case Executed() | StepUndone():
+                    self._kept = True
+                case Finished():
+                    self._complete = True
+            self._write_all(teaching_lines(event, self._teaching))
+            if isinstance(event, Finished):
+                self._write_all(self._seen()[:1])
+                self._write(f"Type next for another demonstration, or quit and `{self._learn}`.")
             if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
                 self._where()
 
@@ -224,7 +284,4 @@ def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
                 ]
             return [f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."]
         case Finished(demonstration):
-            return [
-                f"The game is over; {len(demonstration.steps)} steps were demonstrated. "
-                "Type next for another demonstration, or quit."
-            ]
+            return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -137,9 +138,17 @@ def _teach_by_lines(
     resume: bool,
 ) -> None:
     from tangy_tui.documents import demonstration_document
+    from tangy_tui.house import data_folder, teacher_name
     from tangy_tui.inputs import line_reader
-    from tangy_tui.lines import TeachingLines
+    from tangy_tui.lines import TeachingLines, command_line
 
+    folder = house.store.folder
+    usual = signature(teach).parameters["activity"].default
+    options = {
+        "activity": None if house.profile == usual else house.profile,
+        "data": None if folder == data_folder(None).absolute() else str(folder),
+    }
+    who = None if teaching.teacher == plain(teacher_name())[:40] else teaching.teacher
     write: Callable[[str], None] = (lambda _: None) if as_json else print_line
     lines = TeachingLines(
         teaching,
@@ -149,6 +158,8 @@ def _teach_by_lines(
         scripted=script is not None,
         seen=lambda: _seen(house, teaching),
         why=lambda: _why(house, teaching),
+        resume=command_line("teach", teacher=who, **options),
+        learn=command_line("learn", **options),
     )
     asyncio.run(lines.run(resume=resume))
     if as_json:

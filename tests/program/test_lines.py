@@ -15,17 +15,21 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
 from tangy_tui.game_lines import belief_lines, play_by_lines
 from tangy_tui.house import House
+from tangy_tui.learning.demonstrating import Again
 from tangy_tui.learning.policy import ForestSettings, learn_policy
-from tangy_tui.lines import TeachingLines
+from tangy_tui.lines import TeachingLines, command_line
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
 
-def told(house: House, *lines: str, teacher: str = "Ada", resume: bool = True) -> list[str]:
+def told(
+    house: House, *lines: str, teacher: str = "Ada", resume: bool = True, again: Again | None = None
+) -> list[str]:
     """Hold a session in which these lines are typed; return what was said."""
     typed = iter(lines)
     said: list[str] = []
-    session = TeachingLines(house.teaching(teacher, 1), lambda: next(typed, None), said.append)
+    teaching = house.teaching(teacher, 1, again=again)
+    session = TeachingLines(teaching, lambda: next(typed, None), said.append)
     asyncio.run(session.run(resume=resume))
     return said
 
@@ -46,7 +50,7 @@ def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(house: Ho
 
 
 def test_the_question_names_the_behaviour_and_only_y_executes_it(house: House) -> None:
-    said = told(house, "greet everyone", "", "yes", "ok", "Y")
+    said = told(house, "greet everyone", "", "yep", "ok", "Y")
     question = "Did you say: greet everyone? Type Y to execute it or N for a new command."
     assert said[3] == question
     assert said[4:6] == ["Please answer Y to execute it, or N to give a new command."] * 2
@@ -54,8 +58,33 @@ def test_the_question_names_the_behaviour_and_only_y_executes_it(house: House) -
     assert said[7].startswith("   Tangy says: Hello")
 
 
+@pytest.mark.parametrize("yes", ["y", "Y", "yes", "Yes", " YES "])
+def test_yes_in_full_is_taken_as_well(house: House, yes: str) -> None:
+    assert "1. start · nobody asks -> greeting" in told(house, "greet everyone", yes)
+
+
+def test_help_at_the_question_says_what_can_be_answered(house: House) -> None:
+    said = told(house, "tell everyone goodbye", "help", "n", "greet everyone", "?")
+    at = said.index("Please answer Y to execute it, or N to give a new command.")
+    assert [line.partition(":")[0] for line in said[at + 1 : at + 5]] == [
+        "  y", "  n", "  1 to 2", "  quit",
+    ]  # fmt: skip
+    assert said[-1].startswith("  quit: "), "there are no numbers where there is nothing else"
+    assert said[-2].startswith("  n: ")
+
+
+@pytest.mark.parametrize("answer", ["y", "N", "yes", "no"])
+def test_an_answer_without_a_question_is_told_so(house: House, answer: str) -> None:
+    assert told(house, answer)[-1] == "There is no question open: give a command."
+
+
+@pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
+def test_again_wants_a_step(house: House, words: str) -> None:
+    assert told(house, words)[-1] == "Say which step: again 5 goes back before step 5."
+
+
 def test_n_gives_the_words_back(house: House) -> None:
-    for no in ("n", "N"):
+    for no in ("n", "N", "no", "No"):
         said = told(house, "greet everyone", no)
         assert "Not done: greet everyone. Give a new command." in said
         assert not any(line.startswith("1. ") for line in said)
@@ -88,9 +117,49 @@ def test_undo_where_help_and_quit_are_understood(house: House) -> None:
 
 def test_a_session_that_is_left_is_gone_on_with(house: House) -> None:
     said = told(house, "greet everyone", "y", "next number", "y", "quit")
-    assert said[-1].startswith("Left after 2 steps. What you confirmed is kept")
+    assert said[-1] == (
+        "Left after 2 steps. What you confirmed is kept: `tangy teach` goes on from here."
+    )
     assert told(house)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
     assert told(house, resume=False)[1].startswith("A new demonstration by Ada")
+
+
+def test_what_is_not_in_the_log_is_not_said_to_be_kept(house: House) -> None:
+    told(house, "greet everyone", "y", "next number", "y", "quit")
+    kept = told(house, "quit")
+    assert kept[-1].startswith("Left after 2 steps.")
+    first = next(house.store.events()).body["demonstration"]
+    left = told(house, "quit", teacher="Bea", again=Again(first, 1))
+    assert left[-1] == "You confirmed nothing, so nothing was changed."
+    assert told(house, "quit", teacher="Bea")[1].startswith("A new demonstration by Bea")
+    gone_on = told(house, "next number", "y", "quit", teacher="Bea", again=Again(first, 1))
+    assert gone_on[-1].startswith("Left after 2 steps.")
+
+
+def test_what_is_missing_stands_under_a_heading(house: House) -> None:
+    def seen(*lines: str) -> list[str]:
+        said: list[str] = []
+        typed = iter(["seen"])
+        session = TeachingLines(
+            house.teaching("Ada", 1),
+            lambda: next(typed, None),
+            said.append,
+            seen=lambda: list(lines),
+        )
+        asyncio.run(session.run())
+        return said[3:]
+
+    assert seen("1 of 2 was shown.", "  that") == [
+        "1 of 2 was shown.", "Not shown to Tangy yet:", "  that",
+    ]  # fmt: skip
+    assert seen("2 of 2 were shown.") == ["2 of 2 were shown."]
+
+
+def test_the_command_that_goes_on_names_what_is_not_usual() -> None:
+    assert command_line("teach", teacher=None, data=None) == "tangy teach"
+    said = command_line("teach", teacher="Ada Lovelace", data="some where")
+    assert said == "tangy teach --teacher 'Ada Lovelace' --data 'some where'"
+    assert command_line("learn", data="ab").isprintable()
 
 
 def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(house: House) -> None:
@@ -117,12 +186,24 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(house: House) -> 
         expected = house.activity.expected[teaching.world.observe().situation]
         return house.activity.behaviours[expected].phrases[0]
 
-    asyncio.run(TeachingLines(teaching, read, said.append).run())
+    session = TeachingLines(
+        teaching,
+        read,
+        said.append,
+        seen=lambda: ["9 of 11 situations were shown.", "  the rest"],
+        learn="tangy learn --data d",
+    )
+    asyncio.run(session.run())
     over = next(line for line in said if line.startswith("The game is over; "))
-    assert "steps were demonstrated. Type next for another" in over
+    assert over.endswith(" steps were demonstrated.")
     after = said[said.index(over) + 1 :]
-    assert after[0].startswith("This game is over.")
-    assert after[1] == "A new demonstration by Ada (game 2)."
+    assert after[:2] == [
+        "9 of 11 situations were shown.",
+        "Type next for another demonstration, or quit and `tangy learn --data d`.",
+    ]
+    assert after[2].startswith("This game is over.")
+    assert after[3] == "A new demonstration by Ada (game 2)."
+    assert after[-1] == "Let Tangy learn from it: `tangy learn --data d`."
     assert not any(line.startswith("Left after") for line in after)
 
 
