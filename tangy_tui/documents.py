@@ -9,6 +9,7 @@ from tangy_tui.house import House
 from tangy_tui.interaction import saying
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.record import Record
+from tangy_tui.learning.asking import Lesson
 from tangy_tui.learning.comparing import Row
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
@@ -140,6 +141,22 @@ def why_document(house: House, why: Why) -> dict[str, Any]:
         "against": [shown_document(shown) for shown in why.against],
         "near": [shown_document(shown) for shown in why.near],
         "sentences": why_words(house.activity, why),
+    }
+
+
+def lesson_document(house: House, lesson: Lesson) -> dict[str, Any]:
+    """Describe what was learnt from an answer in a game."""
+    made, found = lesson.demonstration, lesson.replay
+    return {
+        "demonstration": made.id,
+        "teacher": made.teacher,
+        "situation": list(made.steps[-1].state.situation),
+        "behaviour": made.steps[-1].behaviour,
+        "policy": lesson.policy.name,
+        "replayed": found.steps,
+        "changed": [[list(c.situation), c.before, c.after] for c in found.changed],
+        "overruled": found.overruled,
+        "words": found.words(),
     }
 
 

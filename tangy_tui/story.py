@@ -11,7 +11,7 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.demonstrating import Begun, Executed, Next
 from tangy_tui.learning.effects import learn_effects
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import keep_policy
+from tangy_tui.learning.policies import keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 
@@ -73,5 +73,6 @@ def learn(house: House) -> Policy:
     """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
     library = read_library(house.store, house.activity.name)
     policy = learn_policy(house.activity, library.finished, resolutions=library.resolutions)
+    policy = unused_name(house.store, policy)
     keep_policy(house.store, policy)
     return policy

@@ -9,6 +9,7 @@ from tangy_profiles.demonstration import Step
 from tangy_profiles.reading import plain
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.learning.asking import Lesson
 from tangy_tui.learning.conflicts import Conflict, Resolution
 from tangy_tui.learning.library import Edit, Library
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Verification
@@ -114,6 +115,14 @@ def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
         case "split":
             return f"{names}: split after step {edit.body['kept']} into {made}."
         case _:
-            right = " or ".join(edit.body["right"])
             said = Resolution.from_json(edit.body)
-            return f"{activity.in_words(said.situation)}: {right} is right."
+            are = "is" if len(said.right) == 1 else "are all"
+            return f"{activity.in_words(said.situation)}: {', '.join(said.right)} {are} right."
+
+
+def lesson_words(activity: Activity, lesson: Lesson) -> str:
+    """Say what was learnt from an answer: what is done where from now on, and from whom."""
+    made = lesson.demonstration
+    step = made.steps[-1]
+    where = activity.in_words(step.state.situation)
+    return f"Learnt from {made.teacher}: {where} -> {step.behaviour}."

@@ -44,14 +44,14 @@ class Editor:
     """
 
     def __init__(self, store: Store, activity: Activity, make_id: MakeId = new_id) -> None:
+        self.activity = activity
         self._store = store
-        self._activity = activity
         self._make_id = make_id
 
     @property
     def library(self) -> Library:
         """The library as it is now."""
-        return read_library(self._store, self._activity.name)
+        return read_library(self._store, self.activity.name)
 
     def delete(self, *wanted: str) -> Edit:
         """Put demonstrations away: they are not learnt from until they are restored."""
@@ -110,10 +110,10 @@ class Editor:
         if not right:
             raise NotPossible("Say which answer is right.")
         for behaviour in right:
-            self._activity.behaviour(behaviour)
+            self.activity.behaviour(behaviour)
         body = conflict.resolved(*right).to_json()
         seq = self._store.append(
-            EDITED, {"activity": self._activity.name, "what": "resolve", **body}
+            EDITED, {"activity": self.activity.name, "what": "resolve", **body}
         )
         return self._made(seq)
 
@@ -122,7 +122,7 @@ class Editor:
         done = self.library.done
         if not done:
             raise NotPossible("There is no change of the demonstrations to undo.")
-        self._store.append(EDIT_UNDONE, {"activity": self._activity.name, "edit": done[-1].seq})
+        self._store.append(EDIT_UNDONE, {"activity": self.activity.name, "edit": done[-1].seq})
         return done[-1]
 
     def redo(self) -> Edit:
@@ -130,7 +130,7 @@ class Editor:
         undone = self.library.undone
         if not undone:
             raise NotPossible("There is no change of the demonstrations to do again.")
-        self._store.append(EDIT_REDONE, {"activity": self._activity.name, "edit": undone[-1].seq})
+        self._store.append(EDIT_REDONE, {"activity": self.activity.name, "edit": undone[-1].seq})
         return undone[-1]
 
     def _choose(self, wanted: Sequence[str]) -> list[Entry]:
@@ -154,7 +154,7 @@ class Editor:
 
     def _edit(self, what: str, entries: Sequence[Entry], **more: object) -> Edit:
         ids = [entry.demonstration.id for entry in entries]
-        body = {"activity": self._activity.name, "what": what, "ids": ids, **more}
+        body = {"activity": self.activity.name, "what": what, "ids": ids, **more}
         return self._made(self._store.append(EDITED, body))
 
     def _made(self, seq: int) -> Edit:

@@ -20,7 +20,6 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.reasons import Ground
-from tangy_tui.ui.screens.asking import lesson_words
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -28,7 +27,7 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted
+from tangy_tui.wording import counted, lesson_words
 
 DRIVING_SHARE = 0.5
 """The share of a step's time in which the picture of the robot drives."""
@@ -127,7 +126,7 @@ class GamePicture:
     def _show_lesson(self, taught: Taught) -> None:
         """Say from whom it was learnt and what the replay showed, and show the new row."""
         activity, lesson = self._house.activity, taught.lesson
-        learnt = lesson_words(activity, taught.teacher, lesson)
+        learnt = lesson_words(activity, lesson)
         log = self._screen.query_one(LogView)
         log.write(learnt, "good")
         log.write(lesson.replay.words(), "warn" if lesson.replay.changed else "good")

@@ -47,12 +47,12 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
     )  # fmt: skip
     for number, situation in enumerate(activity.situations, 1):
         decision = policy.decide(situation)
-        contested = Text("contested", style="bold red")
+        also = [b for b in decision.right if b != decision.behaviour]
         table.add_row(
             str(number),
             activity.in_words(situation),
-            Text(decision.behaviour, style="" if decision.sure else "bold red"),
-            contested if decision.contested else f"{decision.share:.2f}",
+            Text(_does(decision, also), style="" if decision.sure else "bold red"),
+            f"{decision.share:.2f}" if decision.seen else "",
             str(decision.seen) if decision.seen else Text("never", style="bold red"),
         )
     console.print(table)
@@ -114,9 +114,9 @@ def print_comparison(activity: Activity, a: Policy, b: Policy, rows: Sequence[Ro
     console.print(f"{different} of {counted(len(rows), 'row')} differ.")
 
 
-def _does(decision: Decision) -> str:
+def _does(decision: Decision, also: Sequence[str] = ()) -> str:
     if decision.sure:
-        return f"{decision.behaviour} ({decision.share:.0%})"
+        return " or ".join([decision.behaviour, *also])
     why = "contested" if decision.contested else "never shown" if not decision.seen else "unsure"
     return f"asks ({why})"
 

@@ -13,7 +13,9 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, open_house, print_json
 
 if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
     from tangy_tui.house import House
+    from tangy_tui.learning.conflicts import Conflict
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import Edit
 
@@ -40,7 +42,7 @@ def list_them(
         if as_json:
             print_json([row.to_json() for row in rows])
         else:
-            reports.print_demonstrations(rows)
+            reports.print_demonstrations([row for row in rows if row.state != "undone"])
 
 
 @app.command()
@@ -65,7 +67,10 @@ def show(
             return
         print(plain(f"{library.name(shown.id)} ({shown.id}) by {shown.teacher}:"))
         for number, step in enumerate(shown.steps, 1):
-            print(plain(f"{number:4}. {step_words(house.activity, step, house.name)}"))
+            wrong = any(said.sets_aside(step) for said in library.resolutions)
+            failed = "" if step.completed else " (could not be done)"
+            note = " (a teacher called it wrong)" if wrong else failed
+            print(plain(f"{number:4}. {step_words(house.activity, step, house.name)}{note}"))
 
 
 @app.command()
@@ -88,7 +93,7 @@ def restore(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Take demonstrations into use again that were deleted, or shown again."""
+    """Take demonstrations into use again that were deleted."""
     _change(data, activity, as_json, lambda editor: editor.restore(*demonstrations))
 
 
@@ -165,9 +170,14 @@ def conflicts(
 
 @app.command()
 def resolve(
-    conflict: Annotated[int, typer.Argument(metavar="N", min=1, help="The conflict's number.")],
+    conflict: Annotated[
+        str, typer.Argument(metavar="N", help="The conflict's number, or its situation in words.")
+    ],
     right: Annotated[
-        list[str] | None, typer.Option(help="The behaviour that is right; may be repeated.")
+        list[str] | None, typer.Option(help="The answer that is right; may be repeated.")
+    ] = None,
+    instead: Annotated[
+        str | None, typer.Option(help="A behaviour that is right though nobody showed it.")
     ] = None,
     both: Annotated[bool, typer.Option("--both", help="All answers are right.")] = False,
     unfinished: Unfinished = False,
@@ -181,15 +191,35 @@ def resolve(
     def settle(editor: Editor) -> Edit:
         library = editor.library
         found = library.all_conflicts if unfinished else library.conflicts
-        if conflict > len(found):
-            there = f"there are {len(found)}" if len(found) != 1 else "there is one"
-            raise TangyError(f"There is no conflict {conflict}: {there}.")
-        chosen = found[conflict - 1]
-        if bool(right) == both:
-            raise TangyError("Say which answer is right: --right BEHAVIOUR, or --both.")
+        chosen = _chosen(found, conflict, editor.activity)
+        if [bool(right), both, instead is not None].count(True) != 1:
+            raise TangyError("Say which answer is right: --right ANSWER, or --both.")
+        if instead is not None:
+            return editor.resolve(chosen, instead)
+        for answer in right or ():
+            if answer not in chosen.answers:
+                answers = " or ".join(chosen.answers)
+                raise TangyError(
+                    plain(
+                        f"Nobody answered {answer!r}: choose {answers}, or say --instead "
+                        "BEHAVIOUR if neither is right."
+                    )
+                )
         return editor.resolve(chosen, *(chosen.answers if both else right or ()))
 
     _change(data, activity, as_json, settle)
+
+
+def _chosen(found: list[Conflict], wanted: str, activity: Activity) -> Conflict:
+    """Return a conflict by its number, or by the words of its situation."""
+    if wanted.isdecimal() and 1 <= int(wanted) <= len(found):
+        return found[int(wanted) - 1]
+    simple = " ".join(wanted.casefold().split())
+    named = [c for c in found if simple and simple in activity.in_words(c.situation).casefold()]
+    if len(named) == 1:
+        return named[0]
+    there = "there is 1" if len(found) == 1 else f"there are {len(found)}"
+    raise TangyError(plain(f"There is no conflict {wanted!r}: {there}."))
 
 
 def _change(
@@ -201,6 +231,7 @@ def _change(
 ) -> None:
     """Make a change of the library and say what it was."""
     from tangy_tui.learning.editing import Editor
+    from tangy_tui.wording import counted
 
     with open_house(data, activity, 4) as house:
         editor = Editor(house.store, house.activity)
@@ -211,6 +242,9 @@ def _change(
         print(plain(f"{before}{_edit_words(house, editor, edit)}"))
         if not before:
             print("`tangy demonstrations undo` takes it back.")
+        if edit.what == "resolve":
+            left = len(editor.library.conflicts)
+            print(f"{counted(left, 'conflict')} left; then `tangy learn`.")
 
 
 def _edit_document(edit: Edit) -> dict[str, Any]:

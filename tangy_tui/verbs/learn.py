@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
     from tangy_tui.house import House
+    from tangy_tui.learning.policies import Change
     from tangy_tui.learning.policy import Policy
+
+MOST_SHOWN = 8
+"""Steps that are listed of those that a decision rests on."""
 
 
 def learn(
@@ -45,11 +50,18 @@ def learn(
 
     from tangy_tui.documents import policy_document
     from tangy_tui.learning.library import read_library
-    from tangy_tui.learning.policies import keep_policy
+    from tangy_tui.learning.policies import (
+        changes,
+        check_name,
+        keep_policy,
+        last_policy,
+        unused_name,
+    )
     from tangy_tui.learning.policy import FORESTS, learn_policy
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
+    check_name(name)
     with open_house(data, activity, 4) as house:
         if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
             _settle_conflicts(house)
@@ -58,6 +70,10 @@ def learn(
         if teacher is not None:
             shown = _of_teacher(shown, teacher)
         used = [d for d in shown if d.finished or (unfinished and d.steps)]
+        left_out = [d for d in shown if d.steps and d not in used]
+        if left_out and not used:
+            raise TangyError(_only_unfinished(left_out))
+        before = last_policy(house.store, house.activity.name)
         policy = learn_policy(
             house.activity,
             used,
@@ -65,14 +81,18 @@ def learn(
             settings=replace(FORESTS[forest], seed=seed),
             name=plain(name)[:40],
         )
+        policy = unused_name(house.store, policy)
         keep_policy(house.store, policy)
         steps = sum(len(d.steps) for d in used)
-        left_out = sum(1 for d in shown if d.steps and d not in used)
+        changed = [] if before is None else changes(before, policy)
         if as_json:
             found = policy_document(house, policy)
-            print_json({**found, "steps": steps, "left_out": left_out})
+            told = [[list(c.situation), c.before, c.after] for c in changed]
+            more = {"steps": steps, "left_out": len(left_out), "changed": told}
+            print_json({**found, **more})
         else:
-            _tell_learnt(house, policy, steps, left_out)
+            _tell_learnt(house, policy, steps, len(left_out))
+            _tell_changed(house, before, changed)
 
 
 def policy(
@@ -125,7 +145,7 @@ def _settle_conflicts(house: House) -> None:
             except EOFError:
                 print()
                 return
-            word = said.strip().lower()
+            word = " ".join(said.split()).lower()
             if word == "":
                 print("Left open: Tangy will ask when it comes about.")
                 break
@@ -135,6 +155,20 @@ def _settle_conflicts(house: House) -> None:
             if word.isdecimal() and 1 <= int(word) <= len(answers):
                 editor.resolve(conflict, answers[int(word) - 1])
                 break
+            if word in answers:
+                editor.resolve(conflict, word)
+                break
+            print(f"Type a number from 1 to {len(answers)}, the answer itself, b, or just Enter.")
+
+
+def _only_unfinished(shown: list[Demonstration]) -> str:
+    from tangy_tui.wording import counted
+
+    steps = counted(sum(len(d.steps) for d in shown), "step")
+    return (
+        f"No demonstration is finished yet: {steps} are kept. Go on with `tangy teach`, or learn "
+        "from them with --unfinished."
+    )
 
 
 def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]:
@@ -171,6 +205,22 @@ def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> Non
             f"{counted(left_out, 'unfinished demonstration')} left out; "
             "--unfinished learns from them too."
         )
+
+
+def _tell_changed(
+    house: House, before: Mapping[str, Any] | None, changed: Sequence[Change]
+) -> None:
+    """Say what the new policy does otherwise than the one before."""
+    if before is None:
+        return
+    name = plain(str(before["name"]))
+    if not changed:
+        print(f"It does the same as {name!r} before it, in every situation.")
+        return
+    print(f"Otherwise than {name!r} before it:")
+    for change in changed:
+        where = house.activity.in_words(change.situation)
+        print(f"  {where}: was {change.before}, is now {change.after}")
 
 
 # ------------------------------------------------------------------------------------- showing
@@ -251,8 +301,10 @@ def _why(house: House, name: str, wanted: str, as_json: bool) -> None:
     ):  # fmt: skip
         if steps:
             print(f"{title}:")
-            for step in steps:
+            for step in steps[:MOST_SHOWN]:
                 print(plain(f"  {shown_words(step, library.name)}"))
+            if len(steps) > MOST_SHOWN:
+                print(f"  and {len(steps) - MOST_SHOWN} more (--json has them all)")
 
 
 def _situation(house: House, wanted: str) -> Situation:
@@ -267,8 +319,11 @@ def _situation(house: House, wanted: str) -> Situation:
     simple = " ".join(wanted.casefold().split())
     if simple in names:
         return names[simple]
-    within = [s for words, s in names.items() if simple and simple in words]
-    if len(set(within)) == 1:
+    within = list(dict.fromkeys(s for words, s in names.items() if simple and simple in words))
+    if len(within) == 1:
         return within[0]
+    if within:
+        several = "; ".join(activity.in_words(s) for s in within)
+        raise TangyError(plain(f"{wanted!r} fits several situations: {several}."))
     known = [activity.in_words(s) for s in situations]
     raise TangyError(plain(f"There is no situation {wanted!r}: {nearest(wanted, known)}"))

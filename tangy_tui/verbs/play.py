@@ -25,6 +25,7 @@ from tangy_tui.verbs.common import (
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
+    from tangy_tui.learning.asking import Lesson
 
 
 def play(
@@ -111,20 +112,29 @@ def demo(
 
 
 def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:
+    from tangy_tui.documents import lesson_document
+    from tangy_tui.interaction.facilitation import Taught
     from tangy_tui.interaction.scripted_answers import answer_by_script
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.ui import reports
+    from tangy_tui.wording import lesson_words
 
     tally = Tally()
+    lessons: list[Lesson] = []
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(facilitation.begin())
             while not facilitation.over:
                 tally.add(facilitation.step())
                 if facilitation.question is not None:
-                    tally.add(answer_by_script(facilitation))
+                    answered = answer_by_script(facilitation)
+                    tally.add(answered)
+                    lessons += [event.lesson for event in answered if isinstance(event, Taught)]
     beliefs = facilitation.persuasion.beliefs
     if as_json:
-        print_json(tally.to_json(house.activity.situations, beliefs))
+        told = {"answers": [lesson_document(house, one) for one in lessons]} if lessons else {}
+        print_json({**tally.to_json(house.activity.situations, beliefs), **told})
     else:
+        for lesson in lessons:
+            print(lesson_words(house.activity, lesson))
         reports.print_tally(house, tally, beliefs)

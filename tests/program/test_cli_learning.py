@@ -67,10 +67,12 @@ def test_a_conflict_is_shown_settled_and_opened_again(tangy: Tangy, disagreeing:
     assert (row["contested"], row["sure"]) == (True, False)
 
     resolve = ("demonstrations", "resolve", "1", *at)
-    assert "did you mean 'greeting'" in refusal(tangy(*resolve, "--right", "greting"))
+    assert "choose greeting or joke" in refusal(tangy(*resolve, "--right", "celebrate"))
+    assert "did you mean 'celebrate'" in refusal(tangy(*resolve, "--instead", "celebrat"))
     assert "Say which answer is right" in refusal(tangy(*resolve))
-    assert "there is one" in refusal(tangy("demonstrations", "resolve", "2", "--both", *at))
-    assert "greeting is right" in tangy(*resolve, "--right", "greeting").stdout
+    assert "there is 1" in refusal(tangy("demonstrations", "resolve", "2", "--both", *at))
+    by_words = ("demonstrations", "resolve", "start", *at, "--right", "greeting")
+    assert "greeting is right" in tangy(*by_words).stdout
     learnt = document(tangy("learn", "--json", *at))
     (row,) = [r for r in learnt["rows"] if r["stage"] == "start"]
     assert (row["behaviour"], row["contested"], row["sure"]) == ("greeting", False, True)
@@ -243,3 +245,68 @@ def test_a_script_for_the_scripted_teacher_is_refused(tangy: Tangy, tmp_path: Pa
     script.write_text("greet everyone\ny\n")
     done = tangy("teach", "--teacher", "scripted", "--script", script, "--data", tmp_path / "d")
     assert "leave out --script" in refusal(done)
+
+
+def test_learning_says_what_is_done_otherwise_than_before(tangy: Tangy, disagreeing: Path) -> None:
+    at = ("--data", disagreeing)
+    told = refusal(tangy("learn", *at))
+    assert "3 steps are kept" in told
+    assert "--unfinished" in told
+    document(tangy("learn", "--unfinished", "--json", *at))
+    document(tangy("play", "--headless", "--json", "--teacher", "scripted", "--seed", 3, *at))
+    document(tangy("learn", "--json", *at))
+    document(tangy("demonstrations", "delete", "3", "--json", *at))  # the answer to the opening
+    fewer = tangy("learn", *at).stdout
+    assert "start · nobody asks: was greeting, is now to ask" in fewer
+    again = tangy("learn", *at).stdout
+    assert "It does the same as" in again
+
+
+def test_answers_by_script_are_told(tangy: Tangy, untaught: Path) -> None:
+    at = ("--headless", "--teacher", "scripted", "--seed", 3, "--data", untaught)
+    told = tangy("play", *at).stdout
+    assert "Learnt from scripted: start · nobody asks -> greeting." in told
+    played = document(tangy("play", "--json", "--games", 9, *at))
+    assert all(set(a) >= {"situation", "behaviour", "words"} for a in played.get("answers", []))
+
+
+def test_a_policy_cannot_take_a_name_that_means_another(tangy: Tangy, taught: Path) -> None:
+    for name in ("last", "last~1", "teacher:Ada"):
+        assert "choose another name" in refusal(tangy("learn", "--name", name, "--data", taught))
+    document(tangy("demonstrations", "delete", "1", "--json", "--data", taught))
+    document(tangy("learn", "--json", "--data", taught))
+    document(tangy("demonstrations", "undo", "--json", "--data", taught))
+    document(tangy("demonstrations", "delete", "2", "--json", "--data", taught))
+    assert document(tangy("learn", "--json", "--data", taught))["name"] == "bingo-2.2"
+
+
+def test_what_a_teacher_called_wrong_is_marked_in_the_demonstration(
+    tangy: Tangy, disagreeing: Path
+) -> None:
+    at = ("--data", disagreeing)
+    document(
+        tangy(
+            "demonstrations", "resolve", "1", "--right", "greeting", "--unfinished", "--json", *at
+        )
+    )
+    lines = tangy("demonstrations", "show", "2", *at).stdout.splitlines()
+    assert [("called it wrong" in line) for line in lines] == [False, True, False]
+
+
+def test_words_that_fit_several_situations_are_told_apart(tangy: Tangy, taught: Path) -> None:
+    told = refusal(tangy("policy", "--why", "nobody", "--data", taught))
+    assert "fits several situations" in told
+
+
+def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
+    tangy: Tangy, disagreeing: Path
+) -> None:
+    at = ("--data", disagreeing)
+    settle = ("demonstrations", "resolve", "1", "--unfinished", "--both", "--json")
+    document(tangy(*settle, *at))
+    lines = "greet everyone\ny\nsay goodbye\ny\nquit\n"
+    for teacher in ("Cleo", "Dan"):
+        tangy("teach", "--plain", "--teacher", teacher, *at, stdin=lines)
+        lines = "tell a joke\ny\nsay goodbye\ny\nquit\n"
+    found = document(tangy("policy", "--compare", "Cleo", "Dan", "--json", *at))
+    assert not found["same"]

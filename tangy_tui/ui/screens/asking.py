@@ -15,10 +15,8 @@ from textual.screen import Screen
 from textual.widgets import Static
 from textual.worker import WorkerFailed
 
-from tangy_profiles.activity import Activity
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import Facilitation, GameEvent, Unsure
-from tangy_tui.learning.asking import Lesson
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.explaining import Why
 from tangy_tui.learning.verifying import (
@@ -53,12 +51,6 @@ def answers_words(why: Why) -> str:
         for behaviour, teachers in given.items()
     ]
     return f"Shown so far: {', '.join(parts)}." if parts else ""
-
-
-def lesson_words(activity: Activity, teacher: str, lesson: Lesson) -> str:
-    """Say what was learnt from an answer: what is done where from now on, and from whom."""
-    step = lesson.demonstration.steps[-1]
-    return f"Learnt from {teacher}: {activity.in_words(step.state.situation)} -> {step.behaviour}."
 
 
 async def learn_answer(
