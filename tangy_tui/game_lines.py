@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from tangy_profiles.beliefs import probability_best
+from tangy_profiles.demonstration import Demonstration
 from tangy_tui.interaction.facilitation import (
     Acted,
     Facilitation,
@@ -16,16 +17,37 @@ from tangy_tui.interaction.facilitation import (
     Unsure,
 )
 from tangy_tui.interaction.scripted_answers import answer_by_script
-from tangy_tui.learning.verifying import Reply, Say, Verified
-from tangy_tui.wording import Name, verification_lines
+from tangy_tui.learning.explaining import explain, why_words
+from tangy_tui.learning.verifying import (
+    ANSWER_HELP,
+    ANSWERS,
+    NO_QUESTION,
+    NotUnderstood,
+    Reply,
+    Say,
+    Verified,
+    answer_help,
+)
+from tangy_tui.wording import Name, state_words, verification_lines
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
 Write = Callable[[str], None]
+Demonstrations = Callable[[], Sequence[Demonstration]]
+
+HELP = "Answer with a behaviour in words, or type one of: where, why, help, quit."
+MEANINGS = (
+    ("where", "say what Tangy sees"),
+    ("why", "say why Tangy asks"),
+    ("quit", "give the game up"),
+)
+_TAKEN_BACK = {"undo": "undo", "redo": "redo", "again": "show again"}
 
 
-def game_lines(event: GameEvent, facilitation: Facilitation, name: Name) -> list[str]:
-    """Put one event of a game into lines."""
+def game_lines(
+    event: GameEvent, facilitation: Facilitation, name: Name, teacher: str = ""
+) -> list[str]:
+    """Put one event of a game into lines; `teacher` is who answered, where Tangy had asked."""
     activity = facilitation.world.activity
     match event:
         case GameBegun(_, number, _):
@@ -33,13 +55,18 @@ def game_lines(event: GameEvent, facilitation: Facilitation, name: Name) -> list
         case Acted(number, state, decision, choice, action, _, _, speech):
             target = f" ({name(action.target)})" if action.target else ""
             how = f", {choice.strategy}" if choice else ""
+            why = f"as {teacher} said" if teacher else f"{decision.share:.0%} of the votes"
             return [
                 f"{number}. {activity.in_words(state.situation)} -> "
-                f"{action.behaviour.name}{target}{how}, {decision.share:.0%} of the votes",
+                f"{action.behaviour.name}{target}{how}, {why}",
                 f"   Tangy says: {speech}",
             ]
         case Learnt(response, belief):
-            what = "complied" if response.complied else "followed, but late"
+            what = "did not follow, which counts as no"
+            if response.followed:
+                what = "followed, but late, which counts as no"
+            if response.complied:
+                what = "complied"
             profile = facilitation.persuasion.beliefs[response.person]
             best = max(profile, key=lambda strategy: profile[strategy].mean)
             return [
@@ -79,6 +106,7 @@ def play_by_lines(
     write: Write,
     read: Read | None = None,
     teacher: str = "",
+    demonstrations: Demonstrations | None = None,
 ) -> None:
     """Play games and tell everything that happens.
 
@@ -86,19 +114,21 @@ def play_by_lines(
         read: the lines of a teacher, who answers where Tangy asks; at their end it gives up.
             Without it a scripted teacher answers.
         teacher: who that is.
+        demonstrations: gives all there are, on which the grounds of a question rest.
     """
     for _ in range(games):
         events = facilitation.begin()
         while True:
+            answered = next((e.teacher for e in events if isinstance(e, Taught)), "")
             for event in events:
-                for line in game_lines(event, facilitation, name):
+                for line in game_lines(event, facilitation, name, answered):
                     write(line)
             if facilitation.over:
                 break
             if facilitation.question is not None and read is None:
                 events = answer_by_script(facilitation)
             elif facilitation.question is not None and read is not None:
-                events = _ask(facilitation, name, write, read, teacher)
+                events = _ask(facilitation, name, write, read, teacher, demonstrations)
             else:
                 events = facilitation.step()
     for line in belief_lines(facilitation, name):
@@ -106,7 +136,12 @@ def play_by_lines(
 
 
 def _ask(
-    facilitation: Facilitation, name: Name, write: Write, read: Read, teacher: str
+    facilitation: Facilitation,
+    name: Name,
+    write: Write,
+    read: Read,
+    teacher: str,
+    demonstrations: Demonstrations | None,
 ) -> list[GameEvent]:
     """Take a command from a teacher, verified by Y as when teaching; none gives the game up."""
     verifier = facilitation.verifier()
@@ -116,24 +151,68 @@ def _ask(
         lower = text.lower()
         if not text or text.startswith("#"):
             continue
-        if lower in ("quit", "exit", "leave") and verifier.question is None:
+        if lower in ("quit", "exit", "leave"):
             break
-        if verifier.question is None:
-            if lower in ("help", "?"):
-                for behaviour in activity.behaviours.values():
-                    write(f"  {behaviour.question}: say {behaviour.phrases[0]!r}")
-                write("  quit: give the game up")
+        if verifier.question is not None:
+            if lower in ANSWERS:
+                said = verifier.reply(Reply(yes=ANSWERS[lower]))
+            elif lower.isdecimal():
+                said = verifier.reply(Reply(yes=False, alternative=int(lower)))
+            else:
+                others = len(verifier.question.alternatives)
+                for words in answer_help(others) if lower in ("help", "?") else [ANSWER_HELP]:
+                    write(words)
                 continue
-            said = verifier.say(Say(text))
-        elif lower in ("y", "n"):
-            said = verifier.reply(Reply(yes=lower == "y"))
-        elif lower.isdigit():
-            said = verifier.reply(Reply(yes=False, alternative=int(lower)))
-        else:
-            write("Please answer Y to execute it, or N to give a new command.")
+        elif (told := _told(facilitation, name, lower, demonstrations)) is not None:
+            for words in told:
+                write(words)
             continue
+        else:
+            said = verifier.say(Say(text))
         if isinstance(said, Verified):
             return facilitation.answer(said.behaviour, said.target, teacher)
         for words in verification_lines(said, activity):
             write(words)
+        if isinstance(said, NotUnderstood):
+            write(HELP)
     return facilitation.give_up()
+
+
+def _told(
+    facilitation: Facilitation, name: Name, word: str, demonstrations: Demonstrations | None
+) -> list[str] | None:
+    """Return what is said to a word that is no behaviour, or None."""
+    world = facilitation.world
+    first = word.split()[0]
+    if word in ANSWERS:
+        return [NO_QUESTION]
+    if word in _TAKEN_BACK or (first == "again" and word.split()[-1].isdecimal()):
+        return [f"There is nothing to {_TAKEN_BACK[first]} here: answer, or quit."]
+    match word:
+        case "help" | "?":
+            spoken = [
+                f"  {b.question}: say {b.phrases[0]!r}" for b in world.activity.behaviours.values()
+            ]
+            return [HELP, *spoken, *(f"  {word}: {meaning}" for word, meaning in MEANINGS)]
+        case "where":
+            state = world.observe()
+            seen = state_words(world.activity, state, world.scene(), name)
+            return [f"Now: {world.activity.in_words(state.situation)}. {seen}"]
+        case "why":
+            return _why(facilitation, demonstrations)
+    return None
+
+
+def _why(facilitation: Facilitation, demonstrations: Demonstrations | None) -> list[str]:
+    """Say on what grounds Tangy asks; without the demonstrations, at least by which votes."""
+    question = facilitation.question
+    if question is None:
+        return []
+    activity = facilitation.world.activity
+    if demonstrations is None:
+        votes = ", ".join(
+            f"{behaviour} {share:.0%}" for behaviour, share in question.decision.votes
+        )
+        return [question.reason, f"Votes of the trees: {votes}."]
+    why = explain(facilitation.policy, demonstrations(), question.state.situation)
+    return why_words(activity, why)

@@ -29,7 +29,18 @@ from tangy_tui.learning.demonstrating import (
     Undo,
 )
 from tangy_tui.learning.ears import Ears
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.learning.verifying import (
+    ANSWER_HELP,
+    ANSWERS,
+    NO_QUESTION,
+    Asked,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    answer_help,
+)
 from tangy_tui.wording import counted, state_words, step_words, verification_lines
 
 Read = Callable[[], str | None]
@@ -50,15 +61,6 @@ MEANINGS = (
     ("next", "begin another demonstration"),
     ("quit", "leave; what you confirmed is kept"),
 )
-ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
-ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
-ANSWER_MEANINGS = (
-    ("y", "yes, execute it"),
-    ("n", "no, do nothing; give a new command"),
-    ("quit", "leave without executing it"),
-)
-NO_QUESTION = "There is no question open: give a command."
-
 _AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
 _AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
 
@@ -67,15 +69,6 @@ def command_line(verb: str, **options: str | None) -> str:
     """Write a command as it is to be typed, with those of its options that have a value."""
     given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
     return plain(" ".join(["tangy", verb, *given]))
-
-
-def answer_help(alternatives: int) -> list[str]:
-    """Say what can be answered to "Did you say ...?", a line each."""
-    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
-    if alternatives:
-        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
-        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
-    return lines
 
 
 class TeachingLines:

@@ -15,6 +15,16 @@ from tangy_profiles.state import ActivityState
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech import UNDERSTOOD
 
+ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
+"""What is typed for an answer where lines are read."""
+ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+ANSWER_MEANINGS = (
+    ("y", "yes, execute it"),
+    ("n", "no, do nothing; give a new command"),
+    ("quit", "leave without executing it"),
+)
+NO_QUESTION = "There is no question open: give a command."
+
 
 @dataclass(frozen=True, slots=True)
 class Say:
@@ -170,3 +180,12 @@ class Verifier:
 
     def _name(self, person: str) -> str:
         return self._names.get(person, person)
+
+
+def answer_help(alternatives: int) -> list[str]:
+    """Say what can be answered to "Did you say ...?", a line each."""
+    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
+    if alternatives:
+        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
+        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
+    return lines
