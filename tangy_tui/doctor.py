@@ -12,16 +12,27 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One part of the machine, whether it works, and a sentence about it."""
+    """One part of the machine, whether it works, and a sentence about it.
+
+    `broken`: it is there, or has to be, and cannot be used; what is not ok otherwise is missing,
+    and Tangy does without it.
+    """
 
     part: str
     ok: bool
     text: str
+    broken: bool = False
+
+    @property
+    def state(self) -> str:
+        """Say in one word whether it works: ok, missing or broken."""
+        return "ok" if self.ok else "broken" if self.broken else "missing"
 
 
 def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> list[Finding]:
@@ -62,14 +73,38 @@ def _terminal() -> Finding:
 
 
 def _store(folder: Path) -> Finding:
+    problem = _no_place(folder)
+    if not problem:
+        try:
+            with Store.open(folder, write=False) as store:
+                problems = store.check()
+        except TangyError as error:
+            problem = str(error)
+        else:
+            problem = plain(f"{folder}: {problems[0]}") if problems else ""
+    if problem:
+        return Finding("data folder", False, problem, broken=True)
+    is_so = "is sound" if folder.exists() else "is made as soon as there is something to keep"
+    return Finding("data folder", True, plain(f"{folder} {is_so}."))
+
+
+def _no_place(folder: Path) -> str:
+    """Say why nothing can be kept in a folder, which may have to be made first (empty: it can)."""
+    folder = folder.absolute()
+    above = next(path for path in (folder, *folder.parents) if _exists(path))
+    if above.is_dir() and os.access(above, os.W_OK | os.X_OK):
+        return ""
+    why = "is no folder" if not above.is_dir() else "cannot be written to"
+    if above != folder:
+        why = f"cannot be made, for {above} {why}"
+    return plain(f"{folder}: {why}; choose another folder with --data.")
+
+
+def _exists(path: Path) -> bool:
     try:
-        with Store.open(folder, write=False) as store:
-            problems = store.check()
-    except TangyError as error:
-        return Finding("data folder", False, str(error))
-    if problems:
-        return Finding("data folder", False, f"{folder}: {problems[0]}")
-    return Finding("data folder", True, f"{folder} is sound.")
+        return path.exists()
+    except OSError:  # it may not even be asked for, so look at what it is in
+        return False
 
 
 def _speech() -> Finding:
