@@ -36,6 +36,15 @@ GUIDED = "guided"
 RANDOM = "random"
 """How the games of a demonstration come about: planned to show everything, or by chance."""
 
+SEED_SPACE = 10_000
+"""Seeds that belong to one --seed, so that two of them never share a game."""
+
+PARTS = ("demonstrations", "teachers", "mistakes")
+"""The parts of Scenario 1, each of which has games that no other one has."""
+
+PART_SPACE = 1_000_000
+"""Courses that belong to one part and one --seed."""
+
 Steps = Iterator[TeachingEvent]
 
 
@@ -63,6 +72,16 @@ class Course:
     users: int
     games: str
     seed: int
+
+
+def course_number(part: str, seed: int, place: int = 0, places: int = 1) -> int:
+    """Return which course a part has for a seed; no two parts, seeds or places have the same.
+
+    Args:
+        place: which of a seed's courses in this part, of `places`.
+    """
+    block, at = divmod(seed, SEED_SPACE)
+    return (len(PARTS) * block + PARTS.index(part)) * PART_SPACE + places * at + place
 
 
 @cache

@@ -13,6 +13,9 @@ from typing import Any
 SURE = 2.0
 """Standard errors beyond which a difference is not put down to chance."""
 
+ENOUGH = 20
+"""From so many on a share is also written as a percentage."""
+
 Document = Mapping[str, Any]
 
 
@@ -37,8 +40,29 @@ def number(value: float | None, digits: int = 2) -> str:
 
 
 def percent(share: float | None) -> str:
-    """Write a share as a percentage, or a dash for none."""
-    return "\N{EN DASH}" if share is None else f"{100 * share:.4g}%"
+    """Write a share as a percentage with one decimal at most, or a dash for none.
+
+    What is nearly nothing or nearly everything is not rounded to it.
+    """
+    if share is None:
+        return "\N{EN DASH}"
+    if 0 < share < 0.001:
+        return "<0.1%"
+    if 0.999 < share < 1:
+        return ">99.9%"
+    return f"{100 * share:.1f}".removesuffix(".0") + "%"
+
+
+def of_all(share: float | None, n: int) -> str:
+    """Write how many of n a share is, and the percentage where there are enough for one."""
+    if share is None:
+        return "\N{EN DASH}"
+    return f"{round(share * n)} of {n}" + (f" ({percent(share)})" if n >= ENOUGH else "")
+
+
+def many(n: int, what: str, whats: str = "") -> str:
+    """Write a number of things: "1 sequence", "5 sequences"."""
+    return f"{n:,} {what if n == 1 else whats or what + 's'}"
 
 
 def _mean(summary: Mapping[str, Any]) -> str:
@@ -55,8 +79,10 @@ def _beside(here: float, paper: float, error: float, why: str) -> str:
     return f"{'Higher' if here > paper else 'Lower'} by {abs(here - paper):.2g}. {why}"
 
 
-def _one_run(here: float, paper: float, runs: Mapping[str, Any]) -> str:
+def _one_run(here: float | None, paper: float, runs: Mapping[str, Any]) -> str:
     """Say whether one run of the paper's may have come out as it did where ours is the mean."""
+    if here is None:
+        return "Nobody converged here, so there is nothing to compare."
     unknown = "What counted as convergence, and how its users complied, the paper does not say."
     chance = f"a mean of four users {_varies(runs['sd'], runs['n'])}"
     how = "Higher" if here > paper else "Lower"
@@ -87,15 +113,15 @@ def _learning(document: Document) -> list[Row]:
     within, guided = document["random"]["exact_within"], document["guided"]
     three = str(paper["demonstrations"])
     teachers, typed = document["teachers"], document["typing"]
-    alike = teachers["identical_share"]
+    alike, groups, seeds = teachers["identical_share"], teachers["groups"], document["seeds"]
     return [
         Row(
             "Demonstrations needed, games by chance",
             f"{three} (one teacher, one sequence of games)",
             f"exact after 1, 2, 3, 4: {', '.join(percent(within[n]) for n in sorted(within))} "
-            f"of {document['seeds']} sequences",
-            f"{three} are enough in {percent(within[three])} of the sequences, and "
-            f"{percent(within['1'])} need only one: how many it takes is a matter of luck with "
+            f"of {many(seeds, 'sequence')}",
+            f"Sequences in which {three} are enough: {of_all(within[three], seeds)}; in which one "
+            f"alone is: {of_all(within['1'], seeds)}. How many it takes is a matter of luck with "
             "the games, so one sequence cannot say.",
         ),
         Row(
@@ -120,9 +146,10 @@ def _learning(document: Document) -> list[Row]:
         Row(
             "Policies of five teachers",
             "the same",
-            f"the same in {percent(alike['end'])} of {teachers['groups']} groups of "
-            f"{teachers['count']}; after exactly {three} games {percent(alike['three'])}, with "
-            f"conflicts settled {percent(alike['three_resolved'])}",
+            f"groups of {teachers['count']} in which all are the same: "
+            f"{of_all(alike['end'], groups)}; after exactly {three} games "
+            f"{of_all(alike['three'], groups)}, with conflicts settled "
+            f"{of_all(alike['three_resolved'], groups)}",
             "The paper's teachers are not said to have erred; these get up to 5% of their "
             "commands wrong, and go on until every situation was shown.",
         ),
@@ -165,7 +192,7 @@ def _persuasion(document: Document) -> list[Row]:
         Row(
             "Interactions of a user in a game",
             str(asked),
-            f"{number(rate, 3)} ({document['games']} games)",
+            f"{number(rate, 3)} ({many(document['games'], 'game')})",
             f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}; a mean over "
             f"twenty games {_varies(document['interactions_sd_of_twenty_games'], four['n'])}. "
             "The rates of the simulated people were fitted to the twenty "
@@ -174,10 +201,10 @@ def _persuasion(document: Document) -> list[Row]:
         Row(
             "Optimal strategies over interactions (Fig. 5)",
             "rises to all of them, for each user",
-            f"{', '.join(percent(share) for share in last)} of the "
-            f"{len(document['users'][0]['optimal_share'])}th interactions, by user",
+            f"{', '.join(percent(share) for share in last)} at interaction "
+            f"{max(len(user['optimal_share']) for user in document['users'])}, by user",
             f"{_rising(document['users'])} The paper draws one run of each user; here it is the "
-            f"share of {document['groups']} runs. Thompson sampling never stops exploring "
+            f"share of {many(document['groups'], 'run')}. Thompson sampling never stops exploring "
             "altogether, so the share comes near to 100% and does not stay there.",
         ),
     ]

@@ -116,12 +116,16 @@ def mistakes(rows: Sequence[Mapping[str, Any]]) -> str:
     for axes, place in zip(figure.axes, places, strict=True):
         some = [row for row in rows if row["placed"] == place]
         rates = [100 * row["rate"] for row in some]
-        for key, label, ink, form in (
-            ("exact_before", "as they are", SERIES[0], "o-"),
-            ("exact_after", "conflicts settled", SERIES[1], "s--"),
+        # The first is broad with hollow marks, so that the second on top of it does not hide it.
+        broad = {"linewidth": 4, "markersize": 11, "markerfacecolor": "none"}
+        thin = {"linewidth": 1.2, "markersize": 4}
+        for key, label, ink, form, drawn in (
+            ("exact_before", "as they are", SERIES[0], "o-", broad),
+            ("exact_after", "conflicts settled", SERIES[1], "s--", thin),
         ):
-            axes.plot(rates, [row[key] for row in some], form, color=ink, label=label)
-        axes.set_ylim(-0.03, 1.05)
+            axes.plot(rates, [row[key] for row in some], form, color=ink, label=label, **drawn)
+        axes.set_ylim(-0.08, 1.08)
+        axes.set_yticks([0, 0.25, 0.5, 0.75, 1])
         _named(axes, f"Wrong answers: {place}", "wrong answers (%)", "policy exact")
     figure.legend(columns=2)
     return figure.svg()
@@ -138,7 +142,12 @@ def optimal_shares(users: Sequence[Mapping[str, Any]]) -> str:
         axes.plot(times, [100 * share for share in shares], color=SERIES[0], label="all runs")
         running = [100 * sum(one[: n + 1]) / (n + 1) for n in range(len(one))]
         axes.plot(
-            times, running, color=SERIES[1], linestyle="--", linewidth=1, label="one run, so far"
+            range(1, len(running) + 1),
+            running,
+            color=SERIES[1],
+            linestyle="--",
+            linewidth=1,
+            label="one run, so far",
         )
         axes.set_ylim(0, 102)
         _named(axes, f"{user['name']} ({user['best']})", "interaction", "optimal (%)")
@@ -172,11 +181,12 @@ def regrets(
         crowds: (title, method -> row); the first one gets the Lai-Robbins log term drawn in.
     """
     figure = Figure("regret", len(crowds), height=3.6)
+    beside = {name: 1.03 ** (place - len(names) / 2) for place, name in enumerate(names)}
     for axes, (title, methods) in zip(figure.axes, crowds, strict=True):
         for place, (name, row) in enumerate(methods.items()):
             times = [int(horizon) for horizon in row["regret"]]
             axes.errorbar(
-                times,
+                [time * beside[name] for time in times],  # so that equal ones do not hide another
                 list(row["regret"].values()),
                 yerr=list(row["regret_se"].values()),
                 color=SERIES[place % len(SERIES)],

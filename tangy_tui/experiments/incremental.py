@@ -18,6 +18,7 @@ from tangy_tui.experiments.classroom import (
     Course,
     about,
     activity_of,
+    course_number,
     is_exact,
     learnt,
     taught,
@@ -42,7 +43,7 @@ def until_exact(settings: Settings, case: Case) -> dict[str, Any]:
     """
     games, users, seed = case
     activity = activity_of(settings["activity"])
-    course = Course(settings["activity"], users, games, seed)
+    course = Course(settings["activity"], users, games, course_number("demonstrations", seed))
     shown, flags = [], []
     exact = False
     for demonstration in islice(taught(course), 1 if games == GUIDED else settings["most"]):

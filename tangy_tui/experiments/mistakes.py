@@ -21,6 +21,7 @@ from tangy_tui.experiments.classroom import (
     Course,
     about,
     activity_of,
+    course_number,
     covered,
     is_exact,
     learnt,
@@ -34,7 +35,6 @@ from tangy_tui.experiments.teachers import resolved
 from tangy_tui.learning.conflicts import find_conflicts
 
 RATES = (0.01, 0.02, 0.03, 0.05)
-FIRST_COURSE = 2_000_000
 PLACES = ("anywhere", "commonest", "rarest")
 
 
@@ -50,7 +50,8 @@ def with_mistakes(settings: Settings, case: Case) -> dict[str, Any]:
     rate, place, seed = case
     activity = activity_of(settings["activity"])
     clean: list[Demonstration] = []
-    for demonstration in taught(Course(settings["activity"], USERS, RANDOM, FIRST_COURSE + seed)):
+    course = Course(settings["activity"], USERS, RANDOM, course_number("mistakes", seed))
+    for demonstration in taught(course):
         clean.append(demonstration)
         if len(clean) >= int(SCENARIO_ONE["demonstrations"]) and covered(activity, clean):
             break

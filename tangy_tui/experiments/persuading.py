@@ -17,6 +17,7 @@ from typing import Any
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
+from tangy_profiles.reading import plain
 from tangy_sim.compliance import preferences_in_turn
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
@@ -41,7 +42,7 @@ SHOWN = 60
 """Interactions of each person that Fig. 5 is drawn over."""
 
 LONGEST = 2_000
-"""Games after which somebody who has not converged is counted as such."""
+"""Games after which somebody who has not converged is counted as such, and left."""
 
 GROUPS_A_PIECE = 5
 MOST_GUIDED = 8
@@ -66,6 +67,22 @@ def policy_of(activity: str, users: int) -> Policy:
         if covered(activity_of(activity), shown):
             return learnt(activity_of(activity), shown)
     raise TangyError(f"{MOST_GUIDED} guided games do not show all that is expected.")
+
+
+def check(name: str) -> None:
+    """See, before anything is worked at, that there is something to persuade people of.
+
+    Raises:
+        TangyError: no behaviour that is expected persuades.
+    """
+    about(name)  # which says whether anything is expected
+    activity = activity_of(name)
+    expected = [activity.behaviours[name] for name in activity.expected.values()]
+    if not any(behaviour.persuades and behaviour.attends for behaviour in expected):
+        raise TangyError(
+            plain(f"{activity.title}: nothing that is expected persuades anybody, ")
+            + "so there is nothing to learn here."
+        )
 
 
 def play(settings: Settings, case: Case) -> list[dict[str, Any]]:
@@ -133,7 +150,12 @@ def suboptimal_before_convergence(optimal: Sequence[bool], in_a_row: int = CONVE
 
 
 def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict[str, Any]:
-    """Play with many groups of people and say what Scenario 2 says of its four."""
+    """Play with many groups of people and say what Scenario 2 says of its four.
+
+    Raises:
+        TangyError: nobody is ever persuaded in this activity.
+    """
+    check(activity)
     settings = {**about(activity), "users": users}
     cases = [
         (seed * 1_000_000 + at, min(GROUPS_A_PIECE, groups - at))
@@ -141,6 +163,12 @@ def run(activity: str, users: int, groups: int, seed: int, where: Where) -> dict
     ]
     pieces = Sweep("persuading", play, settings, cases).run(where)
     return _document(activity, users, [group for piece in pieces for group in piece])
+
+
+def _shares(runs: Sequence[str]) -> list[float]:
+    """Return the share of optimal strategies at each interaction, of the runs that came so far."""
+    columns = ([run[at] for run in runs if len(run) > at] for at in range(SHOWN))
+    return [column.count("1") / len(column) for column in columns if column]
 
 
 def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -152,6 +180,12 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
     everybody = [count for group in groups for count in group["suboptimal"]]
     converged = [count for count in everybody if count is not None]
     games = sum(group["games"] for group in groups)
+    for place, person in enumerate(people):
+        if not any(group["optimal"][place] for group in groups):
+            raise TangyError(
+                plain(f"{person.name} was never persuaded in {games} games of {activity.title}, ")
+                + "so nothing can be said."
+            )
     rates = [sum(group["interactions"]) / group["games"] / users for group in groups]
     interactions = sum(sum(group["interactions"]) for group in groups)
     return {
@@ -159,10 +193,7 @@ def _document(name: str, users: int, groups: Sequence[Mapping[str, Any]]) -> dic
             {
                 "name": person.name,
                 "best": max(preferences[person.id], key=preferences[person.id].__getitem__),
-                "optimal_share": [
-                    sum(group["optimal"][place][at] == "1" for group in groups) / len(groups)
-                    for at in range(SHOWN)
-                ],
+                "optimal_share": _shares([group["optimal"][place] for group in groups]),
                 "one_run": [int(digit) for digit in groups[0]["optimal"][place]],
             }
             for place, person in enumerate(people)

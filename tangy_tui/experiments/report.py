@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tangy_tui.experiments import figures
-from tangy_tui.experiments.comparison import compare, number, percent
+from tangy_tui.experiments.comparison import compare, many, number, percent
 from tangy_tui.experiments.page import document as page
 from tangy_tui.experiments.page import figure, heading, paragraph, table
 
@@ -60,7 +60,7 @@ def _learning(document: Document) -> Iterator[str]:
     yield heading("How many demonstrations")
     yield figure(
         figures.demonstrations(document),
-        f"{seeds} sequences of games; the bars of uncertainty are 95% intervals.",
+        f"{many(seeds, 'sequence')} of games; the bars of uncertainty are 95% intervals.",
     )
     yield paragraph(
         "A policy counts as exact when it does what is expected in every joint state that can "
@@ -87,9 +87,9 @@ def _learning(document: Document) -> Iterator[str]:
 def _teachers(teachers: Document) -> Iterator[str]:
     yield heading("Different teachers")
     yield paragraph(
-        f"{teachers['groups']} groups of {teachers['count']} simulated teachers, each with games "
-        "of their own. They go on after the third while a situation was not shown yet, and then "
-        "say of each conflict which answer is right."
+        f"{many(teachers['groups'], 'group')} of {teachers['count']} simulated teachers, each with "
+        "games of their own. They go on after the third while a situation was not shown yet, and "
+        "then say of each conflict which answer is right."
     )
     yield table(
         (
@@ -112,17 +112,23 @@ def _teachers(teachers: Document) -> Iterator[str]:
 
 def _mistakes(rows: Any) -> Iterator[str]:
     yield heading("Wrong answers")
-    yield figure(figures.mistakes(rows), f"{rows[0]['n']} sequences for each point.")
+    yield figure(
+        figures.mistakes(rows),
+        f"{many(rows[0]['n'], 'sequence')} for each point. Where both are the same, the dashes "
+        "lie on the broad line.",
+    )
     yield paragraph(
         "A share of the answers is made wrong: anywhere, in the commonest situation, or in the "
         "rarest ones, where each keeps one right answer. What was only ever answered wrongly "
         "contradicts nothing, and cannot be found in demonstrations alone. While a conflict is "
-        "open its decision is flagged, right or wrong."
+        "open its decision is flagged, right or wrong: Tangy asks about right ones, too. "
+        + _asked_in_vain(rows)
     )
     yield table(
         (
             "wrong", "where", "n", "conflicts", "found", "no right answer left",
-            "wrong decisions flagged", "exact", "exact once settled", "right flagged once settled",
+            "wrong decisions flagged", "right flagged", "exact", "exact once settled",
+            "right flagged once settled",
         ),
         [
             (
@@ -133,6 +139,7 @@ def _mistakes(rows: Any) -> Iterator[str]:
                 percent(row["conflicts_found"]),
                 row["no_right_answer_left"],
                 _of(row["before"]["wrong_flagged"], row["before"]["wrong"]),
+                percent(row["before"]["right_flagged"]),
                 percent(row["exact_before"]),
                 percent(row["exact_after"]),
                 percent(row["after"]["right_flagged"]),
@@ -140,6 +147,20 @@ def _mistakes(rows: Any) -> Iterator[str]:
             for row in rows
         ],
     )  # fmt: skip
+
+
+def _asked_in_vain(rows: Any) -> str:
+    """Say which share of the right decisions is flagged, before conflicts are settled and after."""
+
+    def share(when: str) -> float | None:
+        flags = [row[when] for row in rows if row["rate"] and row[when]["right"]]
+        right = sum(flag["right"] for flag in flags)
+        return sum(f["right"] * f["right_flagged"] for f in flags) / right if right else None
+
+    return (
+        f"Before conflicts are settled {percent(share('before'))} of the right decisions are "
+        f"flagged, and afterwards {percent(share('after'))}."
+    )
 
 
 def _of(share: float | None, n: int) -> str:
@@ -173,14 +194,14 @@ def _persuasion(document: Document) -> Iterator[str]:
     yield heading("Optimal strategies over interactions")
     yield figure(
         figures.optimal_shares(document["users"]),
-        f"For each user, the share of {document['groups']} runs in which the interaction's "
+        f"For each user, the share of {many(document['groups'], 'run')} in which the interaction's "
         "strategy was the user's best (line), and one run's percentage so far (dashes).",
     )
     yield heading("Before convergence")
     yield figure(
         figures.before_convergence(document),
-        f"{before['n']} people; converged is whoever had {before['converged_means_in_a_row']} "
-        "optimal strategies in a row.",
+        f"{many(before['n'], 'person', 'people')} who converged, which is who had "
+        f"{before['converged_means_in_a_row']} optimal strategies in a row.",
     )
     yield from _methods(document)
 
@@ -209,19 +230,20 @@ def _methods(document: Document) -> Iterator[str]:
         means = crowds[name]["means"]
         rates = f" (means {', '.join(f'{mean:g}' for mean in means)})" if means else ""
         yield paragraph(f"{name.capitalize()}: {crowds[name]['words']}{rates}; n = {first['n']}.")
-        yield _regret_table(document[key], first, document["change"] if name == "drifting" else 0)
+        yield _regret_table(document[key], first, document["change"])
 
 
 def _regret_table(methods: Document, first: Document, change: int) -> str:
+    """Return a table of the methods; those of all crowds have the same columns."""
     horizons = list(first["regret"])
     base = first["regret"]
     return table(
         (
             "method",
             *(f"regret at {horizon}" for horizon in horizons),
-            "of Thompson's at 60",
+            "of the paper's at 60",
             "optimal",
-            *([f"optimal in the {change} after the change"] if change else []),
+            f"optimal in {change + 1} to {2 * change}",
         ),
         [
             (
@@ -231,8 +253,8 @@ def _regret_table(methods: Document, first: Document, change: int) -> str:
                     for h in horizons
                 ),
                 number(row["regret"]["60"] / base["60"]) if base["60"] else "",
-                percent(round(row["optimal_share"], 4)),
-                *([percent(round(row["optimal_share_after_change"], 4))] if change else []),
+                percent(row["optimal_share"]),
+                percent(row["optimal_share_after_change"]),
             )
             for name, row in methods.items()
         ],

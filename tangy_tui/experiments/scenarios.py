@@ -15,12 +15,9 @@ from tangy_tui.experiments import (
     teachers,
     typing,
 )
-from tangy_tui.experiments.classroom import activity_of
+from tangy_tui.experiments.classroom import SEED_SPACE, activity_of
 from tangy_tui.experiments.provenance import code_digest, versions
 from tangy_tui.experiments.sweep import Where
-
-SEED_SPACE = 10_000
-"""Seeds that belong to one --seed, so that two of them never share a game."""
 
 A_GROUP_OF = 5
 """Of the seeds, one in so many has its own five teachers."""

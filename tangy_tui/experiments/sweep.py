@@ -163,12 +163,15 @@ def _on_cores(jobs: int, sweep: Sweep, cases: list[Case]) -> Iterator[tuple[int,
 
     parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
     yield from parallel(
-        delayed(_one)(index, sweep.piece, sweep.settings, case) for index, case in enumerate(cases)
+        delayed(_one)(os.getpid(), index, sweep.piece, sweep.settings, case)
+        for index, case in enumerate(cases)
     )
 
 
-def _one(index: int, piece: Piece, settings: Settings, case: Case) -> tuple[int, Any]:
+def _one(of: int, index: int, piece: Piece, settings: Settings, case: Case) -> tuple[int, Any]:
+    """Work at one piece for the process `of`, which on a single core is this one."""
     import signal
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that hands out work
+    if os.getpid() != of:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who hands out the work
     return index, piece(settings, case)

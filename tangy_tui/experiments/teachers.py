@@ -17,6 +17,7 @@ from tangy_tui.experiments.classroom import (
     Course,
     about,
     activity_of,
+    course_number,
     covered,
     is_exact,
     learnt,
@@ -33,9 +34,6 @@ from tangy_tui.learning.policy import Policy
 
 FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
 """Games that a teacher gives at least and at most."""
-
-FIRST_COURSE = 1_000_000
-"""So that teachers have games that no other part of the experiment has."""
 
 
 def resolved(activity: Activity, shown: Sequence[Demonstration]) -> list[Resolution]:
@@ -62,7 +60,8 @@ def teach(settings: Settings, case: Case) -> dict[str, Any]:
     """
     place, seed = case
     style, activity = STYLES[place], activity_of(settings["activity"])
-    course = Course(settings["activity"], USERS, RANDOM, FIRST_COURSE + len(STYLES) * seed + place)
+    number = course_number("teachers", seed, place, len(STYLES))
+    course = Course(settings["activity"], USERS, RANDOM, number)
     made: list[StyledTeacher] = []
 
     def make(teaching: Teaching) -> StyledTeacher:

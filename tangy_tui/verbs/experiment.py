@@ -34,7 +34,7 @@ Report = Annotated[
 
 @app.command("1")
 def first(
-    seeds: Annotated[int, typer.Option(min=1, help="Sequences of games.")] = 100,
+    seeds: Annotated[int, typer.Option(min=1, max=10_000, help="Sequences of games.")] = 100,
     users: Annotated[
         int | None, typer.Option(min=1, max=8, help="People in guided games, instead of 1 to 8.")
     ] = None,

@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tangy_tui.experiments import published
-from tangy_tui.experiments.comparison import compare
+from tangy_tui.experiments import figures, published
+from tangy_tui.experiments.comparison import compare, many, of_all, percent
 from tangy_tui.experiments.figures import INKS
 from tangy_tui.experiments.report import report
 from tests.experiments.conftest import Ran, run
@@ -111,6 +111,37 @@ def test_the_page_has_the_paper_beside_and_what_it_was_made_from(ran: Ran) -> No
 
 def test_a_page_is_made_of_its_document_alone(ran: Ran) -> None:
     assert report(ran.document) == ran.page
+
+
+def test_numbers_are_written_as_people_write_them() -> None:
+    written = {0.02899: "2.9%", 0.9235: "92.3%", 0.2: "20%", 1: "100%", 0: "0%"}
+    written |= {0.9996: ">99.9%", 0.0004: "<0.1%", 0.9989: "99.9%"}
+    assert {share: percent(share) for share in written} == written
+    assert percent(None) == "\N{EN DASH}"
+    assert (of_all(1.0, 1), of_all(0.4, 5)) == ("1 of 1", "2 of 5")
+    assert of_all(0.95, 20) == "19 of 20 (95%)"
+    assert (many(1, "sequence"), many(2000, "game")) == ("1 sequence", "2,000 games")
+
+
+def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran: Ran) -> None:
+    if ran.document["experiment"] == 1:
+        policies = compare(ran.document)[3].here
+        assert policies.startswith("groups of 5 in which all are the same: 1 of 1; after exactly 3")
+        assert "%" not in policies
+        assert re.search(r"Before conflicts are settled [\d.]+% of the right dec", ran.page)
+        assert "1 sequence of games" in ran.page
+    else:
+        for crowd in ("algorithms", "uneven", "drifting"):
+            assert ran.document[crowd]
+        assert ran.page.count("optimal in 101 to 200</th>") == 3, "tables that are alike"
+
+
+def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None:
+    if ran.document["experiment"] == 1:
+        drawing = figures.mistakes(ran.document["teachers"]["with_mistakes"])
+        assert drawing.count("stroke-width: 4") == 3 + 1, (
+            "a broad line in each panel and the legend"
+        )
 
 
 def test_words_follow_the_numbers(ran: Ran) -> None:

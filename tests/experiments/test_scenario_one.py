@@ -11,7 +11,7 @@ import pytest
 
 from tangy_profiles.state import FRONT
 from tangy_tui.experiments import incremental, mistakes, teachers
-from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of, taught
+from tangy_tui.experiments.classroom import GUIDED, RANDOM, SEED_SPACE, Course, activity_of, taught
 from tangy_tui.experiments.estimates import share_interval, summary
 from tangy_tui.experiments.styles import STYLES, StyledTeacher, anybody, by_seat, last_come, nearest
 from tangy_tui.learning.demonstrating import Teaching
@@ -90,6 +90,28 @@ def test_whom_teachers_go_to_first() -> None:
     assert nearest(asking, SEATS, FRONT, rng) == "c"
     assert nearest(asking, SEATS, "b", rng) == "a"
     assert {anybody(asking, SEATS, FRONT, rng) for _ in range(50)} == set(asking)
+
+
+def test_no_two_parts_and_no_two_seeds_share_a_game(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Begun(Exception):
+        """A course that was begun, instead of being taught."""
+
+    def begin(course: Course, *_: object) -> None:
+        raise Begun(course.seed)
+
+    for module in (incremental, mistakes, teachers):
+        monkeypatch.setattr(module, "taught", begin)
+    courses = []
+    for seed in (s * SEED_SPACE + n for s in (0, 1, 25, 100) for n in (0, 1, 9, SEED_SPACE - 1)):
+        for piece, case in (
+            (incremental.until_exact, (RANDOM, 4, seed)),
+            (mistakes.with_mistakes, (0.01, "anywhere", seed)),
+            *((teachers.teach, (place, seed)) for place in range(len(STYLES))),
+        ):
+            with pytest.raises(Begun) as begun:
+                piece(SETTINGS, case)
+            courses.append(begun.value.args[0])
+    assert len(courses) == len(set(courses)) == 16 * 7
 
 
 def test_teachers_differ_in_what_they_do_and_not_in_what_is_learnt() -> None:

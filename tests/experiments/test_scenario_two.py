@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from random import Random
 
 import pytest
 
-from tangy_tui.experiments import algorithms, persuading
+from tangy_profiles.errors import TangyError
+from tangy_tui.experiments import algorithms, figures, persuading, published
+from tangy_tui.experiments.comparison import compare
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.interaction.methods import BayesUcb, Thompson
 
 SEED = 31
+LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 
 def test_the_first_run_of_ten_is_convergence() -> None:
@@ -39,6 +43,40 @@ def test_a_group_comes_out_the_same_alone_and_among_others() -> None:
     settings = {"activity": "bingo", "users": 3}
     together = persuading.play(settings, (SEED, 3))
     assert persuading.play(settings, (SEED + 1, 1)) == together[1:2]
+
+
+def test_where_nothing_persuades_it_is_said_before_any_game(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mine = tmp_path / "mine.toml"
+    text = LANTERNS.read_text(encoding="utf-8").replace("persuades = true", "persuades = false")
+    mine.write_text(text, encoding="utf-8")
+    monkeypatch.setattr(persuading, "_group", None)
+    with pytest.raises(TangyError, match="nothing that is expected persuades anybody"):
+        persuading.run(str(mine), 2, 1, SEED, Where(jobs=1))
+    persuading.check(str(LANTERNS))
+
+
+def test_who_has_few_interactions_or_never_converges_is_told_of_as_such(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(persuading, "LONGEST", 4)
+    played = persuading.run("bingo", 4, 2, SEED, Where(jobs=1))
+    assert all(0 < len(user["optimal_share"]) < persuading.SHOWN for user in played["users"])
+    before = played["suboptimal_before_convergence"]
+    assert (before["n"], before["mean"], before["never"]) == (0, None, 8)
+    first, *_ = compare({**played, "experiment": 2, "paper": dict(published.SCENARIO_TWO)})
+    assert "8 never converged" in first.here
+    assert first.words == "Nobody converged here, so there is nothing to compare."
+    assert figures.optimal_shares(played["users"]).startswith("<svg")
+    document = {**played, "paper": dict(published.SCENARIO_TWO)}
+    assert figures.before_convergence(document).startswith("<svg")
+
+
+def test_who_was_never_persuaded_ends_it_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(persuading, "LONGEST", 0)
+    with pytest.raises(TangyError, match="was never persuaded in 0 games of Bingo"):
+        persuading.run("bingo", 4, 1, SEED, Where(jobs=1))
 
 
 def test_everybody_answers_all_methods_alike() -> None:

@@ -110,12 +110,15 @@ def test_killed_at_any_moment_it_loses_only_what_was_being_done(tmp_path: Path, 
     )
 
 
-def test_ctrl_c_ends_at_once_and_says_how_to_go_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize("cores", [1, 2])
+def test_ctrl_c_ends_at_once_and_says_how_to_go_on(tmp_path: Path, cores: int) -> None:
     tangy = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
-    words = ["experiment", "1", "--seeds", "200", "--users", "4", "--no-typing", "--jobs", "2"]
+    words = ["experiment", "1", "--seeds", "200", "--users", "4", "--no-typing"]
+    words += ["--jobs", "-1" if cores == 1 else "2"]
     child = subprocess.Popen(  # noqa: S603 - our own interpreter
         [*tangy, *words, "--json", "--data", str(tmp_path)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        env={**os.environ, "LOKY_MAX_CPU_COUNT": str(cores)},
     )  # fmt: skip
     deadline = monotonic() + 30
     while monotonic() < deadline and not _kept(tmp_path):
