@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import asyncio
+import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from subprocess import CompletedProcess
 from tempfile import TemporaryDirectory
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Response
 from tangy_profiles.store import Store
-from tangy_tui.game_lines import belief_lines, play_by_lines
+from tangy_tui.game_lines import belief_lines, game_lines, play_by_lines
 from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Learnt
 from tangy_tui.learning.demonstrating import Again
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.verifying import Reply, Say
 from tangy_tui.lines import TeachingLines, command_line
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+Tangy = Callable[..., CompletedProcess[str]]
 
 
 def told(
@@ -164,6 +170,19 @@ def test_the_command_that_goes_on_names_what_is_not_usual() -> None:
     assert command_line("learn", data="ab").isprintable()
 
 
+def test_the_command_that_is_told_goes_on_where_it_was_left(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("USER", "me")
+    at = ("--data", tmp_path / "d")
+    for who, name in ((("--teacher", "Ada Lovelace"), " --teacher 'Ada Lovelace'"), ((), "")):
+        left = tangy("teach", "--plain", *who, *at, stdin="greet everyone\ny\nquit\n").stdout
+        command = f"tangy teach{name} --data {tmp_path / 'd'}"
+        assert left.endswith(f"is kept: `{command}` goes on from here.\n")
+        again = tangy(*shlex.split(command)[1:], stdin="quit\n").stdout
+        assert "Going on with " in again
+
+
 def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(house: House) -> None:
     said = told(house, "qwertz \x1b[2J")
     assert said[3].startswith("I do not know what ")
@@ -234,6 +253,21 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, co
     assert said[-4:] == belief_lines(facilitation, house.name)
     assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
     assert all(line.isprintable() for line in said)
+
+
+def test_what_counts_as_no_is_said_to(house: House, cover: Cover) -> None:
+    policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
+    facilitation = house.facilitation(policy, 3)
+
+    def line(*, followed: bool, complied: bool) -> str:
+        response = Response("user2", "praise", followed, complied, 12.0)
+        return game_lines(Learnt(response, Beta(1, 2)), facilitation, house.name)[0]
+
+    assert line(followed=True, complied=True).startswith("   User 2 complied (praise now ")
+    late = "   User 2 followed, but late, which counts as no (praise now "
+    assert line(followed=True, complied=False).startswith(late)
+    never = "   User 2 did not follow, which counts as no (praise now "
+    assert line(followed=False, complied=False).startswith(never)
 
 
 def test_a_stopped_game_says_why(house: House, cover: Cover) -> None:
