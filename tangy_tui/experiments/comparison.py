@@ -114,11 +114,18 @@ def _learning(document: Document) -> list[Row]:
     three = str(paper["demonstrations"])
     teachers, typed = document["teachers"], document["typing"]
     alike, groups, seeds = teachers["identical_share"], teachers["groups"], document["seeds"]
+
+    def some(share: float) -> str:
+        return percent(share) if seeds >= ENOUGH else str(round(share * seeds))
+
+    def people(count: str) -> str:
+        return many(int(count), "person", "people")
+
     return [
         Row(
             "Demonstrations needed, games by chance",
             f"{three} (one teacher, one sequence of games)",
-            f"exact after 1, 2, 3, 4: {', '.join(percent(within[n]) for n in sorted(within))} "
+            f"exact after 1, 2, 3, 4: {', '.join(some(within[n]) for n in sorted(within))} "
             f"of {many(seeds, 'sequence')}",
             f"Sequences in which {three} are enough: {of_all(within[three], seeds)}; in which one "
             f"alone is: {of_all(within['1'], seeds)}. How many it takes is a matter of luck with "
@@ -128,7 +135,7 @@ def _learning(document: Document) -> list[Row]:
             "Demonstrations needed when one shows every situation",
             str(paper["demonstrations_all_shown"]),
             f"exact after 1: {percent(guided['exact_after_one'])} "
-            f"({', '.join(f'{n}: {percent(s)}' for n, s in guided['by_users'].items())} by people)",
+            f"({', '.join(f'{people(n)} {percent(s)}' for n, s in guided['by_users'].items())})",
             "Agrees." if guided["exact_after_one"] == 1 else "Some needed more: see the table.",
         ),
         Row(

@@ -75,6 +75,10 @@ def _named(axes: Any, title: str, across: str, up: str) -> None:
     axes.set_ylabel(up, color=INK, fontsize=9)
 
 
+def _counted(axes: Any) -> None:
+    axes.yaxis.get_major_locator().set_params(integer=True)  # there is no half of a person
+
+
 def _papers(axes: Any, at: float, words: str) -> None:
     axes.axvline(at, color=INK, linewidth=1.2, linestyle="--", label=words)
     axes.set_ylim(top=1.2 * axes.get_ylim()[1])  # room for the legend
@@ -104,6 +108,7 @@ def demonstrations(document: Mapping[str, Any]) -> str:
     lengths = document["behaviours"]["all"]
     second.hist(lengths, bins=range(0, max(lengths) + 6, 5), color=SERIES[0])
     second.set_xlim(left=max(0, min(lengths) - 5))
+    _counted(second)
     _named(second, "Length of a demonstration by chance", "behaviours", "demonstrations")
     _papers(second, document["paper"]["behaviours_per_demonstration"], "the paper's mean")
     return figure.svg()
@@ -163,6 +168,7 @@ def before_convergence(document: Mapping[str, Any]) -> str:
     (axes,) = figure.axes
     counts = document["suboptimal_before_convergence"]["all"]
     axes.hist(counts, bins=range(max(counts, default=0) + 2), color=SERIES[0], align="left")
+    _counted(axes)
     _named(axes, "Sub-optimal strategies before convergence", "strategies", "people")
     _papers(
         axes, document["paper"]["suboptimal_before_convergence"], "the paper's mean of four users"

@@ -231,6 +231,17 @@ def _methods(document: Document) -> Iterator[str]:
         rates = f" (means {', '.join(f'{mean:g}' for mean in means)})" if means else ""
         yield paragraph(f"{name.capitalize()}: {crowds[name]['words']}{rates}; n = {first['n']}.")
         yield _regret_table(document[key], first, document["change"])
+        yield paragraph(_with_prior(document[key]))
+
+
+def _with_prior(methods: Document) -> str:
+    """Say of each method by its name what it gains by beginning from earlier people."""
+    gains = []
+    for name in ("thompson", "bayes_ucb"):
+        alone, lent = (methods[n]["regret"]["60"] for n in (name, f"{name}_prior"))
+        share = f" ({percent(lent / alone)})" if alone else ""
+        gains.append(f"{METHOD_WORDS[name]} {number(lent)} instead of {number(alone)}{share}")
+    return f"Regret at 60 when it begins from earlier people: {'; '.join(gains)}."
 
 
 def _regret_table(methods: Document, first: Document, change: int) -> str:

@@ -134,6 +134,8 @@ def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran:
         for crowd in ("algorithms", "uneven", "drifting"):
             assert ran.document[crowd]
         assert ran.page.count("optimal in 101 to 200</th>") == 3, "tables that are alike"
+        told = re.findall(r"begins from earlier people: Thompson .*?; Bayes-UCB .*?<", ran.page)
+        assert len(told) == 3, "what is gained is said of each method by its name"
 
 
 def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None:
