@@ -148,6 +148,12 @@ def test_a_reason_of_undecodable_bytes_is_kept_and_shown_all_the_same(people: Ta
     assert history[0]["why"] == "sl\N{REPLACEMENT CHARACTER}ept"
 
 
+def test_undo_says_what_it_takes_back(people: Tangy) -> None:
+    told = " ".join(people("undo", "--help").stdout.split())
+    assert "Take back the last void, feedback, switch or method of a person" in told
+    assert "A name is not taken back: rename again." in told
+
+
 def test_undecodable_bytes_are_replaced_in_every_name_that_is_kept(
     tangy: Tangy, taught: Path
 ) -> None:
