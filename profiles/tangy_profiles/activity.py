@@ -160,7 +160,9 @@ class Activity:
         )
 
     def fill(self, template: str, name: str, numbers: tuple[int, ...]) -> str:
-        """Put name and numbers into a speech or a screen text."""
+        """Put name and numbers into a text; "" where it needs numbers and there are none."""
+        if not numbers and ("{numbers}" in template or "{call}" in template):
+            return ""
         labels = [self.deck.label(number) for number in numbers]
         return template.format(
             name=name, call=labels[0] if labels else "", numbers=", ".join(labels)

@@ -110,7 +110,7 @@ class LogFile:
             problem = f"cannot be used ({error}); choose another folder with --data"
             if _tells_damage(error):
                 self.damaged = True
-                problem = "is damaged; start Tangy again: it is set aside, and a new one begun"
+                problem = "is damaged; `tangy teach` sets it aside, and begins a new one"
             if "is full" in str(error):
                 problem = "could not be added to, for the disk is full; make room and try again"
             raise self.wrong(problem) from None

@@ -19,6 +19,9 @@ from tangy_profiles.tracker import Tracker
 from tangy_sim.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
 
+MENDS = frozenset(("clear wrong marks", "set missing marks"))
+"""Effects that come to nothing where nothing is wrong with the card, or it cannot be seen."""
+
 
 class SimulatedWorld:
     """One room with a simulated group. `begin` starts each game; `execute` runs a behaviour.
@@ -89,8 +92,10 @@ class SimulatedWorld:
         beside = tracker.place
         effect = self._effects.get(behaviour.effect)
         numbers = effect(action) if effect is not None else ()
+        if not numbers and behaviour.effect in MENDS:
+            succeeded = False  # there was nothing to mend
         response: Response | None = None
-        if behaviour.persuades and beside != FRONT:
+        if behaviour.persuades and beside != FRONT and succeeded:
             response = respond(
                 self.preferences,
                 beside,

@@ -22,6 +22,7 @@ from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.persuasion import Choice, Persuasion
 from tangy_tui.learning.asking import Answers, Lesson
 from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.demonstrating import NOTHING_SAID
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.verifying import Verifier
 from tangy_tui.world import World
@@ -260,7 +261,7 @@ class Facilitation:
             action,
             outcome,
             after,
-            activity.fill(action.speech, name, outcome.numbers),
+            activity.fill(action.speech, name, outcome.numbers) or NOTHING_SAID,
             activity.fill(action.image, name, outcome.numbers),
             outcome.completed and expected == behaviour.name,
         )

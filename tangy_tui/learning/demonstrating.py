@@ -33,6 +33,8 @@ from tangy_tui.learning.verifying import (
 )
 from tangy_tui.world import World
 
+NOTHING_SAID = "(nothing: there are no numbers to say)"
+
 MakeWorld: TypeAlias = Callable[[Demonstration], World]
 """Make the world of a demonstration (its seed, people, guided), ready at its first state."""
 
@@ -352,7 +354,7 @@ class Teaching:
                 step,
                 action,
                 outcome,
-                self.activity.fill(action.speech, name, outcome.numbers),
+                self.activity.fill(action.speech, name, outcome.numbers) or NOTHING_SAID,
                 self.activity.fill(action.image, name, outcome.numbers),
             )
         ]

@@ -50,6 +50,7 @@ class Program(TangyApp):
         self.house = house
         self._start = start
         self._busy = False
+        self._opening = False
 
     def on_mount(self) -> None:
         """Do what comes first."""
@@ -82,8 +83,8 @@ class Program(TangyApp):
     # ---------------------------------------------------------------------------------- ways
 
     def on_home_screen_chosen(self, event: HomeScreen.Chosen) -> None:
-        """Open what was chosen, unless something is being loaded."""
-        if self._busy:
+        """Open what was chosen, unless something is being opened: a key may come twice."""
+        if self._busy or self._opening or not isinstance(self.screen, HomeScreen):
             return
         match event.id:
             case "teach":
@@ -93,15 +94,27 @@ class Program(TangyApp):
             case "library":
                 self.library()
             case "learn":
-                self.run_worker(self._learn())
+                self._open(self._learn())
             case "play":
-                self.run_worker(self.play())
+                self._open(self.play())
             case "policy":
-                self.run_worker(self._show_policy())
+                self._open(self._show_policy())
             case "people":
                 self.people()
             case "demo":
-                self.run_worker(self._demo_aside())
+                self._open(self._demo_aside())
+
+    def _open(self, way: Coroutine[Any, Any, None]) -> None:
+        """Go a way that takes its time; nothing else is opened from home meanwhile."""
+        self._opening = True
+
+        async def go() -> None:
+            try:
+                await way
+            finally:
+                self._opening = False
+
+        self.run_worker(go())
 
     def teach(self, teaching: Teaching) -> None:
         """Open the teaching screen."""

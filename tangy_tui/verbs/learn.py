@@ -179,6 +179,7 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
 
 
 def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> None:
+    from tangy_tui.learning.coverage import NOT_SHOWN
     from tangy_tui.wording import counted
 
     activity = house.activity
@@ -189,6 +190,8 @@ def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> Non
         f"Learnt {policy.name!r} from {counted(len(policy.demonstrations), 'demonstration')} "
         f"({steps} steps): {seen} of {len(activity.situations)} situations were shown."
     )
+    if unseen:
+        print(NOT_SHOWN)
     for situation in unseen:
         print(f"  {activity.not_yet(situation)} ({activity.in_words(situation)})")
     if contested:

@@ -40,7 +40,9 @@ def doctor(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
 
     findings = examine(data_folder(data))
     if as_json:
-        print_json([{"part": f.part, "ok": f.ok, "text": f.text} for f in findings])
+        print_json(
+            [{"part": f.part, "ok": f.ok, "state": f.state, "text": f.text} for f in findings]
+        )
         return
     for finding in findings:
-        print(f"{'ok     ' if finding.ok else 'missing'}  {finding.part}: {finding.text}")
+        print(f"{finding.state:<7}  {finding.part}: {finding.text}")

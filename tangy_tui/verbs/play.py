@@ -80,9 +80,21 @@ def play(
             return
         from tangy_tui.game_lines import play_by_lines
         from tangy_tui.inputs import line_reader
+        from tangy_tui.learning.library import read_library
 
         read = None if scripted else line_reader(None)
-        play_by_lines(facilitation, games, house.name, print_line, read, who)
+        play_by_lines(
+            facilitation,
+            games,
+            house.name,
+            print_line,
+            read,
+            who,
+            demonstrations=lambda: [
+                entry.demonstration
+                for entry in read_library(house.store, house.activity.name).entries.values()
+            ],
+        )
 
 
 def demo(

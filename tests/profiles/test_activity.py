@@ -94,7 +94,9 @@ def test_every_speech_and_screen_can_be_filled_in(activity: Activity, lanterns: 
 def test_a_name_is_shown_as_it_is_and_never_filled_in(name: str) -> None:
     activity = load_activity("bingo")
     assert activity.fill("{name} {call} {numbers}", name, (5, 16)) == f"{name} B-5 B-5, I-16"
-    assert activity.fill("{name}{call}", name, ()) == name
+    assert activity.fill("{name}", name, ()) == name
+    assert activity.fill("{name}: {call}", name, ()) == ""
+    assert activity.fill("{name}: {numbers}", name, ()) == ""
 
 
 @pytest.mark.parametrize(

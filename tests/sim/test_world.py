@@ -247,3 +247,16 @@ def test_nothing_in_the_world_knows_bingo(
         assert names[-2:] == ["dim the lights", "wave off"]
         assert names.count("draw lantern") == 20
         made.begin()
+
+
+def test_mending_what_is_not_wrong_counts_as_not_done_and_asks_nobody() -> None:
+    made = world(3, model=USERS.teaching())
+    while made.observe().situation.user_state != "correctly marked":
+        if made.over:
+            made.begin()
+        made.execute(expected(made))
+    before = made.observe()
+    for name in ("mark numbers", "remove markers"):
+        outcome = made.execute(BINGO.action(BINGO.behaviours[name], before.attended, None))
+        assert (outcome.completed, outcome.numbers, outcome.response) == (False, (), None)
+        assert made.observe().situation == before.situation
