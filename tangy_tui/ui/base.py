@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any, ClassVar, TypeVar
 
 from textual import events
@@ -76,14 +77,34 @@ def cover_if_small(screen: Screen[Any]) -> None:
         screen.mount(Cover(sentence, screen.focused))
 
 
+async def on_top(screen: Screen[Any]) -> None:
+    """Wait until no dialog, help or other screen lies over a screen."""
+    while not screen.is_active:  # noqa: ASYNC110 - what lies over it may itself be covered
+        await asyncio.sleep(0.05)
+
+
 class TangyScreen(Screen[ResultT]):
-    """A screen of the program. `HELP` tells in a paragraph what it is for."""
+    """A screen of the program. `HELP` tells in a paragraph what it is for.
+
+    What has the keys keeps them while something lies over the screen; where nothing has them,
+    nothing takes them afterwards.
+    """
 
     DEFAULT_CSS = """
     TangyScreen { layers: default cover; overflow: hidden hidden; }
     """
     HELP: ClassVar[str] = ""
     ALLOW_IN_MAXIMIZED_VIEW = ".-textual-system,StatusLine,#keys,#command"
+
+    def close(self, result: ResultT) -> None:
+        """Dismiss the screen with a result, unless it is covered or has been dismissed already."""
+        if self.is_active:
+            self.dismiss(result)
+
+    def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
+        """Remember whether the keys were the screen's own, so that they are so again."""
+        auto = "" if self.focused is None else type(self).AUTO_FOCUS
+        self.AUTO_FOCUS = auto  # type: ignore[misc]
 
     def on_resize(self, event: events.Resize) -> None:
         """Cover the screen if it has too little room."""

@@ -31,7 +31,7 @@ from tangy_tui.learning.demonstrating import (
 from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
-from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.base import TangyScreen, on_top
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.foresight import show_why
@@ -171,7 +171,7 @@ class TeachScreen(TangyScreen[bool]):
             case "next":
                 self.action_next()
             case "quit" | "exit" | "leave":
-                self.dismiss(False)
+                self.close(False)
             case _:
                 self._apply(Say(event.text))
 
@@ -246,8 +246,6 @@ class TeachScreen(TangyScreen[bool]):
     def action_why(self) -> None:
         """Tell what Tangy would do in the chosen step's situation, or here, and why."""
         self.query_one(CommandBar).ready()
-        if self.focused is None:  # else the bar has the keys when the dialog is closed
-            self.query_one(Transcript).focus()
         present = self._teaching.demonstration
         number = self.query_one(Transcript).chosen
         state = (
@@ -266,6 +264,8 @@ class TeachScreen(TangyScreen[bool]):
 
     def action_leave(self) -> None:
         """Close what lies over the steps, let go of a chosen one, or go home; all is kept."""
+        if not self.is_active:
+            return  # it is covered, or has been left
         steps = self.query_one(Transcript)
         if self.has_class("-coverage", "-narrow"):
             self.remove_class("-coverage")
@@ -273,7 +273,7 @@ class TeachScreen(TangyScreen[bool]):
         elif steps.chosen is not None:
             steps.release()
         else:
-            self.dismiss(False)
+            self.close(False)
 
     async def action_learn(self) -> None:
         """Learn from all finished demonstrations, and show the policy."""
@@ -367,10 +367,11 @@ class TeachScreen(TangyScreen[bool]):
             self._log.write(str(error), "bad")
 
     async def _follow_script(self, pace: float) -> None:
-        """Let the scripted teacher type, and answer as a person would."""
+        """Let the scripted teacher type, and answer as a person would; dialogs make it wait."""
         teacher = ScriptedTeacher(self._teaching)
         bar = self.query_one(CommandBar)
         while not self._teaching.demonstration.finished:
+            await on_top(self)
             command = teacher.command()
             if isinstance(command, Say):
                 bar.restore(command.text)
@@ -381,4 +382,5 @@ class TeachScreen(TangyScreen[bool]):
             bar.restore("")
             self._tell(events)
             await asyncio.sleep(0.6 / pace)
-        self.dismiss(True)
+        await on_top(self)
+        self.close(True)
