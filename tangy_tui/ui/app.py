@@ -205,7 +205,10 @@ class TangyApp(App[None]):
         self.mouse = on
 
     def say(self, sentence: str, *, bad: bool = False) -> None:
-        """Show a sentence for a few seconds."""
+        """Show a sentence for a few seconds, unless the screen has a better place for it."""
+        take = getattr(self.screen, "take_sentence", None)
+        if take is not None and take(sentence):
+            return
         self.notify(clean(sentence), severity="error" if bad else "information", markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:

@@ -19,7 +19,8 @@ from tangy_tui.interaction.facilitation import (
     Unsure,
 )
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.reasons import Ground
+from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
@@ -42,6 +43,8 @@ class GamePicture:
     def __init__(self, screen: Screen[Any], house: House, facilitation: Facilitation) -> None:
         self.grounds: list[Ground] = []
         """What each step of the present game rested on."""
+        self.lesson = ""
+        """What was learnt from the last answer, until the next question has said it."""
         self._stage = ""
         self._step: int | None = None
         self._game: int | None = None
@@ -66,6 +69,7 @@ class GamePicture:
                     self._screen.query_one(RoomView).say("")
                     self._screen.query_one(Transcript).clear()
                     self.grounds.clear()
+                    self.lesson = ""
                     self._stage, self._game, self._step = state.stage, number, None
                     self._show_scene(0, drive=False, pace=pace)
                 case Acted():
@@ -103,6 +107,24 @@ class GamePicture:
             )
         )
 
+    def why(self, chosen: int | None) -> WhyDialog | None:
+        """Tell why: of the chosen step, what Tangy asks, or the last step; None: there is none."""
+        question = self._facilitation.question
+        if chosen is None and question is not None:
+            return why_asked(self._house, self._policy, question.state.situation)
+        return self.why_step(len(self.grounds) if chosen is None else chosen)
+
+    def why_step(self, number: int) -> WhyDialog | None:
+        """Tell why a step of this game was done; None: there is no such step."""
+        if not 1 <= number <= len(self.grounds):
+            return None
+        return why_step(self._house, self.grounds[number - 1], number)
+
+    def why_row(self, index: int) -> WhyDialog:
+        """Tell why, for a row of the policy."""
+        situation = self._house.activity.situations[index]
+        return why_row(self._house, self._policy, situation)
+
     def _show_step(self, event: Acted, teacher: str, pace: float) -> None:
         house, screen = self._house, self._screen
         self.grounds.append(Ground(self._policy, event, teacher))
@@ -130,8 +152,9 @@ class GamePicture:
         log = self._screen.query_one(LogView)
         log.write(learnt, "good")
         log.write(lesson.replay.words(), "warn" if lesson.replay.changed else "good")
+        self.lesson = clean(f"{learnt} {lesson.replay.words()}")
         self._screen.notify(
-            clean(f"{learnt} {lesson.replay.words()}"),
+            self.lesson,
             severity="warning" if lesson.replay.changed else "information",
             timeout=TAUGHT_SECONDS,
             markup=False,

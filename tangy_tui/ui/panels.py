@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+from textual import events
 from textual.widget import Widget
 from textual.widgets import Static
 
@@ -20,17 +21,46 @@ LOW = [(0, "-low"), (22, "-tall")]
 """The class a screen has below 22 lines, where every line counts."""
 
 
-def key_line(*keys: tuple[str, str]) -> Static:
-    """Make the last line of a screen: its keys, each with a word on what it does."""
-    from textual.content import Content
+ALWAYS_SHOWN = 2
+"""Keys at the end of a key line that stay where there is no room for all: esc and ?."""
 
-    parts: list[str | tuple[str, str]] = []
-    for key, word in keys:
-        parts += [("  " if parts else "", ""), (key, "$primary bold"), (f" {word}", "$ink-dim")]
-    line = Static(Content.assemble(*parts), id="keys")
-    line.styles.height = 1
-    line.styles.padding = (0, 1)
-    return line
+
+class KeyLine(Static):
+    """The keys of a screen on one line; the last ones before esc and ? go where room is short."""
+
+    DEFAULT_CSS = """
+    KeyLine { height: 1; padding: 0 1; }
+    """
+
+    def __init__(self, *keys: tuple[str, str]) -> None:
+        super().__init__(id="keys")
+        self._keys = keys
+
+    def show(self, *keys: tuple[str, str]) -> None:
+        """Show other keys."""
+        self._keys = keys
+        self._write()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Show as many as there is room for."""
+        self._write()
+
+    def _write(self) -> None:
+        from textual.content import Content
+
+        first, last = list(self._keys[:-ALWAYS_SHOWN]), self._keys[-ALWAYS_SHOWN:]
+        width = self.size.width
+        while first and sum(len(key) + len(word) + 3 for key, word in (*first, *last)) - 2 > width:
+            first.pop()
+        parts: list[str | tuple[str, str]] = []
+        for key, word in (*first, *last):
+            parts += [("  " if parts else "", ""), (key, "$primary bold"), (f" {word}", "$ink-dim")]
+        self.update(Content.assemble(*parts), layout=False)
+
+
+def key_line(*keys: tuple[str, str]) -> KeyLine:
+    """Make the last line of a screen: its keys, each with a word on what it does."""
+    return KeyLine(*keys)
 
 
 def panel(widget: WidgetT, title: str = "") -> WidgetT:

@@ -35,7 +35,11 @@ def comparison_options(store: Store, activity: Activity) -> list[Option]:
     for shown in read_library(store, activity.name).finished:
         given[shown.teacher] = given.get(shown.teacher, 0) + 1
     options += [
-        Option(f"teacher:{teacher}", teacher, f"what {counted(times, 'demonstration')} teach")
+        Option(f"teacher:{teacher}", teacher, _taught_words(times))
         for teacher, times in given.items()
     ]
     return options
+
+
+def _taught_words(times: int) -> str:
+    return f"what {counted(times, 'demonstration')} {'teaches' if times == 1 else 'teach'}"

@@ -8,12 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from rich.cells import cell_len
 from textual.app import App
 from textual.widgets import Static
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.house import House
 from tangy_tui.learning.library import Library, read_library
+from tangy_tui.learning.listing import list_rows
 from tangy_tui.learning.policies import last_policy, load_policy
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.words import WordsDialog
@@ -25,6 +27,7 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.policy import PolicyScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.widgets.demonstration_list import demonstration_lines
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot
@@ -173,9 +176,63 @@ async def test_one_is_split_after_the_chosen_step(run: Run, house: House) -> Non
 
 async def test_an_unfinished_one_cannot_be_merged_and_says_why(run: Run, house: House) -> None:
     async with run(app=program(house), notifications=True) as pilot:
-        await press(pilot, "i", "space", "down", "down", "space", "g", "y")
-        assert "not finished yet" in told(pilot)
+        await press(pilot, "i", "space", "down", "down", "space", "g")
+        assert isinstance(pilot.app.screen, DemonstrationsScreen)
+        refusal = "Demonstration 3 by Cem is not finished yet."
+        assert refusal in told(pilot)
+        assert str(pilot.app.screen.query_one("#notes", Static).render()) == refusal
+        await press(pilot, "up")
+        assert "2: in use" in pilot.text()
         assert states(house) == ["", "", ""]
+
+
+async def test_after_its_last_step_nothing_is_split_off(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "tab")
+        steps = pilot.app.screen.query_one(Transcript)
+        steps.point(steps.count)
+        await press(pilot, "slash")
+        assert isinstance(pilot.app.screen, DemonstrationsScreen)
+        assert "Nothing comes after step" in told(pilot)
+
+
+async def test_what_was_made_and_taken_back_is_not_in_the_list(run: Run, house: House) -> None:
+    async with run(app=program(house)) as pilot:
+        await press(pilot, "i", "space", "down", "space", "g", "y", "u")
+        assert states(house) == ["", "", "", "undone"]
+        assert "undone" not in pilot.text()
+        assert "2 of 3 in use" in pilot.text()
+        await press(pilot, "U", "down", "down")
+        assert "merged from demonstrations 1 and 2" in pilot.text()
+
+
+async def test_a_screen_that_is_left_takes_its_messages_along(run: Run, house: House) -> None:
+    async with run(app=program(house), notifications=True) as pilot:
+        await press(pilot, "i", "x", "y")
+        assert told(pilot)
+        pilot.type("escape", "escape")  # the second comes when the screen has gone already
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        assert not told(pilot)
+
+
+@pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
+async def test_the_way_out_and_the_help_are_always_in_the_key_line(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    async with run(app=program(house), size=size) as pilot:
+        await press(pilot, "i")
+        assert pilot.lines()[-1].endswith("esc back  ? help")
+        assert "x delete  a again" in pilot.lines()[-1]
+
+
+async def test_notes_end_inside_of_the_list(run: Run, house: House) -> None:
+    async with run(app=program(house), size=LARGE) as pilot:
+        await press(pilot, "i")
+        for width in range(85, 161, 5):
+            rows = list_rows(house.activity, library_of(house))
+            lines = demonstration_lines(rows, (), width)
+            assert max(cell_len("".join(t for t, _ in line.row)) for line in lines) <= width
 
 
 async def test_a_demonstration_opens_at_the_chosen_step(run: Run, house: House) -> None:
@@ -201,6 +258,10 @@ async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path
         list(ScriptedTeacher(teaching).demonstrate())
         async with run(app=program(house)) as pilot:
             await press(pilot, "i", "tab", "home", "down", "down", "down", "a")
+            assert "Show demonstration 1 again from step 4?" in pilot.text()
+            await press(pilot, "n")
+            assert len(library_of(house).entries) == 1
+            await press(pilot, "a", "y")
             await wait_for(pilot, TeachScreen)
             assert pilot.app.screen.query_one(Transcript).count == 3
             assert "Show it again from step 4" in pilot.text()

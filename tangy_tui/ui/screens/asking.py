@@ -40,6 +40,19 @@ from tangy_tui.wording import counted, state_words
 
 HELD = "Tangy was stopped: press p to go on first, then answer."
 
+KEYS = "w why   : answer   p {}   esc give the game up"
+"""The keys that count while the line does not have them."""
+
+
+class AnswerBar(CommandBar):
+    """The line to answer in, whose resting text goes with the game."""
+
+    def rest(self, text: str) -> None:
+        """Say other keys while the line does not have them."""
+        self._texts = (self._texts[0], text)
+        if not self._input.has_focus:
+            self._input.placeholder = text
+
 
 def answers_words(why: Why) -> str:
     """Say which answers demonstrations give in a situation, how often and by whom."""
@@ -82,13 +95,18 @@ class AskingPanel(Vertical):
     AskingPanel { height: auto; border-top: heavy $warning; border-title-color: $warning; }
     AskingPanel Static.asks { height: auto; max-height: 5; padding: 0 1; }
     AskingPanel Static.now { height: auto; max-height: 4; padding: 0 1; color: $ink-dim; }
+    AskingPanel Static.said { height: auto; max-height: 3; padding: 0 1; display: none; }
+    AskingPanel.-says Static.said { display: block; }
+    PlayScreen.-low AskingPanel.-refuses Static.now { display: none; }
     """
 
     class WhyWanted(Message):
         """Why was typed: the grounds are to be shown."""
 
-    def __init__(self, house: House, facilitation: Facilitation, question: Unsure) -> None:
-        """Make the panel for a question of Tangy's."""
+    def __init__(
+        self, house: House, facilitation: Facilitation, question: Unsure, before: str = ""
+    ) -> None:
+        """Make the panel for a question of Tangy's; `before` says what was learnt from the last."""
         super().__init__(id="asking")
         self._house = house
         self._facilitation = facilitation
@@ -97,16 +115,19 @@ class AskingPanel(Vertical):
         self._phrasebook = Phrasebook(house.activity, house.people)
         self._answer: asyncio.Future[Verified | None] = asyncio.get_running_loop().create_future()
         self._held = False
+        self._before = clean(before)
+        self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"
 
     def compose(self) -> ComposeResult:
         """Lay out the question, what Tangy sees, and the line."""
         yield Static(self._asks(), classes="asks", markup=False)
         yield Static(self._sees(), classes="now", markup=False)
-        yield CommandBar(
+        yield Static(self._before, classes="said", markup=False)
+        yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
             placeholder="what should Tangy do? (or: why, help, quit)",
-            resting="w why   : answer   p pause   esc give the game up",
+            resting=KEYS.format("pause"),
             id="command",
         )
 
@@ -144,9 +165,9 @@ class AskingPanel(Vertical):
         self._held = held
         if held:
             self.screen.set_focus(None)
-            self._say(HELD)
+            self.say(HELD)
         else:
-            self.query_one(".now", Static).update(self._sees())
+            self.say("")
             self.query_one(CommandBar).focus_input()
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
@@ -203,14 +224,22 @@ class AskingPanel(Vertical):
 
     def _return(self, heard: str, sentence: str) -> None:
         """Give a command back with what is to be said of it."""
-        self._say(sentence)
+        self.say(sentence)
         self.screen.query_one(LogView).write(sentence, "warn")
         self.query_one(CommandBar).restore(heard)
         if self._held:
             self.screen.set_focus(None)
 
-    def _say(self, sentence: str) -> None:
-        self.query_one(".now", Static).update(clean(sentence))
+    def say(self, sentence: str) -> None:
+        """Say a sentence under the question, in the place of the last one."""
+        self.set_class(bool(sentence), "-says", "-refuses")
+        for said in self.query(".said").results(Static):
+            said.update(clean(sentence))
+
+    def show_keys(self, *, going: bool) -> None:
+        """Say which keys count while the line does not have them."""
+        for bar in self.query(AnswerBar):
+            bar.rest(KEYS.format("pause" if going else "go on"))
 
     def _open(self) -> None:
         self.query_one(CommandBar).ready()

@@ -15,6 +15,7 @@ from tangy_tui.learning.comparing import Row, compare
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.panels import key_line, panel
@@ -138,12 +139,12 @@ class CompareScreen(TangyScreen[None]):
 
     async def action_choose(self) -> None:
         """Compare others."""
-        self.dismiss(None)
+        close(self, None)
         await self.run_action("app.compare")
 
     def action_leave(self) -> None:
         """Go back."""
-        self.dismiss(None)
+        close(self, None)
 
     def _summary(self) -> str:
         differ = sum(not row.same for row in self._all)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
@@ -18,12 +18,27 @@ from tangy_tui.learning.listing import heard_words, state_of
 from tangy_tui.learning.quality import quality_notes
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tangy_tui.wording import counted, step_words
+
+
+async def show_again(app: App[Any], library: Library, id: str, number: int) -> None:
+    """Show a demonstration again from a step on, if the teacher means it."""
+    dialog = ConfirmDialog(
+        f"Show {library.name(id)} again from step {number}?",
+        "The steps before it stay as they are. It is replaced when you have shown the game to "
+        "its end, and not before.",
+        yes="show it again",
+        no="leave it as it is",
+    )
+    if await app.push_screen_wait(dialog):
+        program: Any = app
+        await program.show_again(id, number - 1)
 
 
 class DemonstrationScreen(TangyScreen[None]):
@@ -92,21 +107,11 @@ class DemonstrationScreen(TangyScreen[None]):
         self.app.run_worker(self._again(self._number))
 
     async def _again(self, number: int) -> None:
-        name = self._library.name(self._shown.id)
-        dialog = ConfirmDialog(
-            f"Show {name} again from step {number}?",
-            "The steps before it stay as they are. It is replaced when you have shown the game to "
-            "its end, and not before.",
-            yes="show it again",
-            no="leave it as it is",
-        )
-        if await self.app.push_screen_wait(dialog):
-            program: Any = self.app
-            await program.show_again(self._shown.id, number - 1)
+        await show_again(self.app, self._library, self._shown.id, number)
 
     def action_leave(self) -> None:
         """Go back."""
-        self.dismiss(None)
+        close(self, None)
 
     def _summary(self) -> str:
         entry, shown = self._entry, self._shown

@@ -14,15 +14,19 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.learning.listing import ListRow, list_rows
+from tangy_tui.learning.listing import UNFINISHED, ListRow, list_rows
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.demonstration_list import DemonstrationList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tangy_tui.wording import counted, edit_words, step_words
+
+TAKEN_BACK = "undone"
+"""The state of what an edit made that was taken back: it is not in the list."""
 
 NOTHING_LOST = "Nothing is lost: u takes it back."
 
@@ -66,6 +70,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._rows: dict[str, ListRow] = {}
         self._marked: list[str] = []
         self._shown = ""
+        self._refusal = ""
 
     def compose(self) -> ComposeResult:
         """Lay out the list, the notes on the chosen one, and its steps."""
@@ -75,7 +80,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         yield panel(Transcript(empty="It has no steps.", id="transcript"))
         yield key_line(
             ("x", "delete"), ("a", "again"), ("space", "mark"), ("g", "merge"),
-            ("/", "split"), ("c", "conflicts"), ("u U", "undo"), ("?", "help"),
+            ("/", "split"), ("u U", "undo"), ("c", "conflicts"), ("esc", "back"), ("?", "help"),
         )  # fmt: skip
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
@@ -96,6 +101,7 @@ class DemonstrationsScreen(TangyScreen[None]):
 
     def on_choice_list_moved(self) -> None:
         """Show the steps of another demonstration."""
+        self._refusal, self._shown = "", ""
         self._show_chosen()
 
     def on_demonstration_list_chosen(self, event: DemonstrationList.Chosen) -> None:
@@ -148,6 +154,8 @@ class DemonstrationsScreen(TangyScreen[None]):
         if len(ids) < 2:
             self._say("Mark two or more with space first, and then merge them with g.")
             return
+        if self._refused(*ids):
+            return
         names = " and ".join(str(self._rows[id].number) for id in ids)
         steps = sum(self._rows[id].steps for id in ids)
         self._confirm(
@@ -165,6 +173,11 @@ class DemonstrationsScreen(TangyScreen[None]):
         if step is None:
             self._say("Choose the step that ends the first part: tab goes to the steps.")
             return
+        if self._refused(row.id):
+            return
+        if step >= row.steps:
+            self._say(f"Nothing comes after step {step}: choose one before it.", bad=True)
+            return
         self._confirm(
             f"Split demonstration {row.number} after step {step}?",
             f"It gives way to two: {counted(step, 'step')}, and {row.steps - step} after them. "
@@ -172,6 +185,15 @@ class DemonstrationsScreen(TangyScreen[None]):
             "split it",
             lambda: self._editor.split(row.id, step),
         )
+
+    def _refused(self, *ids: str) -> bool:
+        """Say of the first demonstration that cannot be merged or split why that is so."""
+        for row in (self._rows[id] for id in ids):
+            if not row.in_use:
+                why = "not finished yet" if row.state == UNFINISHED else f"not in use: {row.state}"
+                self._say(f"Demonstration {row.number} by {row.teacher} is {why}.", bad=True)
+                return True
+        return False
 
     def action_undo(self) -> None:
         """Take the last change back."""
@@ -189,8 +211,9 @@ class DemonstrationsScreen(TangyScreen[None]):
         if step is None:
             self._say("Choose the step to begin with: tab goes to the steps.")
         else:
-            program: Any = self.app
-            self.app.run_worker(program.show_again(row.id, step - 1))
+            from tangy_tui.ui.screens.demonstration import show_again
+
+            self.app.run_worker(show_again(self.app, self._library, row.id, step))
 
     def action_conflicts(self) -> None:
         """Show what the demonstrations disagree about."""
@@ -211,7 +234,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             self.query_one(Transcript).release()
             self.query_one(DemonstrationList).focus()
         else:
-            self.dismiss(None)
+            close(self, None)
 
     def _confirm(self, question: str, detail: str, yes: str, change: Callable[[], Edit]) -> None:
         async def ask() -> None:
@@ -228,6 +251,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             self._say(str(error), bad=True)
             return
         self._marked.clear()
+        self._refusal = ""
         self._read()
         words = edit_words(self._house.activity, self._library, edit)
         self._say(f"{before}: {words}" if before else f"{words} u takes it back.")
@@ -235,20 +259,28 @@ class DemonstrationsScreen(TangyScreen[None]):
     def _say(self, sentence: str, *, bad: bool = False) -> None:
         app: Any = self.app
         app.clear_notifications()
-        app.say(sentence[:1].upper() + sentence[1:], bad=bad)
+        said = sentence[:1].upper() + sentence[1:]
+        app.say(said, bad=bad)
+        if bad:  # a message goes by, and this line stays until the cursor moves
+            self._refusal = said
+            self._show_notes()
 
     # ------------------------------------------------------------------------------- showing
 
     def _read(self) -> None:
         self._library = self._editor.library
-        rows = list_rows(self._house.activity, self._library)
+        every = list_rows(self._house.activity, self._library)
+        rows = [row for row in every if row.state != TAKEN_BACK]
         self._rows = {row.id: row for row in rows}
         conflicts = len(self._library.conflicts)
         disagree = f", {counted(conflicts, 'conflict')}: press c" if conflicts else ""
         note = f"{sum(row.in_use for row in rows)} of {len(rows)} in use{disagree}"
         self.query_one(StatusLine).show(Status(mode="demonstrations", note=note))
+        shown, step = self._shown, self._step
         self._shown = ""
         self._show_list()
+        if step is not None and self._shown == shown:  # a dialog has gone, the step stays
+            self.query_one(Transcript).point(step)
 
     def _show_list(self) -> None:
         self.query_one(DemonstrationList).fill(list(self._rows.values()), self._marked)
@@ -261,10 +293,16 @@ class DemonstrationsScreen(TangyScreen[None]):
             return
         self._shown = row.id
         house = self._house
-        notes = ", ".join(row.notes) or "nothing to note"
-        self.query_one("#notes", Static).update(clean(f"{row.number}: {row.state}; {notes}."))
+        self._show_notes()
         steps = self._library.entries[row.id].demonstration.steps
         words = [step_words(house.activity, step, house.name) for step in steps]
         transcript = self.query_one(Transcript)
         transcript.border_title = f"Steps of demonstration {row.number}"
         transcript.fill(words)
+
+    def _show_notes(self) -> None:
+        """Say what is to be known of the demonstration, or why something cannot be done to it."""
+        if (row := self._chosen) is not None:
+            notes = ", ".join(row.notes) or "nothing to note"
+            said = self._refusal or f"{row.number}: {row.state}; {notes}."
+            self.query_one("#notes", Static).update(clean(said))

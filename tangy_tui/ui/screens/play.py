@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import ClassVar
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 
 from tangy_profiles.errors import TangyError
@@ -15,24 +15,21 @@ from tangy_tui.house import House, teacher_name
 from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEnded, GameEvent, Unsure
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import LOW, WIDE, key_line, panel, room_panel
-from tangy_tui.ui.reasons import why_asked, why_row, why_step
+from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
+from tangy_tui.ui.screens import play_keys
 from tangy_tui.ui.screens.asking import AskingPanel, learn_answer
+from tangy_tui.ui.screens.play_keys import ASKS_FIRST, STOPPED_FIRST, faster, keys
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-
-SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Times life; at 1 a game takes the half hour that it takes among people."""
-
-ASKS_FIRST = "Tangy asks first: answer it (: types), or press esc to give the game up."
 
 
 class PlayScreen(TangyScreen[Tally]):
@@ -41,27 +38,8 @@ class PlayScreen(TangyScreen[Tally]):
     CSS_PATH = "play.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
     VERTICAL_BREAKPOINTS = LOW
-    HELP = (
-        "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
-        "the speed, e skips to the end of the game, g begins another. w tells why: of the step "
-        "that is chosen, or of the last one. Where Tangy is not sure it does nothing but ask: type "
-        "what it should do, and y has it done; it learns that from you, and the game goes on."
-    )
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("p", "pause", "Pause or go on"),
-        Binding("n", "one_step", "One step"),
-        Binding("greater_than_sign,full_stop", "speed(1)", "Faster", key_display=">"),
-        Binding("less_than_sign,comma", "speed(-1)", "Slower", key_display="<"),
-        Binding("e", "skip", "Skip to the end of the game"),
-        Binding("g", "again", "Another game"),
-        Binding("w", "why", "Why this"),
-        Binding("1", "panel('room')", "Room", show=False),
-        Binding("2", "panel('transcript')", "Steps", show=False),
-        Binding("3", "panel('policy')", "Policy", show=False),
-        Binding("4", "panel('posteriors')", "Posteriors", show=False),
-        Binding("5", "panel('log')", "Log", show=False),
-        Binding("escape", "leave", "Leave"),
-    ]
+    HELP = play_keys.HELP
+    BINDINGS: ClassVar[list[BindingType]] = play_keys.BINDINGS
 
     def __init__(
         self,
@@ -111,10 +89,7 @@ class PlayScreen(TangyScreen[Tally]):
                 yield panel(Transcript(id="transcript"))
                 yield panel(PolicyTable())
                 yield panel(Posteriors())
-        yield key_line(
-            ("p", "pause"), ("n", "step"), ("<>", "speed"), ("e", "end"), ("g", "game"),
-            ("w", "why"), ("1-5", "show"), ("esc", "back"), ("?", "help"),
-        )  # fmt: skip
+        yield KeyLine(*keys(going=True))
 
     def on_mount(self) -> None:
         """Show what is known, and begin."""
@@ -147,8 +122,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_speed(self, by: int) -> None:
         """Play faster or slower."""
-        nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - self._speed))
-        self._speed = SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
+        self._speed = faster(self._speed, by)
         self._nudge.set()
         self._show_status()
 
@@ -161,10 +135,18 @@ class PlayScreen(TangyScreen[Tally]):
         self._nudge.set()
 
     def action_again(self) -> None:
-        """Play one more game."""
+        """Play one more game, now or after this one."""
+        if self._refused():
+            return
         self._games += 1
         if self._facilitation.over and self._tally.games + 1 == self._games:
+            self._halted = False
+            self._going.set()
             self.run_worker(self._play(), name="game", exclusive=True)
+        else:
+            more = self._games - self._tally.games - 1
+            follow = "Another game" if more == 1 else f"{more} more games"
+            self._tell_now(f"{follow} will follow.", "dim")
 
     def action_panel(self, name: str) -> None:
         """Show a panel where there is no room for all of them, and give it the keys."""
@@ -181,32 +163,22 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_why(self) -> None:
         """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
-        chosen = self.query_one(Transcript).chosen
-        question, house = self._facilitation.question, self._house
-        if chosen is None and question is not None:
-            policy = self._facilitation.policy
-            self.app.push_screen(why_asked(house, policy, question.state.situation))
-        elif self._picture.grounds:
-            self._explain(len(self._picture.grounds) if chosen is None else chosen)
+        dialog = self._picture.why(self.query_one(Transcript).chosen)
+        if dialog is not None:
+            self.app.push_screen(dialog)
         else:
-            self._write("Nothing has been decided yet.", "dim")
+            self._tell_now("Nothing has been decided yet.", "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
         event.stop()
-        self._explain(event.number)
+        if (dialog := self._picture.why_step(event.number)) is not None:
+            self.app.push_screen(dialog)
 
     def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
         """Tell why, for the row of the policy that was chosen with Enter."""
         event.stop()
-        situation = self._house.activity.situations[event.index]
-        self.app.push_screen(why_row(self._house, self._facilitation.policy, situation))
-
-    def _explain(self, number: int) -> None:
-        """Tell why a step of this game was done."""
-        grounds = self._picture.grounds
-        if 1 <= number <= len(grounds):
-            self.app.push_screen(why_step(self._house, grounds[number - 1], number))
+        self.app.push_screen(self._picture.why_row(event.index))
 
     def action_leave(self) -> None:
         """Let go of a chosen step, give up what is asked, or go back; in mid-game it asks."""
@@ -216,7 +188,7 @@ class PlayScreen(TangyScreen[Tally]):
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
         elif self._facilitation.over or self._leave_after is not None:
-            self.dismiss(self._tally)
+            close(self, self._tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
 
@@ -235,7 +207,7 @@ class PlayScreen(TangyScreen[Tally]):
         self._leaving = False
         if leaves:
             self._end_game()
-            self.dismiss(self._tally)
+            close(self, self._tally)
         elif going and not self._stopped:
             self._going.set()
 
@@ -264,11 +236,29 @@ class PlayScreen(TangyScreen[Tally]):
     def _refused(self) -> bool:
         """Say, after a STOP or while Tangy asks, what has to be done first."""
         if self._stopped:
-            self._write("Tangy was stopped: press p to go on first.", "warn")
+            self._tell_now(STOPPED_FIRST, "warn")
         elif self._asking is not None:
-            self._write(ASKS_FIRST, "warn")
-            self.notify(ASKS_FIRST, severity="warning", markup=False)
+            self._tell_now(ASKS_FIRST, "warn")
         return self._stopped or self._asking is not None
+
+    def take_sentence(self, sentence: str, kind: Kind = "dim") -> bool:
+        """Say a sentence under what Tangy asks, and in the log; False: nothing is asked."""
+        if self._asking is not None:
+            self._asking.say(sentence)
+            self._write(sentence, kind)
+        return self._asking is not None
+
+    def _tell_now(self, sentence: str, kind: Kind) -> None:
+        """Say what a key did, or why it does nothing, where it is seen at every size."""
+        if not self.take_sentence(sentence, kind):
+            self._write(sentence, kind)
+            if not self.query_one(LogView).display:
+                self.app.clear_notifications()
+                self.notify(
+                    sentence,
+                    severity="warning" if kind == "warn" else "information",
+                    markup=False,
+                )
 
     def _write(self, sentence: str, kind: Kind) -> None:
         self.query_one(LogView).write(sentence, kind)
@@ -282,8 +272,7 @@ class PlayScreen(TangyScreen[Tally]):
             except TangyError as error:  # the log could not be written, so nothing more is done
                 await self._hold(str(error))
         if self._leave_after is not None:
-            await asyncio.sleep(self._leave_after)
-            self.dismiss(self._tally)
+            await close_after(self, self._tally, self._leave_after)
 
     async def _play_game(self) -> None:
         """Play one game, or the rest of one that was held."""
@@ -352,7 +341,9 @@ class PlayScreen(TangyScreen[Tally]):
     async def _ask(self, question: Unsure) -> list[GameEvent]:
         """Wait for the teacher's answer, learn it beside the screen, and go on."""
         self.minimize()
-        asking = AskingPanel(self._house, self._facilitation, question)
+        self.app.clear_notifications()  # they would lie over the question
+        learnt, self._picture.lesson = self._picture.lesson, ""
+        asking = AskingPanel(self._house, self._facilitation, question, learnt)
         self.add_class("-asking")
         await self.mount(asking, before="#keys")
         if self._stopped:
@@ -389,6 +380,10 @@ class PlayScreen(TangyScreen[Tally]):
         asks = self._halted or self._facilitation.question is not None
         robot = "STOPPED" if self._stopped else "ASKS" if asks else "OK"
         self._picture.show_status(robot, self._note())
+        going = self._going.is_set()
+        self.query_one(KeyLine).show(*keys(going=going))
+        if self._asking is not None:
+            self._asking.show_keys(going=going)
 
     def _note(self) -> str:
         """Say what the keys would do next, or how fast it goes."""

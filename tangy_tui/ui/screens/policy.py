@@ -13,6 +13,7 @@ from tangy_tui.house import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN
 from tangy_tui.ui.reasons import why_row
@@ -75,7 +76,7 @@ class PolicyScreen(TangyScreen[None]):
         yield StatusLine(Status(mode="policy", note=note))
         yield Static(self._summary(), id="summary", markup=False)
         yield panel(PolicyTable())
-        yield panel(LogView(id="effects"), "What follows")
+        yield panel(LogView(id="effects", follow=False), "What follows")
         yield key_line(
             ("w", "why"), ("c", "compare"), ("o", "others"), ("tab", "next panel"),
             ("up down", "choose"), ("esc", "back"), ("?", "help"),
@@ -96,7 +97,7 @@ class PolicyScreen(TangyScreen[None]):
                 told = (f"{v} {' or '.join(sorted(seen))}" for v, seen in variables.items())
                 effects.write(f"{behaviour}: {'; '.join(told)}")
         if self._leave_after is not None:
-            self.set_timer(self._leave_after, self.action_leave)
+            self.run_worker(close_after(self, None, self._leave_after), name="close")
 
     def action_why(self) -> None:
         """Tell why, for the chosen row (the first, where none is)."""
@@ -118,7 +119,7 @@ class PolicyScreen(TangyScreen[None]):
 
     def action_leave(self) -> None:
         """Go back."""
-        self.dismiss(None)
+        close(self, None)
 
     def _summary(self) -> str:
         policy, activity = self._policy, self._house.activity

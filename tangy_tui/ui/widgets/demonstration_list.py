@@ -14,6 +14,9 @@ from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
 WIDEST_TEACHER = 12
+BESIDE = 43
+"""Columns of a line beside teacher, state and notes."""
+
 SHORTEST_NOTES = 12
 """Columns below which the notes stand under the table alone."""
 
@@ -56,7 +59,7 @@ def demonstration_lines(rows: Sequence[ListRow], marked: Collection[str], width:
         return [Line((("No demonstrations yet: press t at home to show Tangy a game.", "dim"),))]
     teacher = min(WIDEST_TEACHER, max(7, *(cell_len(clean(row.teacher)) for row in rows)))
     state = max(5, *(cell_len(clean(row.state)) for row in rows))
-    notes = width - (teacher + state + 40)
+    notes = width - (teacher + state + BESIDE)
     notes = notes if notes >= SHORTEST_NOTES else 0
     head = f"   no  {fit('teacher', teacher)}  {'date':<16}  steps  seen   {fit('state', state)}"
     head += "  notes" if notes else ""

@@ -23,7 +23,10 @@ MARKS: dict[str, str] = {"text": "  ", "dim": "  ", "good": "✓ ", "warn": "! "
 
 
 class LogView(ScrollView, can_focus=True):
-    """Sentences with a mark before them, wrapped to the width."""
+    """Sentences with a mark before them, wrapped to the width.
+
+    It follows the newest, unless it is a list to be read from its beginning (`follow=False`).
+    """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
@@ -36,12 +39,18 @@ class LogView(ScrollView, can_focus=True):
     HELP = "What happened and what Tangy said, the newest at the end. Up and down scroll."
 
     def __init__(
-        self, *, most: int = 500, id: str | None = "log", classes: str | None = None
+        self,
+        *,
+        most: int = 500,
+        follow: bool = True,
+        id: str | None = "log",
+        classes: str | None = None,
     ) -> None:
         super().__init__(id=id, classes=classes)
         self.border_title = "Log"
         self._lines: deque[tuple[str, Kind]] = deque(maxlen=most)
         self._rows = Rows(self)
+        self._follow = follow
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -80,7 +89,7 @@ class LogView(ScrollView, can_focus=True):
         for text, kind in self._lines:
             rows += _rows(text, kind, width)
         self._rows.put(rows)
-        if follow:
+        if follow and self._follow:
             self._rows.show(len(rows) - 1)
 
 

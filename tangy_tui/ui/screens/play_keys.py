@@ -1,0 +1,53 @@
+"""The keys of the playing screen: what they are called, and what is said of them."""
+
+from __future__ import annotations
+
+from textual.binding import Binding, BindingType
+
+SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Times life; at 1 a game takes the half hour that it takes among people."""
+
+ASKS_FIRST = "Tangy asks first: answer it (: types), or press esc to give the game up."
+
+STOPPED_FIRST = "Not now: Tangy was stopped. Press p to go on first."
+
+
+def keys(*, going: bool) -> tuple[tuple[str, str], ...]:
+    """Return the keys and what they do while the game goes on, or stands still."""
+    return (
+        ("p", "pause" if going else "go on"), ("n", "step"), ("<>", "speed"), ("e", "end"),
+        ("g", "game"), ("w", "why"), ("1-5", "show"), ("esc", "back"), ("?", "help"),
+    )  # fmt: skip
+
+
+def faster(speed: float, by: int) -> float:
+    """Return the next speed but `by` from the nearest one that there is."""
+    nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed))
+    return SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
+
+
+HELP = (
+    "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
+    "the speed, e skips to the end of the game, g begins another. w tells why: of the step "
+    "that is chosen, or of the last one. Where there is no room for all panels, 1 to 5 choose "
+    "one. Where Tangy is not sure it does nothing but ask: type what it should do, and y has "
+    "it done; it learns that from you, and the game goes on. While it asks, esc leaves the "
+    "line, so that keys are keys again, : leads back to it, and a second esc gives the game "
+    "up, if you mean it."
+)
+
+BINDINGS: list[BindingType] = [
+    Binding("p", "pause", "Pause or go on"),
+    Binding("n", "one_step", "One step"),
+    Binding("greater_than_sign,full_stop", "speed(1)", "Faster", key_display=">"),
+    Binding("less_than_sign,comma", "speed(-1)", "Slower", key_display="<"),
+    Binding("e", "skip", "Skip to the end of the game"),
+    Binding("g", "again", "Another game"),
+    Binding("w", "why", "Why this"),
+    Binding("1", "panel('room')", "Show the room"),
+    Binding("2", "panel('transcript')", "Show the steps"),
+    Binding("3", "panel('policy')", "Show the policy"),
+    Binding("4", "panel('posteriors')", "Show the posteriors"),
+    Binding("5", "panel('log')", "Show the log"),
+    Binding("escape", "leave", "Leave, or give up what Tangy asks"),
+]

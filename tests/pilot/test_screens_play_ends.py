@@ -1,0 +1,257 @@
+"""The ends of games: another one, being left from under a dialog, and what lies over what."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.house import House
+from tangy_tui.learning.library import effects_of
+from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.policy_options import comparison_options
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.help import HelpScreen, help_for
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.policy import PolicyScreen
+from tangy_tui.ui.widgets.command_bar import CommandInput
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.interaction.gaps import learnt, without
+from tests.pilot.conftest import SMALL, Run, StillClock, TangyPilot
+from tests.pilot.test_screens_asking import answer, asked, gap
+from tests.shown import log_demonstration
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+FEW = ForestSettings(trees=5)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def policy(house: House, cover: Cover) -> Policy:
+    """A policy that knows all that comes about."""
+    return learnt(house.store, house.activity, cover("bingo", 1, 4), FEW)
+
+
+@pytest.fixture
+def gappy(house: House, cover: Cover) -> Policy:
+    """A policy that was never shown two situations."""
+    games = cover("bingo", 1, 4)
+    last = games[0].steps[-1].state.situation
+    shown = [without(without(d, gap(house)), last) for d in games]
+    return learnt(house.store, house.activity, shown, FEW)
+
+
+def playing(house: House, policy: Policy, leave_after: float | None = None) -> Program:
+    """Make the program with the playing screen open; what it leads to is kept in `results`."""
+
+    async def start(program: Program) -> None:
+        facilitation = house.facilitation(policy, 5, asks=True)
+        screen = PlayScreen(house, facilitation, speed=1000, leave_after=leave_after, teacher="ann")
+        program.results = [await program.push_screen_wait(screen)]  # type: ignore[attr-defined]
+
+    return Program(house, start, clock=StillClock())
+
+
+def told(pilot: TangyPilot) -> str:
+    """Return the sentences that are shown for a few seconds."""
+    return " ".join(notification.message for notification in pilot.app._notifications)
+
+
+async def over(pilot: TangyPilot) -> PlayScreen:
+    """Skip to the end of the game."""
+    screen = pilot.app.screen
+    assert isinstance(screen, PlayScreen)
+    await pilot.press("e")
+    while not screen._facilitation.over:
+        await pilot.pause(0.02)
+    await pilot.pause()
+    return screen
+
+
+# ------------------------------------------------------------------------- left by themselves
+
+
+async def test_a_game_that_ends_under_a_dialog_is_left_when_the_dialog_is(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, leave_after=0.8)) as pilot:
+        await over(pilot)
+        await pilot.press("question_mark")
+        await pilot.pause(1.2)
+        assert isinstance(pilot.app.screen, HelpScreen)
+        assert len(pilot.app.screen_stack) == 3
+        await pilot.press("escape")
+        await pilot.pause(0.3)
+        assert isinstance(pilot.app.screen, HomeScreen)
+        (tally,) = pilot.app.results  # type: ignore[attr-defined]
+        assert tally.games == 1
+
+
+async def test_a_policy_that_closes_by_itself_waits_for_the_dialog_over_it(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async def start(program: Program) -> None:
+        effects = effects_of(house.store, house.activity, policy)
+        await program.push_screen_wait(PolicyScreen(house, policy, effects, 0.8))
+
+    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+        await pilot.press("w")
+        await pilot.pause(1.2)
+        assert isinstance(pilot.app.screen, WhyDialog)
+        assert len(pilot.app.screen_stack) == 3
+        await pilot.press("escape")
+        await pilot.pause(0.3)
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_leaving_twice_at_once_leaves_once(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = await over(pilot)
+        screen.action_leave()
+        screen.action_leave()
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+# ------------------------------------------------------------------------------- another game
+
+
+async def test_another_game_in_mid_game_is_announced(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), notifications=True) as pilot:
+        screen = pilot.app.screen
+        await pilot.press("p", "g")
+        await pilot.pause()
+        assert screen.query_one(LogView).sentences[-1] == "Another game will follow."
+        assert "Another game will follow." in told(pilot)
+        await pilot.press("g")
+        assert screen.query_one(LogView).sentences[-1] == "2 more games will follow."
+
+
+async def test_another_game_goes_on_though_the_last_one_was_paused(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen = await over(pilot)
+        await pilot.press("p", "g")
+        await pilot.pause(0.1)
+        status = screen.query_one(StatusLine).status
+        assert (status.game, status.note) == (2, "x1000")
+        while screen.query_one(Transcript).count < 3:
+            await pilot.pause(0.02)
+
+
+# ------------------------------------------------------------------------- while Tangy asks
+
+
+@pytest.mark.parametrize("key", ["g", "n", "e"])
+async def test_what_waits_for_the_answer_says_so_in_the_panel(
+    run: Run, house: House, gappy: Policy, key: str
+) -> None:
+    async with run(app=playing(house, gappy), notifications=True) as pilot:
+        screen = await asked(pilot)
+        await pilot.press("escape", key)
+        await pilot.pause()
+        assert "Tangy asks first" in " ".join(pilot.text().split())
+        assert not told(pilot)
+        assert screen._games == 1
+
+
+async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy), notifications=True) as pilot:
+        screen = await asked(pilot)
+        await pilot.press("escape")
+        line = screen.query_one(CommandInput)
+        assert "p pause" in line.placeholder
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert "p go on" in line.placeholder
+        await pilot.press("e")
+        await pilot.pause()
+        assert "Not now: Tangy was stopped. Press p to go on first." in pilot.text()
+        await pilot.press("p", "escape")
+        await pilot.pause()
+        assert "p pause" in line.placeholder
+        assert "Not now" not in pilot.text()
+
+
+async def test_the_keys_of_a_game_that_stands_still_say_so(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), size=SMALL) as pilot:
+        await pilot.press("p")
+        await pilot.pause()
+        assert pilot.lines()[-1].strip().startswith("p go on")
+        await pilot.press("p")
+        await pilot.pause()
+        assert pilot.lines()[-1].strip().startswith("p pause")
+
+
+async def test_nothing_lies_over_a_question(
+    run: Run, house: House, gappy: Policy, tmp_path: Path
+) -> None:
+    async with run(app=playing(house, gappy), notifications=True) as pilot:
+        screen = await asked(pilot)
+        program: Any = pilot.app
+        program.say("Saved in the meantime.")
+        await pilot.pause()
+        assert not told(pilot)
+        assert "Saved in the meantime." in pilot.text()
+        assert screen.query_one(LogView).sentences[-1] == "Saved in the meantime."
+        await answer(pilot)
+        while screen.query(AskingPanel):
+            await pilot.pause(0.02)
+        await pilot.press("e")
+        await asked(pilot)
+        await pilot.pause()
+        assert not told(pilot)
+        assert "Learnt from ann: " in pilot.text()
+
+
+async def test_help_tells_of_the_panels_and_of_answering(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        help = help_for(pilot.app.screen)
+        assert {"1", "2", "3", "4", "5"} <= {key for key, _ in help.here}
+        assert ": leads back to it" in help.paragraphs[0]
+
+
+# --------------------------------------------------------------------------- policies to read
+
+
+async def test_what_follows_is_read_from_its_beginning(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async def start(program: Program) -> None:
+        effects = effects_of(house.store, house.activity, policy)
+        await program.push_screen(PolicyScreen(house, policy, effects))
+
+    async with run(app=Program(house, start, clock=StillClock()), size=SMALL) as pilot:
+        effects = pilot.app.screen.query_one("#effects", LogView)
+        assert effects.max_scroll_y > 0
+        assert effects.scroll_offset.y == 0
+
+
+def test_one_demonstration_teaches(house: House, cover: Cover) -> None:
+    log_demonstration(house.store, cover("bingo", 1, 4)[0])
+    notes = [option.note for option in comparison_options(house.store, house.activity)]
+    assert "what 1 demonstration teaches" in notes
