@@ -11,6 +11,10 @@ Widget ids that scripts and testers may rely on:
     #posteriors  what is believed of each person
     #policy      the policy table
     #log         what happened, in sentences
+    #coverage    which situations were shown, and which not
+    #demonstrations  the list of the library; #step is one step of a demonstration in full
+    #answers     the answers of a conflict, side by side
+    #why         the grounds of a decision
 """
 
 from __future__ import annotations
