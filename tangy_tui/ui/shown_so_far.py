@@ -26,8 +26,12 @@ class ShownSoFar:
 
     def now(self) -> Coverage:
         """Count what was shown up to now."""
-        here = coverage(self._house.activity, [self._teaching.demonstration]).times
+        here = self.here().times
         return Coverage({s: times + here[s] for s, times in self._before.times.items()})
+
+    def here(self) -> Coverage:
+        """Count what was shown in the present game."""
+        return coverage(self._house.activity, [self._teaching.demonstration])
 
     def first(self, situation: Situation) -> bool:
         """Say whether the last step is the first one ever in its situation."""

@@ -86,14 +86,13 @@ class TeachingPicture:
         state = teaching.world.observe()
         found = self._shown.now()
         self._coverage(found)
-        guided = "guided, " if shown.guided else ""
         self._screen.query_one(StatusLine).show(
             Status(
-                mode="teach",
+                mode="guided" if shown.guided else "teach",
                 stage=state.stage if not teaching.world.over else "over",
                 seen=f"{len(found.seen)}/{len(found.times)}",
                 step=len(shown.steps),
-                note=f"{guided}{teaching.teacher}'s game {shown.seed}",
+                note=f"game {shown.seed}, {teaching.teacher}",
             )
         )
         words = (
@@ -115,7 +114,8 @@ class TeachingPicture:
     def _coverage(self, found: Coverage) -> None:
         activity = self._teaching.activity
         seen = [(activity.in_words(s), found.times[s]) for s in found.seen]
-        self._screen.query_one(CoverageList).show(missing_words(activity, found), seen)
+        here = len(self._shown.here().seen)
+        self._screen.query_one(CoverageList).show(missing_words(activity, found), seen, here)
 
     @property
     def _log(self) -> LogView:

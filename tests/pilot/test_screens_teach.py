@@ -165,6 +165,7 @@ async def test_the_game_is_shown_again_from_a_step(run: Run, house: House, typed
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         assert "before step 13" in screen_text(pilot.app)
+        assert "Steps 13 to 14 are taken back; U brings them" in screen_text(pilot.app)
         await pilot.press("y")
         await pilot.pause()
         screen = pilot.app.screen
@@ -180,6 +181,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, house: House) -> None:
         await mid_game(pilot, 4)
         await pilot.press("escape", "up", "a")
         await pilot.pause()
+        assert "Step 4 is taken back; U brings it back until" in screen_text(pilot.app)
         await pilot.press("n")
         await pilot.pause()
         assert len(steps(house)) == 4
@@ -212,6 +214,14 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
     try:
         async with run(app=program(house, seed=9)) as pilot:
             assert "seen 11/11" in screen_text(pilot.app)
+            await pilot.press("escape", "c")
+            await pilot.pause()
+            assert "11 of 11 situations shown, 0 in this game" in screen_text(pilot.app)
+            await pilot.press("escape")
+            await mid_game(pilot, 3)
+            await pilot.press("c")
+            await pilot.pause()
+            assert "11 of 11 situations shown, 2 in this game" in screen_text(pilot.app)
             assert not pilot.app.screen.query_one(CoverageList).missing
     finally:
         house.close()
@@ -219,10 +229,15 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
 
 async def test_a_guided_session_says_so(run: Run, house: House) -> None:
     async def start(started: Program) -> None:
-        await started.push_screen(TeachScreen(house, house.teaching("ann", 1, guided=True)))
+        await started.push_screen(TeachScreen(house, house.teaching("ada", 27, guided=True)))
 
     async with run(app=Program(house, start, clock=StillClock())) as pilot:
-        assert "guided" in screen_text(pilot.app)
+        await mid_game(pilot, 12)
+        status = screen_text(pilot.app).splitlines()[0]
+        assert "guided" in status
+        assert "FACILITATE" in status
+        assert "step 12" in status
+        assert "game 27" in status
 
 
 async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, house: House) -> None:

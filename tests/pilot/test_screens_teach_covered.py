@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 
 from tangy_tui.house import House
+from tangy_tui.learning.demonstrating import TeacherCommand, TeachingEvent
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import Help, HelpScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tangy_tui.ui.widgets.command_bar import CommandBar
-from tests.pilot.conftest import Run, StillClock
+from tests.pilot.conftest import Run, StillClock, screen_text
 
-FAST = 60.0
-HELPLESS = Help("nothing", (), (), ())
+FAST = 1000.0
+NO_HELP = Help("nothing", (), (), ())
 
 
 @pytest.fixture
@@ -27,59 +27,58 @@ def house(tmp_path: Path) -> Iterator[House]:
     opened.close()
 
 
-def program(house: House, ended: list[bool], *, scripted: float | None = None) -> Program:
-    """Make the program with the teaching screen open; what it ends with is noted."""
+def program(
+    house: House, ended: list[bool | None], *, scripted: float | None = None, covered: str = ""
+) -> Program:
+    """Make the program with the teaching screen open; what it ends with is noted.
+
+    `covered` says when the help comes over it: at the start, or after the last step.
+    """
 
     async def start(started: Program) -> None:
-        screen = TeachScreen(house, house.teaching("ann", 1), scripted=scripted)
-        ended.append(await started.push_screen_wait(screen))
+        teaching = house.teaching("ann", 1)
+        apply = teaching.apply
+
+        def cover_at_the_end(command: TeacherCommand) -> list[TeachingEvent]:
+            events = apply(command)
+            if teaching.demonstration.finished:
+                started.push_screen(HelpScreen(NO_HELP))
+            return events
+
+        if covered == "at the end":
+            teaching.apply = cover_at_the_end  # type: ignore[method-assign]
+        screen = TeachScreen(house, teaching, scripted=scripted)
+        await started.push_screen(screen, ended.append)
+        if covered == "at the start":
+            await started.push_screen(HelpScreen(NO_HELP))
 
     return Program(house, start, clock=StillClock())
 
 
-def teach_screen(pilot: Pilot[None]) -> TeachScreen:
-    """Return the teaching screen, which is on top."""
-    assert isinstance(pilot.app.screen, TeachScreen)
-    return pilot.app.screen
-
-
-async def until_over(pilot: Pilot[None], screen: TeachScreen) -> None:
-    """Wait until the demonstration is finished, and a little longer."""
-    for _ in range(500):
-        await pilot.pause(0.05)
-        if screen._teaching.demonstration.finished:
-            await pilot.pause(0.2)
-            return
-
-
-@pytest.mark.parametrize("late", [True, False], ids=["at the end", "from the start"])
-async def test_a_story_waits_for_the_help_to_be_closed(run: Run, house: House, late: bool) -> None:
-    ended: list[bool] = []
-    async with run(app=program(house, ended, scripted=FAST)) as pilot:
-        screen = teach_screen(pilot)
-        teaching = screen._teaching
-        if late:  # the help is opened after the last step, before the screen goes
-            apply = teaching.apply
-
-            def last(command):  # type: ignore[no-untyped-def]
-                events = apply(command)
-                if teaching.demonstration.finished:
-                    screen.app.push_screen(HelpScreen(HELPLESS))
-                return events
-
-            teaching.apply = last  # type: ignore[method-assign]
-            await until_over(pilot, screen)
-        else:
-            await pilot.press("question_mark")
-            await pilot.pause(0.2)
-            assert not teaching.demonstration.finished
-        assert isinstance(pilot.app.screen, HelpScreen)
-        assert screen in pilot.app.screen_stack
+@pytest.mark.parametrize("covered", ["at the start", "at the end"])
+async def test_a_story_waits_for_the_help_to_be_closed(
+    run: Run, house: House, covered: str
+) -> None:
+    ended: list[bool | None] = []
+    app = program(house, ended, scripted=FAST, covered=covered)
+    async with run(app=app) as pilot:
+        for _ in range(500):
+            if isinstance(app.screen, HelpScreen):
+                break
+            await pilot.pause(0.05)
+        await pilot.pause(0.3)
+        screen = app.screen_stack[-2]
+        assert isinstance(screen, TeachScreen)
+        assert screen._teaching.demonstration.finished is (covered == "at the end")
         assert ended == []
         await pilot.press("escape")
-        await until_over(pilot, screen)
+        for _ in range(500):
+            if ended:
+                break
+            await pilot.pause(0.05)
+        await pilot.pause()
         assert ended == [True]
-        assert screen not in pilot.app.screen_stack
+        assert screen not in app.screen_stack
         screen.action_leave()  # a key that was on its way
         await pilot.pause()
         assert ended == [True]
@@ -101,3 +100,27 @@ async def test_the_keys_are_where_they_were_when_the_help_is_closed(run: Run, ho
         await pilot.pause()
         await pilot.press("u")
         assert bar.text == "u"
+
+
+async def test_the_keys_are_told_over_a_text_that_was_left_in_the_line(
+    run: Run, house: House
+) -> None:
+    async with run(app=program(house, [])) as pilot:
+        await pilot.press(*"call numb", "escape")
+        await pilot.pause()
+        left = screen_text(pilot.app)
+        assert "> call numb" in left
+        assert "u undo" in left
+        assert "esc home" in left
+        await pilot.press("colon")
+        await pilot.pause()
+        typing = screen_text(pilot.app)
+        assert "u undo" not in typing
+        assert "call number" in typing
+
+
+async def test_who_watches_a_story_is_told_only_the_keys_that_work(run: Run, house: House) -> None:
+    async with run(app=program(house, [], scripted=1.0)) as pilot:
+        watched = screen_text(pilot.app)
+        assert "w why" in watched
+        assert "u undo" not in watched

@@ -162,3 +162,13 @@ async def test_a_command_has_a_greatest_length(run: Run) -> None:
 async def test_its_cursor_does_not_blink(run: Run) -> None:
     async with run(Bar()) as pilot:
         assert not pilot.app.screen.query_one(CommandInput).cursor_blink
+
+
+async def test_over_a_text_that_was_left_it_says_which_keys_there_are(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("c", "escape")
+        await pilot.pause()
+        assert "type a command, or ? for help" in pilot.text()
+        await pilot.press("colon")
+        await pilot.pause()
+        assert "call number   call a number" in pilot.text()

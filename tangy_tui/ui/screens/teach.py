@@ -47,6 +47,10 @@ from tangy_tui.ui.widgets.transcript import Transcript
 
 T = TypeVar("T")
 
+KEYS = "u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home"
+WATCHING = "up down a step  w why  c seen  ? help  esc leave"
+"""The keys that a scripted teacher leaves to who watches."""
+
 AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
 """Typed: from which step on the present game is to be shown again."""
 
@@ -126,7 +130,7 @@ class TeachScreen(TangyScreen[bool]):
         yield Static(id="now", markup=False)
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
-            resting="u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home",
+            resting=WATCHING if self._scripted is not None else KEYS,
             id="command",
         )
 
@@ -205,10 +209,14 @@ class TeachScreen(TangyScreen[bool]):
         steps = len(present.steps)
         if command.demonstration == present.id and 0 <= command.kept < steps:
             first = command.kept + 1
-            gone = f"Step {first} is" if first == steps else f"Steps {first} to {steps} are"
+            gone, back = (
+                (f"Step {first} is", "it back")
+                if first == steps
+                else (f"Steps {first} to {steps} are", "them back one by one")
+            )
             dialog = ConfirmDialog(
                 f"Go back before step {first} and show it again?",
-                f"{gone} taken back; U brings them back one by one until you show another.",
+                f"{gone} taken back; U brings {back} until you show another.",
                 yes="go back",
                 no="go on here",
             )

@@ -20,7 +20,7 @@ from textual.widgets import Input, Static
 
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Span, draw
+from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 Complete = Callable[[str], tuple[str, ...]]
 """Gives the commands that begin with (or are meant by) what was typed, likeliest first."""
@@ -52,7 +52,7 @@ def _goes_on(value: str, match: str) -> bool:
 
 
 class Matches(Widget):
-    """One line with the commands that fit what was typed so far."""
+    """One line with the commands that fit what was typed so far, or with the keys there are."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
@@ -63,12 +63,14 @@ class Matches(Widget):
         super().__init__()
         self._matches: tuple[str, ...] = ()
         self._typed = ""
+        self._keys = ""
 
-    def show(self, typed: str, matches: tuple[str, ...]) -> None:
-        """Show these matches; what was typed of them is written strongly."""
-        if (typed, matches) != (self._typed, self._matches):
+    def show(self, typed: str, matches: tuple[str, ...], keys: str = "") -> None:
+        """Show these matches, what was typed of them written strongly; or, if given, the keys."""
+        if (typed, matches, keys) != (self._typed, self._matches, self._keys):
             self._typed = typed
             self._matches = matches
+            self._keys = keys
             self.refresh()
 
     def render_line(self, y: int) -> Strip:
@@ -76,6 +78,8 @@ class Matches(Widget):
         return draw(self, self._row(self.size.width), self.size.width)
 
     def _row(self, width: int) -> Row:
+        if self._keys:
+            return ((shorten(self._keys, width), "dim"),)
         row: list[Span] = []
         used = 0
         for n, match in enumerate(self._matches):
@@ -203,6 +207,8 @@ class CommandInput(Input):
 class CommandBar(Vertical):
     """A line of matches and a line to type in: two lines high.
 
+    While it does not have the keys it says which keys there are (`resting`).
+
     `Given` carries a command. From that moment the bar is closed and swallows keys, so that what
     is typed ahead neither answers a question that is about to come nor lands in the next command.
     It opens again when the screen says what became of the command: `ready()` (done, or refused in
@@ -287,16 +293,25 @@ class CommandBar(Vertical):
     def on_descendant_focus(self) -> None:
         """Say that a command can be typed."""
         self._input.placeholder = self._texts[0]
+        self._show_above()
 
     def on_descendant_blur(self) -> None:
         """Say which letters are keys while the bar does not have them."""
         self._input.placeholder = self._texts[1]
+        self._show_above()
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Show what fits."""
         event.stop()
-        typed = event.value
-        self._matches.show(typed, self._complete(typed) if typed.strip() else ())
+        self._show_above()
+
+    def _show_above(self) -> None:
+        """Show what fits; over a text that was left there, the keys, which are keys again."""
+        typed = self._input.value
+        if typed and not self._input.has_focus:
+            self._matches.show(typed, (), self._texts[1])
+        else:
+            self._matches.show(typed, self._complete(typed) if typed.strip() else ())
 
     def on_command_input_entered(self, event: CommandInput.Entered) -> None:
         """Give the command."""

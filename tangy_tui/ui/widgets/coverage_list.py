@@ -48,14 +48,17 @@ class CoverageList(ScrollView, can_focus=True):
         """What nobody has shown yet, in words."""
         return self._missing
 
-    def show(self, missing: Sequence[str], seen: Sequence[tuple[str, int]]) -> None:
-        """Show what is missing, and what was seen how often."""
+    def show(
+        self, missing: Sequence[str], seen: Sequence[tuple[str, int]], here: int | None = None
+    ) -> None:
+        """Show what is missing, what was seen how often, and how much of it in the present game."""
         new = tuple(missing), tuple(seen)
+        count, of = len(seen), len(missing) + len(seen)
+        game = "" if here is None else f", {here} in this game"
+        self.border_title = f"{count} of {of} situations shown{game}"
         if new == (self._missing, self._seen):
             return
         self._missing, self._seen = new
-        count, of = len(self._seen), len(self._missing) + len(self._seen)
-        self.border_title = f"{count} of {of} situations shown"
         self._draw()
 
     def on_resize(self, event: events.Resize) -> None:
