@@ -51,7 +51,7 @@ class AnswerBar(CommandBar):
         """Say other keys while the line does not have them."""
         self._texts = (self._texts[0], text)
         if not self._input.has_focus:
-            self._input.placeholder = text
+            self.on_descendant_blur()
 
 
 def answers_words(why: Why) -> str:
@@ -97,7 +97,6 @@ class AskingPanel(Vertical):
     AskingPanel Static.now { height: auto; max-height: 4; padding: 0 1; color: $ink-dim; }
     AskingPanel Static.said { height: auto; max-height: 3; padding: 0 1; display: none; }
     AskingPanel.-says Static.said { display: block; }
-    PlayScreen.-low AskingPanel.-refuses Static.now { display: none; }
     """
 
     class WhyWanted(Message):
