@@ -21,14 +21,15 @@ async def show_why(
     from tangy_tui.ui.dialogs.why import WhyDialog
 
     app: Any = screen.app
-    app.say("Tangy thinks it over ...")
+    app.say("Tangy thinks it over ... (esc: never mind)")
     worker: Worker[Why] = screen.run_worker(
         lambda: _grounds(house, present, situation), thread=True, exit_on_error=False, group="why"
     )
     try:
         why = await worker.wait()
     except WorkerCancelled:
-        return  # the screen is being left
+        app.clear_notifications()
+        return  # it is not wanted any more, or the screen is being left
     except WorkerFailed as failed:
         if not isinstance(failed.error, TangyError):
             raise

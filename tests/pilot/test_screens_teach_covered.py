@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 
 import pytest
 
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import TeacherCommand, TeachingEvent
+from tangy_tui.learning.explaining import Why
+from tangy_tui.ui import foresight
+from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import Help, HelpScreen
 from tangy_tui.ui.screens.teach import TeachScreen
@@ -124,3 +130,40 @@ async def test_who_watches_a_story_is_told_only_the_keys_that_work(run: Run, hou
         watched = screen_text(pilot.app)
         assert "w why" in watched
         assert "u undo" not in watched
+
+
+@pytest.mark.parametrize("typed", [True, False], ids=["typed", "by key"])
+async def test_escape_while_tangy_thinks_stops_that_and_no_more(
+    run: Run, house: House, typed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    let_go = Event()
+    grounds = foresight._grounds
+
+    def slow(house: House, present: Demonstration, situation: Situation) -> Why:
+        let_go.wait(20)
+        return grounds(house, present, situation)
+
+    monkeypatch.setattr(foresight, "_grounds", slow)
+    ended: list[bool | None] = []
+    why = [*"why", "enter"] if typed else ["escape", "w"]
+    async with run(app=program(house, ended), notifications=True) as pilot:
+        await pilot.press(*"greet everyone", "enter")
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        await pilot.press(*why)
+        await pilot.pause()
+        assert "thinks it over" in screen_text(pilot.app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert ended == []
+        assert "thinks it over" not in screen_text(pilot.app)
+        let_go.set()
+        await pilot.pause(0.5)
+        assert isinstance(pilot.app.screen, TeachScreen)
+        await pilot.press(*(why if typed else ["w"]))
+        for _ in range(200):
+            if isinstance(pilot.app.screen, WhyDialog):
+                break
+            await pilot.pause(0.05)
+        assert isinstance(pilot.app.screen, WhyDialog)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import re
 from collections.abc import Sequence
 from typing import ClassVar, TypeVar
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Static
+from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
@@ -37,6 +37,8 @@ from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.foresight import show_why
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
+from tangy_tui.ui.screens import teach_keys
+from tangy_tui.ui.screens.teach_keys import AGAIN, KEYS, WATCHING
 from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -47,13 +49,6 @@ from tangy_tui.ui.widgets.transcript import Transcript
 
 T = TypeVar("T")
 
-KEYS = "u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home"
-WATCHING = "up down a step  w why  c seen  ? help  esc leave"
-"""The keys that a scripted teacher leaves to who watches."""
-
-AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
-"""Typed: from which step on the present game is to be shown again."""
-
 
 class TeachScreen(TangyScreen[bool]):
     """One teacher's session. Dismissed with True when the wanted demonstrations are complete."""
@@ -62,27 +57,8 @@ class TeachScreen(TangyScreen[bool]):
     HORIZONTAL_BREAKPOINTS = WIDE
     VERTICAL_BREAKPOINTS = LOW
     AUTO_FOCUS = "#command-input"
-    HELP = (
-        "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
-        "asks whether it understood; press y and it is done. People press a button when they "
-        "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
-        "Tangy sees there. Leave whenever you like: what you confirmed is kept. Typed, undo, redo, "
-        "again 7, why, seen and next do what their keys do."
-    )
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("u", "undo", "Undo the last step"),
-        Binding("ctrl+z", "undo", "Undo the last step", show=False, priority=True),
-        Binding("U", "redo", "Do the step again that was undone", key_display="U"),
-        Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
-        Binding("a", "again", "Show again from the chosen step"),
-        Binding("w", "why", "Why: what Tangy would do here by now"),
-        Binding("c", "coverage", "What was shown and what not"),
-        Binding("up,k", "choose(-1)", "Choose a step", show=False),
-        Binding("down,j", "choose(1)", "Choose a step", show=False),
-        Binding("r", "learn", "Learn from the demonstrations"),
-        Binding("d", "next", "Another demonstration"),
-        Binding("escape", "leave", "Leave; your steps are kept"),
-    ]
+    HELP = teach_keys.HELP
+    BINDINGS: ClassVar[list[BindingType]] = teach_keys.BINDINGS
 
     def __init__(
         self,
@@ -116,6 +92,7 @@ class TeachScreen(TangyScreen[bool]):
         phrases = (b.phrases[0] for b in teaching.activity.behaviours.values())
         self.HELP = f"{type(self).HELP} You can say: {', '.join(phrases)}."  # type: ignore[misc]
         self._free = asyncio.Event()
+        self._thinking: Worker[None] | None = None
 
     def compose(self) -> ComposeResult:
         """Lay out status, room, what was said, the trajectory, the situation, the commands."""
@@ -180,7 +157,9 @@ class TeachScreen(TangyScreen[bool]):
                 self._apply(Say(event.text))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave a scripted teacher alone: who watches can only leave, or stop."""
+        """Leave a scripted teacher alone: who watches can only look, leave or stop."""
+        if action == "think_no_more":
+            return self._thinks
         alone = ("undo", "redo", "again", "next", "learn")
         return self._scripted is None or action not in alone
 
@@ -254,12 +233,26 @@ class TeachScreen(TangyScreen[bool]):
     def action_why(self) -> None:
         """Tell what Tangy would do in the chosen step's situation, or here, and why."""
         self.query_one(CommandBar).ready()
+        if self._thinks:
+            return
         present = self._teaching.demonstration
         number = self.query_one(Transcript).chosen
         state = (
             self._teaching.world.observe() if number is None else present.steps[number - 1].state
         )
-        self.run_worker(show_why(self, self._house, present, state.situation), name="why")
+        thinking = show_why(self, self._house, present, state.situation)
+        self._thinking = self.run_worker(thinking, name="why")
+
+    @property
+    def _thinks(self) -> bool:
+        """Whether Tangy is thinking over what it would do."""
+        return self._thinking is not None and not self._thinking.is_finished
+
+    def action_think_no_more(self) -> None:
+        """Give up what is being thought over, and stay here."""
+        if self._thinking is not None:
+            self._thinking.cancel()
+            self._log.write("Tangy thinks no more of it.", "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
@@ -307,6 +300,8 @@ class TeachScreen(TangyScreen[bool]):
     # -------------------------------------------------------------------------------- events
 
     def _tell(self, events: Sequence[TeachingEvent]) -> None:
+        if not self.query(StatusLine):
+            return  # the screen is going, and its panels go before its session does
         bar = self.query_one(CommandBar)
         undone = [event for event in events if isinstance(event, StepUndone)]
         for event in events:

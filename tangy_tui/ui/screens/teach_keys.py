@@ -1,0 +1,38 @@
+"""The keys of the teaching screen, and what its help says of them."""
+
+from __future__ import annotations
+
+import re
+
+from textual.binding import Binding, BindingType
+
+KEYS = "u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home"
+WATCHING = "up down a step  w why  c seen  ? help  esc leave"
+"""The keys that a scripted teacher leaves to who watches."""
+
+AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
+"""Typed: from which step on the present game is to be shown again."""
+
+HELP = (
+    "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
+    "asks whether it understood; press y and it is done. People press a button when they "
+    "want help (?1, ?2, ... is whose turn it is): go to them, and the line Now says what "
+    "Tangy sees there. Leave whenever you like: what you confirmed is kept. Typed, undo, redo, "
+    "again 7, why, seen and next do what their keys do."
+)
+
+BINDINGS: list[BindingType] = [
+    Binding("u", "undo", "Undo the last step"),
+    Binding("ctrl+z", "undo", "Undo the last step", show=False, priority=True),
+    Binding("U", "redo", "Do the step again that was undone", key_display="U"),
+    Binding("ctrl+y", "redo", "Do it again", show=False, priority=True),
+    Binding("a", "again", "Show again from the chosen step"),
+    Binding("w", "why", "Why: what Tangy would do here by now"),
+    Binding("c", "coverage", "What was shown and what not"),
+    Binding("up,k", "choose(-1)", "Choose a step", show=False),
+    Binding("down,j", "choose(1)", "Choose a step", show=False),
+    Binding("r", "learn", "Learn from the demonstrations"),
+    Binding("d", "next", "Another demonstration"),
+    Binding("escape", "leave", "Leave; your steps are kept"),
+    Binding("escape", "think_no_more", "Think no more of it", show=False, priority=True),
+]
