@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from textual import events
@@ -19,7 +20,7 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.words import WordsDialog
 from tangy_tui.ui.fresh_keys import FreshKeys, clock_of
-from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
 from tangy_tui.ui.widgets.answer_steps import AnswerSteps
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -77,10 +78,7 @@ class ConflictsScreen(TangyScreen[bool]):
         yield Grid(id="answers")
         yield Static(id="asked", markup=False)
         yield panel(LogView(id="log"), "Answers")
-        yield key_line(
-            ("1-9", "right"), ("b", "all"), ("o", "other"), ("enter", "open"),
-            ("esc", "leave open"), ("u", "undo"), ("?", "help"),
-        )  # fmt: skip
+        yield KeyLine(*self._key_words())
 
     async def on_mount(self) -> None:
         """Show the first one."""
@@ -180,6 +178,7 @@ class ConflictsScreen(TangyScreen[bool]):
         self.query_one("#situation", Static).update(
             self._summary() if present is None else self._situation(present)
         )
+        self.query_one(KeyLine).show(*self._key_words())
         self.query_one("#asked", Static).update(
             f"Press enter to {self._then}, esc to go back, u to take the last answer back."
             if present is None
@@ -200,6 +199,14 @@ class ConflictsScreen(TangyScreen[bool]):
         grid.styles.grid_size_columns = min(len(columns), 4 if self.has_class("-wide") else 2)
         await grid.mount(*columns)
         columns[0].focus()
+
+    def _key_words(self) -> Sequence[tuple[str, str]]:
+        """Say which keys do something now."""
+        undo = [("u", "undo")] if self._answered else []
+        if self._present is None:
+            return [("enter", self._then), *undo, ("esc", "back"), ("?", "help")]
+        answers = [("1-9", "right"), ("b", "all"), ("o", "other"), ("enter", "open")]
+        return [*answers, *undo, ("esc", "leave open"), ("?", "help")]
 
     def _situation(self, conflict: Conflict) -> str:
         words = self._house.activity.in_words(conflict.situation)

@@ -41,13 +41,26 @@ def help_for(screen: Screen[Any]) -> Help:
     everywhere: dict[str, str] = {}
     for active in screen.active_bindings.values():
         binding = active.binding
-        if binding.description and binding.show:
+        if binding.description and binding.show and _works(screen, binding.action):
             keys = everywhere if active.node is screen.app else here
             keys.setdefault(binding.description, screen.app.get_key_display(binding))
     title = str(screen.TITLE or "Tangy")
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"
     return Help(title, tuple(paragraphs), _pairs(here), _pairs(everywhere))
+
+
+def _works(screen: Screen[Any], action: str) -> bool:
+    """Say whether a key that is the program's own does anything on a screen."""
+    match action:
+        case "command":
+            return bool(screen.query("#command-input"))
+        case "zoom":
+            panel = screen.focused
+            return screen.maximized is not None or (panel is not None and panel.allow_maximize)
+        case "back":
+            return len(screen.app.screen_stack) > 1
+    return True
 
 
 def _pairs(keys: dict[str, str]) -> Keys:

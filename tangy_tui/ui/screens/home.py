@@ -15,6 +15,7 @@ from textual.widget import Widget
 
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.panels import key_line
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, draw, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
@@ -53,6 +54,8 @@ States = Callable[[], Mapping[str, str]]
 
 class Menu(Widget, can_focus=True):
     """The choices, one line each, with a line between them where there is room."""
+
+    ALLOW_MAXIMIZE = False  # there is nothing beside them
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
@@ -186,9 +189,13 @@ class HomeScreen(TangyScreen[None]):
         self._note = note
 
     def compose(self) -> ComposeResult:
-        """Lay out the status line and the choices."""
+        """Lay out the status line, the choices, and the keys."""
         yield StatusLine(Status(mode="home", note=self._note))
         yield self._menu
+        yield key_line(
+            ("enter", "or the letter: choose"), ("up down", "move"), ("^p", "all commands"),
+            ("q", "quit"), ("?", "help"),
+        )  # fmt: skip
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Look how far things are."""

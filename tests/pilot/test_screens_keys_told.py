@@ -1,0 +1,90 @@
+"""What a screen says of its keys is so: home, its help, and the conflicts at their end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.house import House
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.help import help_for
+from tangy_tui.ui.screens.home import HomeScreen
+from tests.pilot.conftest import SMALL, Run, StillClock
+from tests.shown import answering, log_demonstration
+
+SIZES = pytest.mark.parametrize("size", [SMALL, (60, 18)], ids=["small", "smallest"])
+WRONG = "incorrectly marked"
+
+
+@pytest.fixture
+def house(tmp_path: Path, demonstrate: Callable[[str, int, int], Demonstration]) -> Iterator[House]:
+    """A house in which Ada and Bea disagree about wrong marks."""
+    opened = House(tmp_path / "data")
+    games = (demonstrate("bingo", seed, 4) for seed in range(1, 40))
+    wanted = (g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps))
+    log_demonstration(opened.store, replace(next(wanted), id="aaaa", teacher="Ada"))
+    other = replace(next(wanted), id="bbbb", teacher="Bea")
+    log_demonstration(opened.store, answering(other, WRONG, "encourage"))
+    yield opened
+    opened.close()
+
+
+@SIZES
+async def test_home_has_a_line_of_keys_and_shows_every_choice(
+    run: Run, size: tuple[int, int]
+) -> None:
+    async with run(HomeScreen(), size) as pilot:
+        keys = pilot.lines()[-1]
+        assert "enter or the letter: choose" in keys
+        assert "? help" in keys
+        assert "leave Tangy" in pilot.text()
+
+
+async def test_the_help_of_home_tells_no_key_that_does_nothing_there(run: Run) -> None:
+    async with run(HomeScreen()) as pilot:
+        told = dict(help_for(pilot.app.screen).everywhere)
+        assert "?" in told
+        assert not {":", "+", "esc"} & set(told)
+        await pilot.press("plus")
+        await pilot.pause()
+        assert pilot.app.screen.maximized is None
+
+
+async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
+    run: Run, house: House
+) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("t")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        told = dict(help_for(pilot.app.screen).everywhere)
+        assert ":" in told
+        assert "+" not in told  # no panel has the keys
+        await pilot.press("up", "c")
+        await pilot.pause()
+        assert "+" in dict(help_for(pilot.app.screen).everywhere)
+
+
+async def test_when_all_conflicts_were_looked_at_the_keys_are_those_that_are_left(
+    run: Run, house: House
+) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("l")
+        await pilot.pause()
+        keys = pilot.lines()[-1]
+        assert "1-9 right" in keys
+        assert "enter open" in keys
+        await pilot.press("1")
+        await pilot.pause()
+        keys = pilot.lines()[-1]
+        assert "1-9" not in keys
+        assert "enter let Tangy learn" in keys
+        assert "u undo" in keys
+        await pilot.press("u")
+        await pilot.pause()
+        assert "1-9 right" in pilot.lines()[-1]
