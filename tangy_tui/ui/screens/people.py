@@ -16,6 +16,7 @@ from tangy_tui.interaction.record import Record
 from tangy_tui.interaction.saying import change_words, entry_words, on_day
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
@@ -86,7 +87,7 @@ class PeopleScreen(TangyScreen[None]):
         self._read()
         self._list("people").focus()
         if self._leave_after is not None:
-            self.set_timer(self._leave_after, self.action_leave)
+            self.run_worker(close_after(self, None, self._leave_after), name="close")
 
     def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
         """Show another person, or what another strategy does."""
@@ -167,7 +168,7 @@ class PeopleScreen(TangyScreen[None]):
 
     def action_leave(self) -> None:
         """Go back."""
-        self.dismiss(None)
+        close(self, None)
 
     @property
     def _record(self) -> Record:
