@@ -44,7 +44,7 @@ def program(
             print(f"No screens here ({terminal_kind().reason}): try `tangy teach --plain`.\n")
             print(context.get_help())
             return
-        from tangy_tui.ui.program import run_program
+        from tangy_tui.ui.run import run_program
 
         with open_house(data, "bingo", 4) as house:
             raise typer.Exit(run_program(house, ascii_only=ascii_only))

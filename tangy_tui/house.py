@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
-    from tangy_tui.learning.demonstrating import Again, Teaching
+    from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
+    from tangy_tui.learning.teaching_events import Again
     from tangy_tui.world import World
 
 

@@ -15,7 +15,9 @@ from typing import Any
 
 from tangy_profiles.reading import plain
 from tangy_tui.learning.coverage import NOT_SHOWN
-from tangy_tui.learning.demonstrating import (
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
     Executed,
@@ -24,11 +26,9 @@ from tangy_tui.learning.demonstrating import (
     Redo,
     StepUndone,
     TeacherCommand,
-    Teaching,
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.verifying import (
     ANSWER_HELP,
     ANSWERS,

@@ -8,12 +8,12 @@ from typing import Any
 from tangy_tui.game_lines import belief_lines, game_lines
 from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.learning.demonstrating import Begun, Executed, Next
 from tangy_tui.learning.effects import learn_effects
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.learning.teaching_events import Begun, Executed, Next
 
 DEMONSTRATIONS = 3
 """What the paper found to be enough when situations come about by chance."""

@@ -7,24 +7,33 @@ in, events come out. Every verified step is in the log before its event is retur
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
-from tangy_profiles.state import Outcome
 from tangy_profiles.store import Store
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.editing import new_id
 from tangy_tui.learning.library import BEGUN, FINISHED, REDONE, STEP, UNDONE, read_library
+from tangy_tui.learning.teaching_events import (
+    Again,
+    Begun,
+    Executed,
+    Finished,
+    Next,
+    Redo,
+    StepUndone,
+    TeacherCommand,
+    TeachingEvent,
+    Undo,
+)
 from tangy_tui.learning.verifying import (
     Asked,
-    NotUnderstood,
     Refused,
-    Rejected,
     Reply,
     Say,
     Verification,
@@ -37,82 +46,6 @@ NOTHING_SAID = "(nothing: there are no numbers to say)"
 
 MakeWorld: TypeAlias = Callable[[Demonstration], World]
 """Make the world of a demonstration (its seed, people, guided), ready at its first state."""
-
-
-# ------------------------------------------------------------------- what a teacher can do
-
-
-@dataclass(frozen=True, slots=True)
-class Undo:
-    """Take the last step back."""
-
-
-@dataclass(frozen=True, slots=True)
-class Redo:
-    """Do the step again that was taken back last."""
-
-
-@dataclass(frozen=True, slots=True)
-class Next:
-    """Begin another demonstration after a finished one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Again:
-    """Show a demonstration again from some step on: its first `kept` steps stay as they are.
-
-    The present demonstration is taken back to there, and redo leads forward again. Another one is
-    replaced when the new one is complete, and not before.
-    """
-
-    demonstration: str
-    kept: int
-
-
-TeacherCommand: TypeAlias = Say | Reply | Undo | Redo | Next | Again
-
-
-# ---------------------------------------------------------------------------- what follows
-
-
-@dataclass(frozen=True, slots=True)
-class Executed:
-    """A verified behaviour was carried out and is step `number` of the trajectory (from 1)."""
-
-    number: int
-    step: Step
-    action: Action
-    outcome: Outcome
-    speech: str
-    image: str
-
-
-@dataclass(frozen=True, slots=True)
-class StepUndone:
-    """Step `number` was taken back; the world is as it was before it."""
-
-    number: int
-    step: Step
-
-
-@dataclass(frozen=True, slots=True)
-class Begun:
-    """A demonstration was begun, or taken up again with the steps it had."""
-
-    demonstration: Demonstration
-    resumed: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Finished:
-    """The game is over and the demonstration complete."""
-
-    demonstration: Demonstration
-
-
-TeachingEvent: TypeAlias = (
-    Asked | NotUnderstood | Refused | Rejected | Executed | StepUndone | Begun | Finished
-)
 
 
 class NotAsBefore(Exception):

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.learning.demonstrating import Next, Teaching, TeachingEvent
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.teaching_events import Next, TeachingEvent
 from tangy_tui.learning.verifying import Reply, Say
 
 SCRIPTED = "scripted"

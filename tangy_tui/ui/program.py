@@ -14,15 +14,12 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
-from tangy_tui.ui.app import TangyApp, run_app
+from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.screens.home import HomeScreen
-from tangy_tui.ui.terminal import terminal_kind
-from tangy_tui.ui.writer import outlive_terminal
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_tui.learning.demonstrating import Teaching
-    from tangy_tui.learning.ears import Ears
     from tangy_tui.learning.policy import Policy
 
 T = TypeVar("T")
@@ -133,7 +130,7 @@ class Program(TangyApp):
 
         A teaching session that is open takes it over: two of them would write one game.
         """
-        from tangy_tui.learning.demonstrating import Again
+        from tangy_tui.learning.teaching_events import Again
         from tangy_tui.ui.screens.teach import TeachScreen
 
         open_one = next((s for s in self.screen_stack if isinstance(s, TeachScreen)), None)
@@ -336,74 +333,3 @@ class Program(TangyApp):
             PlayScreen(house, facilitation, speed=STORY_PLAYING, leave_after=3.0)
         )
         await self.push_screen_wait(PeopleScreen(house, leave_after=None))
-
-
-def run_program(house: House, *, ascii_only: bool) -> int:
-    """Open the program at its first screen; return the exit status."""
-    return _run(house, None, ascii_only)
-
-
-def run_teaching(
-    house: House,
-    teaching: Teaching,
-    *,
-    ears: Ears | None,
-    resume: bool,
-    games: int,
-    speed: float | None,
-    ascii_only: bool,
-) -> int:
-    """Open the teaching screen; return the exit status.
-
-    The scripted teacher gives `games` demonstrations at `speed` steps a second, and the program
-    ends; a person goes home from here.
-    """
-
-    async def start(program: Program) -> None:
-        from tangy_tui.learning.scripted_teacher import SCRIPTED
-        from tangy_tui.ui.screens.teach import TeachScreen
-
-        pace = speed if teaching.teacher == SCRIPTED else None
-        for number in range(games if pace else 1):
-            screen = TeachScreen(
-                house, teaching, resume=resume, another=number > 0, ears=ears, scripted=pace
-            )
-            complete = await program.push_screen_wait(screen)
-            if pace and not complete:
-                break
-        if pace:
-            program.leave()
-
-    return _run(house, start, ascii_only)
-
-
-def run_playing(
-    house: House,
-    *,
-    games: int,
-    speed: float,
-    seed: int | None,
-    policy: str,
-    teacher: str,
-    ascii_only: bool,
-) -> int:
-    """Open the playing screen; return the exit status."""
-    return _run(
-        house, lambda program: program.play(games, speed, seed, policy, teacher), ascii_only
-    )
-
-
-def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:
-    """Tell the whole story in the program; return the exit status."""
-
-    async def start(program: Program) -> None:
-        await program.tell_story(seed)
-        program.leave()
-
-    return _run(house, start, ascii_only)
-
-
-def _run(house: House, start: Start | None, ascii_only: bool) -> int:
-    outlive_terminal()
-    kind = terminal_kind(ascii=True if ascii_only else None)
-    return run_app(Program(house, start, kind=kind))

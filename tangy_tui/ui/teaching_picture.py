@@ -10,7 +10,8 @@ from textual.widgets import Static
 
 from tangy_tui.house import House
 from tangy_tui.learning.coverage import Coverage, missing_words
-from tangy_tui.learning.demonstrating import Executed, StepUndone, Teaching
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.teaching_events import Executed, StepUndone
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView

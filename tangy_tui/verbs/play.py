@@ -57,7 +57,7 @@ def play(
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity, policy)
         if not (headless or as_json) and full_screen():
-            from tangy_tui.ui.program import run_playing
+            from tangy_tui.ui.run import run_playing
 
             raise typer.Exit(
                 run_playing(
@@ -111,7 +111,7 @@ def demo(
         data or Path(scratch), "bingo", 4
     ) as house:  # fmt: skip
         if full_screen() and not (plain_lines or as_json):
-            from tangy_tui.ui.program import run_demo
+            from tangy_tui.ui.run import run_demo
 
             status = run_demo(house, seed=seed, ascii_only=ascii_only)
             print("Teach it yourself: tangy teach. All you can do: tangy --help.")

@@ -28,8 +28,9 @@ from tangy_tui.verbs.common import (
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
-    from tangy_tui.learning.demonstrating import Again, Teaching
+    from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.ears import Ears
+    from tangy_tui.learning.teaching_events import Again
 
 
 def teach(
@@ -79,7 +80,7 @@ def teach(
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif not (plain_lines or script or as_json) and full_screen():
-            from tangy_tui.ui.program import run_teaching
+            from tangy_tui.ui.run import run_teaching
 
             status = run_teaching(
                 house, teaching, ears=ears, resume=not new, games=games, speed=speed,
@@ -94,7 +95,7 @@ def _again(wanted: str | None) -> Again | None:
     """Read N@STEP: a demonstration, and the first step that is to be shown again."""
     if wanted is None:
         return None
-    from tangy_tui.learning.demonstrating import Again
+    from tangy_tui.learning.teaching_events import Again
 
     demonstration, at, step = wanted.rpartition("@")
     if not at or not demonstration or not step.isdecimal() or step == "0":
@@ -104,8 +105,8 @@ def _again(wanted: str | None) -> Again | None:
 
 def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
     from tangy_tui.documents import demonstration_document
-    from tangy_tui.learning.demonstrating import Finished, Next
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+    from tangy_tui.learning.teaching_events import Finished, Next
 
     scripted = ScriptedTeacher(teaching)
     teaching.begin()

@@ -13,17 +13,10 @@ from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
-from tangy_tui.learning.demonstrating import (
-    Begun,
-    Executed,
-    Finished,
-    Next,
-    StepUndone,
-    Teaching,
-    Undo,
-)
+from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.world import World
 

@@ -20,15 +20,9 @@ from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.users import load_users
 from tangy_sim.world import SimulatedWorld
-from tangy_tui.learning.demonstrating import (
-    Executed,
-    Next,
-    StepUndone,
-    TeacherCommand,
-    Teaching,
-    Undo,
-)
+from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.teaching_events import Executed, Next, StepUndone, TeacherCommand, Undo
 from tangy_tui.learning.verifying import Asked, Refused, Reply, Say
 from tangy_tui.world import World
 

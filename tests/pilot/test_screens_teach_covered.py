@@ -11,8 +11,8 @@ import pytest
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_tui.house import House
-from tangy_tui.learning.demonstrating import TeacherCommand, TeachingEvent
 from tangy_tui.learning.explaining import Why
+from tangy_tui.learning.teaching_events import TeacherCommand, TeachingEvent
 from tangy_tui.ui import foresight
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program

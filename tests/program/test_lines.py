@@ -21,8 +21,8 @@ from tangy_profiles.store import Store
 from tangy_tui.game_lines import belief_lines, game_lines, play_by_lines
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import Learnt
-from tangy_tui.learning.demonstrating import Again
 from tangy_tui.learning.policy import ForestSettings, learn_policy
+from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verifying import Reply, Say
 from tangy_tui.lines import TeachingLines, command_line
 

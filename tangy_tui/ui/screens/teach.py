@@ -15,7 +15,10 @@ from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
-from tangy_tui.learning.demonstrating import (
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
     Executed,
@@ -24,12 +27,9 @@ from tangy_tui.learning.demonstrating import (
     Redo,
     StepUndone,
     TeacherCommand,
-    Teaching,
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.ears import Ears
-from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.ui.base import TangyScreen, on_top
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
