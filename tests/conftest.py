@@ -24,9 +24,15 @@ from tangy_sim.world import SimulatedWorld
 
 # The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile(
-    "tangy", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    "tangy",
+    deadline=None,
+    derandomize=True,
+    max_examples=40,  # so that the suite stays under five minutes; `explore` looks at many more
+    suppress_health_check=[HealthCheck.too_slow],
 )
-settings.register_profile("explore", settings.get_profile("tangy"), derandomize=False)
+settings.register_profile(
+    "explore", settings.get_profile("tangy"), derandomize=False, max_examples=400
+)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tangy"))
 
 TESTS = Path(__file__).parent
