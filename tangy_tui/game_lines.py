@@ -6,17 +6,15 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.beliefs import probability_best
 from tangy_profiles.demonstration import Demonstration
+from tangy_tui.fault_lines import attend, fault_lines
 from tangy_tui.interaction.facilitation import (
     Acted,
-    Facilitation,
     GameBegun,
     GameEnded,
-    GameEvent,
     Learnt,
     Taught,
     Unsure,
 )
-from tangy_tui.interaction.scripted_answers import answer_by_script
 from tangy_tui.learning.explaining import explain, why_words
 from tangy_tui.learning.verifying import (
     ANSWER_HELP,
@@ -28,6 +26,9 @@ from tangy_tui.learning.verifying import (
     Verified,
     answer_help,
 )
+from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.scripted_people import answer_by_script, clear_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.wording import Name, state_words, verification_lines
 
 Read = Callable[[], str | None]
@@ -44,11 +45,9 @@ MEANINGS = (
 _TAKEN_BACK = {"undo": "undo", "redo": "redo", "again": "show again"}
 
 
-def game_lines(
-    event: GameEvent, facilitation: Facilitation, name: Name, teacher: str = ""
-) -> list[str]:
+def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str = "") -> list[str]:
     """Put one event of a game into lines; `teacher` is who answered, where Tangy had asked."""
-    activity = facilitation.world.activity
+    activity = supervision.world.activity
     match event:
         case GameBegun(_, number, _):
             return [f"Game {number} begins."]
@@ -61,13 +60,15 @@ def game_lines(
                 f"{action.behaviour.name}{target}{how}, {why}",
                 f"   Tangy says: {speech}",
             ]
+        case Diagnosed() | Moved():
+            return fault_lines(event)
         case Learnt(response, belief):
             what = "did not follow, which counts as no"
             if response.followed:
                 what = "followed, but late, which counts as no"
             if response.complied:
                 what = "complied"
-            profile = facilitation.persuasion.beliefs[response.person]
+            profile = supervision.persuasion.beliefs[response.person]
             best = max(profile, key=lambda strategy: profile[strategy].mean)
             return [
                 f"   {name(response.person)} {what} ({response.strategy} now "
@@ -86,10 +87,10 @@ def game_lines(
             return [f"The game is over after {steps} steps."]
 
 
-def belief_lines(facilitation: Facilitation, name: Name) -> list[str]:
+def belief_lines(supervision: Supervision, name: Name) -> list[str]:
     """Put what is believed of everybody into one line each."""
     lines: list[str] = []
-    for person, profile in facilitation.persuasion.beliefs.items():
+    for person, profile in supervision.persuasion.beliefs.items():
         best = probability_best(profile)
         parts = [
             f"{strategy} {belief.complied}/{belief.trials} (best {best[strategy]:.0%})"
@@ -100,13 +101,15 @@ def belief_lines(facilitation: Facilitation, name: Name) -> list[str]:
 
 
 def play_by_lines(
-    facilitation: Facilitation,
+    supervision: Supervision,
     games: int,
     name: Name,
     write: Write,
     read: Read | None = None,
     teacher: str = "",
     demonstrations: Demonstrations | None = None,
+    *,
+    expert: bool = False,
 ) -> None:
     """Play games and tell everything that happens.
 
@@ -115,37 +118,45 @@ def play_by_lines(
             Without it a scripted teacher answers.
         teacher: who that is.
         demonstrations: gives all there are, on which the grounds of a question rest.
+        expert: scripted staff clear what halts the robot; without them whoever types does, and
+            without lines the game ends there.
     """
     for _ in range(games):
-        events = facilitation.begin()
+        events = supervision.begin()
         while True:
             answered = next((e.teacher for e in events if isinstance(e, Taught)), "")
             for event in events:
-                for line in game_lines(event, facilitation, name, answered):
+                for line in game_lines(event, supervision, name, answered):
                     write(line)
-            if facilitation.over:
+            if supervision.over:
                 break
-            if facilitation.question is not None and read is None:
-                events = answer_by_script(facilitation)
-            elif facilitation.question is not None and read is not None:
-                events = _ask(facilitation, name, write, read, teacher, demonstrations)
+            if supervision.halted is not None and expert:
+                events = clear_by_script(supervision)
+            elif supervision.halted is not None and read is None:
+                events = supervision.give_up()
+            elif supervision.halted is not None and read is not None:
+                events = attend(supervision, write, read, teacher)
+            elif supervision.question is not None and read is None:
+                events = answer_by_script(supervision)
+            elif supervision.question is not None and read is not None:
+                events = _ask(supervision, name, write, read, teacher, demonstrations)
             else:
-                events = facilitation.step()
-    for line in belief_lines(facilitation, name):
+                events = supervision.step()
+    for line in belief_lines(supervision, name):
         write(line)
 
 
 def _ask(
-    facilitation: Facilitation,
+    supervision: Supervision,
     name: Name,
     write: Write,
     read: Read,
     teacher: str,
     demonstrations: Demonstrations | None,
-) -> list[GameEvent]:
+) -> list[Event]:
     """Take a command from a teacher, verified by Y as when teaching; none gives the game up."""
-    verifier = facilitation.verifier()
-    activity = facilitation.world.activity
+    verifier = supervision.verifier()
+    activity = supervision.world.activity
     while (line := read()) is not None:
         text = line.strip()
         lower = text.lower()
@@ -163,26 +174,26 @@ def _ask(
                 for words in answer_help(others) if lower in ("help", "?") else [ANSWER_HELP]:
                     write(words)
                 continue
-        elif (told := _told(facilitation, name, lower, demonstrations)) is not None:
+        elif (told := _told(supervision, name, lower, demonstrations)) is not None:
             for words in told:
                 write(words)
             continue
         else:
             said = verifier.say(Say(text))
         if isinstance(said, Verified):
-            return facilitation.answer(said.behaviour, said.target, teacher)
+            return supervision.answer(said.behaviour, said.target, teacher)
         for words in verification_lines(said, activity):
             write(words)
         if isinstance(said, NotUnderstood):
             write(HELP)
-    return facilitation.give_up()
+    return supervision.give_up()
 
 
 def _told(
-    facilitation: Facilitation, name: Name, word: str, demonstrations: Demonstrations | None
+    supervision: Supervision, name: Name, word: str, demonstrations: Demonstrations | None
 ) -> list[str] | None:
     """Return what is said to a word that is no behaviour, or None."""
-    world = facilitation.world
+    world = supervision.world
     first = word.split()[0]
     if word in ANSWERS:
         return [NO_QUESTION]
@@ -199,20 +210,20 @@ def _told(
             seen = state_words(world.activity, state, world.scene(), name)
             return [f"Now: {world.activity.in_words(state.situation)}. {seen}"]
         case "why":
-            return _why(facilitation, demonstrations)
+            return _why(supervision, demonstrations)
     return None
 
 
-def _why(facilitation: Facilitation, demonstrations: Demonstrations | None) -> list[str]:
+def _why(supervision: Supervision, demonstrations: Demonstrations | None) -> list[str]:
     """Say on what grounds Tangy asks; without the demonstrations, at least by which votes."""
-    question = facilitation.question
+    question = supervision.question
     if question is None:
         return []
-    activity = facilitation.world.activity
+    activity = supervision.world.activity
     if demonstrations is None:
         votes = ", ".join(
             f"{behaviour} {share:.0%}" for behaviour, share in question.decision.votes
         )
         return [question.reason, f"Votes of the trees: {votes}."]
-    why = explain(facilitation.policy, demonstrations(), question.state.situation)
+    why = explain(supervision.policy, demonstrations(), question.state.situation)
     return why_words(activity, why)

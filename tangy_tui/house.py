@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 from random import Random
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_events import Again
+    from tangy_tui.monitoring.supervision import Supervision
     from tangy_tui.world import World
 
 
@@ -159,6 +160,41 @@ class House:
         kind = GuidedWorld if shown.guided else SimulatedWorld
         return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
 
+    def supervision(
+        self,
+        policy: Policy,
+        seed: int | None,
+        *,
+        asks: bool = False,
+        injections: Sequence[str] = (),
+    ) -> Supervision:
+        """Make a run of simulated games under execution monitoring.
+
+        Args:
+            asks: somebody is there to say what to do where Tangy is not sure.
+            injections: faults that are to come, as in `--inject`.
+
+        Raises:
+            TangyError: one of the injections is none, or the fault rules have a mistake.
+        """
+        from tangy_profiles.faults import load_faults
+        from tangy_sim.faulty import FaultyWorld
+        from tangy_sim.injection import read_injection
+        from tangy_tui.monitoring.accepted import expected_effects
+        from tangy_tui.monitoring.supervision import Supervision
+
+        to_come = [read_injection(text) for text in injections]
+        seed = self._seed(seed)
+        world = FaultyWorld(self.activity, list(self.names), seed=seed, injections=to_come)
+        return Supervision(
+            self._facilitation(world, policy, seed, asks),
+            load_faults(self.robot),
+            self.robot,
+            self.store,
+            lambda learnt: expected_effects(self.store, self.activity, learnt),
+            self.name,
+        )
+
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
         """Make a run of simulated games with a policy and with what is believed of the people.
 
@@ -166,15 +202,26 @@ class House:
             asks: somebody is there to say what to do where Tangy is not sure.
         """
         from tangy_sim.world import SimulatedWorld
+
+        seed = self._seed(seed)
+        world = SimulatedWorld(self.activity, list(self.names), seed=seed)
+        return self._facilitation(world, policy, seed, asks)
+
+    def _seed(self, seed: int | None) -> int:
+        """Return a seed: the given one, or one that no game has had."""
         from tangy_tui.interaction import facilitation
+
+        if seed is not None:
+            return seed
+        games = self.store.events(facilitation.BEGUN)
+        return 1 + max((int(game.body["seed"]) for game in games), default=0)
+
+    def _facilitation(self, world: World, policy: Policy, seed: int, asks: bool) -> Facilitation:
+        from tangy_tui.interaction.facilitation import Facilitation
         from tangy_tui.learning.asking import Answers
 
-        if seed is None:
-            games = self.store.events(facilitation.BEGUN)
-            seed = 1 + max((int(game.body["seed"]) for game in games), default=0)
-        ids = [person.id for person in self.people]
-        return facilitation.Facilitation(
-            SimulatedWorld(self.activity, ids, seed=seed),
+        return Facilitation(
+            world,
             policy,
             self.persuasion(Random(f"{seed}/persuasion")),
             self.store,

@@ -51,22 +51,22 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
         )
     write(f"   Effects of {len(effects.values)} behaviours are known.")
     write("3. Tangy facilitates a game by itself.")
-    facilitation = house.facilitation(policy, seed)
+    supervision = house.supervision(policy, seed)
     tally = Tally()
-    events_of_game = facilitation.begin()
+    events_of_game = supervision.begin()
     while True:
         tally.add(events_of_game)
         for game_event in events_of_game:
-            for line in game_lines(game_event, facilitation, house.name):
+            for line in game_lines(game_event, supervision, house.name):
                 write(f"   {line}")
-        if facilitation.over:
+        if supervision.over:
             break
-        events_of_game = facilitation.step()
+        events_of_game = supervision.step()
     write("4. What Tangy now believes about which strategy works with whom:")
-    for line in belief_lines(facilitation, house.name):
+    for line in belief_lines(supervision, house.name):
         write(f"   {line}")
     write("Teach it yourself: tangy teach. All you can do: tangy --help.")
-    return tally.to_json(activity.situations, facilitation.persuasion.beliefs)
+    return tally.to_json(activity.situations, supervision.persuasion.beliefs)
 
 
 def learn(house: House) -> Policy:

@@ -6,6 +6,8 @@ from typing import Protocol
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
+from tangy_profiles.faults import Remedy
+from tangy_profiles.health import Health
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import ActivityState, Outcome
 
@@ -32,4 +34,12 @@ class World(Protocol):
 
     def scene(self) -> Scene:
         """Return what there is to see, for a screen to draw."""
+        ...
+
+    def health(self) -> Health:
+        """Return what the robot's devices say of themselves now (III-C)."""
+        ...
+
+    def recover(self, remedy: Remedy) -> float:
+        """Do something about a fault; return how long that took, in s."""
         ...

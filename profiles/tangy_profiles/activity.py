@@ -58,6 +58,8 @@ class Activity:
     expected: Mapping[Situation, str]
     source: str
     persuasion: Persuading = PAPER
+    object: str = "card"
+    """What people handle, as they call it."""
 
     @cached_property
     def unread(self) -> str:
@@ -215,6 +217,7 @@ def read_activity(path: Path) -> Activity:
         expected=MappingProxyType(_expected(top, rules, state_names, behaviours)),
         source=path.name,
         persuasion=read_persuading(top.table("persuasion", optional=True)),
+        object=top.text("object", "card"),
     )
     top.close()
     for situation in activity.expected:

@@ -78,7 +78,8 @@ class Table:
                 raise self.wrong(key, f"is missing; it must be {noun}.")
             return default
         value = self._values[key]
-        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             raise self.wrong(key, f"must be {noun}.")
         return value
 
@@ -108,6 +109,15 @@ class Table:
         if not low <= value <= high or value in (math.inf, -math.inf):  # NaN is in no range
             raise self.wrong(key, f"must be a number from {low:g} to {high:g}.")
         return float(value)
+
+    def word_or_number(self, key: str) -> str | float | bool:
+        """Take a text, a finite number, or true or false."""
+        value = self._take(key, (str, int, float, bool), "a text, a number, true or false", None)
+        if isinstance(value, str):
+            return self.text(key)
+        if isinstance(value, bool):
+            return value
+        return self.number(key)
 
     def whole(self, key: str, low: int, high: int, default: int | None = None) -> int:
         """Take a whole number within [low, high]."""

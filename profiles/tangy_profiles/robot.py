@@ -1,4 +1,4 @@
-"""A robot as TOML describes it: its joints with their limits, its postures theta, its speed."""
+"""A robot as TOML describes it: joints with their limits, postures theta, speed, devices."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.reading import nearest, read_toml
+from tangy_profiles.reading import Table, nearest, read_toml
 
 
 @dataclass(frozen=True)
@@ -24,14 +24,25 @@ class Limb:
 
 
 @dataclass(frozen=True)
+class Device:
+    """A device of the robot: its data is stale after so many s; `facts` are what it measures."""
+
+    name: str
+    label: str
+    stale_after: float
+    facts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Robot:
-    """A robot's body: limbs, named postures (joint angles in degrees by limb), speed in m/s."""
+    """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices."""
 
     name: str
     title: str
     speed: float
     limbs: Mapping[str, Limb]
     postures: Mapping[str, Mapping[str, tuple[float, ...]]]
+    devices: Mapping[str, Device]
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -89,6 +100,23 @@ def load_robot(name: str = "tangy") -> Robot:
         top.number("speed", 0.05, 3),
         MappingProxyType(limbs),
         MappingProxyType(postures),
+        MappingProxyType(_devices(top)),
     )
     top.close()
     return robot
+
+
+def _devices(top: Table) -> dict[str, Device]:
+    devices: dict[str, Device] = {}
+    for entry in top.tables("devices"):
+        name = entry.text("name")
+        if name in devices:
+            raise entry.wrong("name", "was used before: every device has its own.")
+        devices[name] = Device(
+            name,
+            entry.text("label"),
+            entry.number("stale_after", 0.05, 60),
+            entry.words("facts", default=()),
+        )
+        entry.close()
+    return devices

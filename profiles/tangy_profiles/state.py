@@ -16,6 +16,19 @@ FRONT = "front"
 """The place in front of the group; every other place is the id of the person the robot is with."""
 
 
+VARIABLES = (
+    "robot's place",
+    "activity",
+    "end",
+    "stage",
+    "request",
+    "what was asked about",
+    "card",
+    "others' requests",
+)
+"""What a behaviour can change, as its effects are learnt and compared."""
+
+
 class UserState(NamedTuple):
     """One person as the robot sees them: id, user activity state s_ua, request state s_h."""
 

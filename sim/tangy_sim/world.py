@@ -12,15 +12,15 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.behaviour import Action
+from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.faults import Remedy
+from tangy_profiles.health import Health
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
+from tangy_sim.body import WELL
 from tangy_sim.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
-
-MENDS = frozenset(("clear wrong marks", "set missing marks"))
-"""Effects that come to nothing where nothing is wrong with the card, or it cannot be seen."""
 
 
 class SimulatedWorld:
@@ -92,18 +92,12 @@ class SimulatedWorld:
         beside = tracker.place
         effect = self._effects.get(behaviour.effect)
         numbers = effect(action) if effect is not None else ()
-        if not numbers and behaviour.effect in MENDS:
-            succeeded = False  # there was nothing to mend
+        if numbers is None:
+            succeeded, numbers = False, ()
         response: Response | None = None
         if behaviour.persuades and beside != FRONT and succeeded:
-            response = respond(
-                self.preferences,
-                beside,
-                action.strategy,
-                self.activity.patience,
-                self._compliance,
-            )
-        tracker.executed(behaviour, succeeded=succeeded)
+            response = self._respond(beside, action)
+        self._count(behaviour, succeeded)
         calls = 1.0 if beside == FRONT and tracker.place == FRONT else self.users.away_calls
         self._now += calls
         if self._now >= self._next_ask:
@@ -132,7 +126,17 @@ class SimulatedWorld:
         called = tuple(self._order[: self._calls])
         return Scene(tracker.place, tuple(tracker.queue), doing, called, card)
 
-    def _draw(self, _: Action) -> tuple[int, ...]:
+    def health(self) -> Health:
+        """Return the readings of devices of which none has a fault (see `FaultyWorld`)."""
+        return WELL
+
+    def recover(self, remedy: Remedy) -> float:
+        """Do nothing: here is nothing that could be mended."""
+        return 0.0
+
+    # Effects return the numbers that they were about, or None if they came to nothing.
+
+    def _draw(self, _: Action) -> tuple[int, ...] | None:
         if self._calls >= len(self._order):
             return ()
         number = self._order[self._calls]
@@ -146,7 +150,7 @@ class SimulatedWorld:
             if uniform() >= miss:
                 player.did = (step, "marks", number)
                 if player.mark(cell):
-                    self.tracker.ask(player.id)
+                    self._ask(player)
         if self._calls >= self._next_slip:
             self._let_people_slip()
         return (number,)
@@ -160,7 +164,7 @@ class SimulatedWorld:
                     number, filled = slip
                     player.did = (self.tracker.step, "marks", number)
                     if filled:
-                        self.tracker.ask(player.id)
+                        self._ask(player)
         self._next_slip = min(p.slips_at for p in self._players.values())
 
     def _open(self) -> None:
@@ -179,11 +183,25 @@ class SimulatedWorld:
             while self._now >= player.asks_at:
                 player.asks_at += waiting_time(uniform, rate)
                 asks = uniform() * users.ask_with_error < 1.0 or player.has_error
-                if asks and self.tracker.ask(player.id):
+                if asks and self._ask(player):
                     player.did = (self.tracker.step, "asks for help", 0)
         self._next_ask = min(p.asks_at for p in self._players.values())
 
-    def _go_to_user(self, action: Action) -> tuple[int, ...]:
+    def _ask(self, player: Player) -> bool:
+        """Let a person ask for help; say whether that is seen, and new."""
+        return self.tracker.ask(player.id)
+
+    def _respond(self, beside: str, action: Action) -> Response | None:
+        """Let the person beside the robot respond to what was put to them."""
+        return respond(
+            self.preferences, beside, action.strategy, self.activity.patience, self._compliance
+        )
+
+    def _count(self, behaviour: Behaviour, succeeded: bool) -> None:
+        """Let a behaviour count that was carried out."""
+        self.tracker.executed(behaviour, succeeded=succeeded)
+
+    def _go_to_user(self, action: Action) -> tuple[int, ...] | None:
         tracker = self.tracker
         target = action.target or (tracker.queue[0] if tracker.queue else None)
         if target in self._players:
@@ -193,35 +211,37 @@ class SimulatedWorld:
                 self._read_card()
         return ()
 
-    def _go_to_front(self, _: Action) -> tuple[int, ...]:
+    def _go_to_front(self, _: Action) -> tuple[int, ...] | None:
         self.tracker.arrive(FRONT)
         self._in_view = False
         return ()
 
-    def _bring_card_closer(self, _: Action) -> tuple[int, ...]:
+    def _bring_card_closer(self, _: Action) -> tuple[int, ...] | None:
         if self.tracker.place in self.tracker.queue:
             self._did("moves the card")
             self._read_card()
         return ()
 
-    def _clear_wrong_marks(self, _: Action) -> tuple[int, ...]:
+    def _clear_wrong_marks(self, _: Action) -> tuple[int, ...] | None:
         return self._correct(lambda player: player.marked & ~player.called, "clears marks")
 
-    def _set_missing_marks(self, _: Action) -> tuple[int, ...]:
+    def _set_missing_marks(self, _: Action) -> tuple[int, ...] | None:
         return self._correct(lambda player: player.called & ~player.marked, "marks")
 
-    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...]:
-        """Let the person beside the robot mend what it can see on the card."""
+    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...] | None:
+        """Let the person beside the robot mend what is seen on the card, if anything."""
         if self.tracker.seen is None:
-            return ()
+            return None
         player = self._players[self.tracker.place]
         mask = errors(player)
+        if not mask:
+            return None
         player.marked ^= mask
         self._did(verb)
         self._read_card()
         return player.cells(mask)
 
-    def _finish(self, _: Action) -> tuple[int, ...]:
+    def _finish(self, _: Action) -> tuple[int, ...] | None:
         self.over = True
         return ()
 

@@ -75,11 +75,17 @@ class Learnt:
 
 @dataclass(frozen=True, slots=True)
 class Unsure:
-    """Tangy does not act, it asks: a teacher is to say what to do here; `reason` says why."""
+    """Tangy does not act, it asks: a teacher is to say what to do here.
+
+    `reason` says why, and `remedy` what would help if nobody answers. `fault` is the id of the
+    fault about which it asks, if it is not the policy that is not sure.
+    """
 
     state: ActivityState
     decision: Decision
     reason: str
+    remedy: str
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,15 +179,46 @@ class Facilitation:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
         if not decision.sure:
             reason = _why_not(self._activity, state, decision)
+            remedy = _remedy(decision)
             if self._answers is None:
-                return [self._end(f"{reason} {_remedy(decision)}")]
-            self.question = Unsure(state, decision, reason)
+                return [self._end(f"{reason} {remedy}")]
+            self.question = Unsure(state, decision, reason, remedy)
             return [self.question]
         behaviour = self._activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
         with self._store.transaction():
             done = self._act(state, decision, behaviour, target, "")
         return self._told(done)
+
+    @property
+    def asks(self) -> bool:
+        """Whether there is a teacher who can be asked."""
+        return self._answers is not None
+
+    @property
+    def game(self) -> str:
+        """The id of the present game, or of the last one."""
+        return self._game
+
+    def ask(self, reason: str, remedy: str, fault: str) -> list[GameEvent]:
+        """Ask a teacher about a fault, although the policy may be sure of what to do."""
+        if self.over or self.question is not None or self._answers is None:
+            return []
+        state = self.world.observe()
+        decision = self.policy.decide(state.situation)
+        self.question = Unsure(state, decision, reason, remedy, fault)
+        return [self.question]
+
+    def withdraw(self) -> None:
+        """Ask no more: it has turned out that there is nothing to answer."""
+        self.question = None
+
+    def stop(self, reason: str) -> list[GameEvent]:
+        """End a game that cannot go on, for a reason that a person can read."""
+        if self.over:
+            return []
+        self.question = None
+        return [self._end(reason)]
 
     def verifier(self) -> Verifier:
         """Make the door through which a teacher answers: every command is verified first."""
@@ -216,14 +253,11 @@ class Facilitation:
         if self.question is None:
             return []
         question, self.question = self.question, None
-        return [self._end(f"{question.reason} {_remedy(question.decision)}")]
+        return [self._end(f"{question.reason} {question.remedy}")]
 
     def leave(self) -> list[GameEvent]:
         """End a game that is going on because whoever watches it leaves."""
-        if self.over:
-            return []
-        self.question = None
-        return [self._end("It was left before its end.")]
+        return self.stop("It was left before its end.")
 
     def _told(self, done: tuple[Acted, Response | None, GameEnded | None]) -> list[GameEvent]:
         """Tell what was done, and let the beliefs grow now that the response is in the log."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Situation
-from tangy_tui.interaction.facilitation import Acted, GameEnded, GameEvent, Learnt, Taught
+from tangy_tui.interaction.facilitation import Acted, GameEnded, Learnt, Taught
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Tally:
     _done: Counter[tuple[Situation, str]] = field(default_factory=Counter)
     _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
 
-    def add(self, events: Iterable[GameEvent]) -> None:
-        """Count what happened."""
+    def add(self, events: Iterable[object]) -> None:
+        """Count what happened; events of other kinds than a game's are let by."""
         for event in events:
             match event:
                 case Acted():
@@ -62,8 +62,13 @@ class Tally:
             )
         ]
 
-    def to_json(self, order: Iterable[Situation], beliefs: Mapping[str, Beliefs]) -> dict[str, Any]:
-        """Return the document that `tangy play --json` prints."""
+    def to_json(
+        self,
+        order: Iterable[Situation],
+        beliefs: Mapping[str, Beliefs],
+        faults: Sequence[Mapping[str, Any]] = (),
+    ) -> dict[str, Any]:
+        """Return the document that `tangy play --json` prints, with the faults there were."""
         behaviours: Counter[str] = Counter()
         for (_, behaviour), count in self._done.items():
             behaviours[behaviour] += count
@@ -88,5 +93,5 @@ class Tally:
                 person: {strategy: [b.alpha, b.beta] for strategy, b in profile.items()}
                 for person, profile in beliefs.items()
             },
-            "faults": [{"reason": reason} for reason in self.stopped],
+            "faults": [*faults, *({"reason": reason} for reason in self.stopped)],
         }

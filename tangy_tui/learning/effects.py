@@ -38,6 +38,23 @@ class Effects:
 
     values: Mapping[str, Mapping[str, frozenset[str]]]
 
+    def joined(self, other: Effects) -> Effects:
+        """Return the effects that either of the two knows."""
+        values = {
+            behaviour: MappingProxyType(
+                {
+                    variable: self.values.get(behaviour, {}).get(variable, frozenset())
+                    | other.values.get(behaviour, {}).get(variable, frozenset())
+                    for variable in {
+                        **self.values.get(behaviour, {}),
+                        **other.values.get(behaviour, {}),
+                    }
+                }
+            )
+            for behaviour in {**self.values, **other.values}
+        }
+        return Effects(MappingProxyType(values))
+
     def mismatches(
         self, behaviour: str, before: ActivityState, after: ActivityState, activity: Activity
     ) -> list[Mismatch]:
@@ -84,7 +101,7 @@ def learn_effects(
 
 
 def transition(before: ActivityState, after: ActivityState, activity: Activity) -> dict[str, str]:
-    """Describe a transition by the variables that a behaviour can change, in words.
+    """Describe a transition by the variables (`VARIABLES`) that a behaviour can change, in words.
 
     Variables about the person who was attended to are left out when there was none.
     """
@@ -105,9 +122,14 @@ def transition(before: ActivityState, after: ActivityState, activity: Activity) 
         changes["stage"] = "not left" if after.stage == before.stage else "left"
     if person is not None:
         closed = after.closed == person
+        shown, now = before.situation.user_state, after.user(person).activity
         if before.place != after.place:
             changes["request"] = "closed" if closed else "open"
-        shown, now = before.situation.user_state, after.user(person).activity
+        elif before.place == person and shown != activity.unread:
+            # Whether it closes depends on the card, which need not have been shown in every way;
+            # a request that stays open when nothing is left to be done never should.
+            finished = now == activity.card_states[-1].name and not closed
+            changes["request"] = "open with nothing left" if finished else "as the card asks"
         if before.place == person:
             settled = closed or now != shown or after.stage in closing
             changes["what was asked about"] = "settled" if settled else "unchanged"

@@ -10,14 +10,13 @@ from textual.screen import Screen
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import (
     Acted,
-    Facilitation,
     GameBegun,
     GameEnded,
-    GameEvent,
     Learnt,
     Taught,
     Unsure,
 )
+from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
@@ -40,7 +39,7 @@ TAUGHT_SECONDS = 6.0
 class GamePicture:
     """Puts the events of games on room, steps, policy, posteriors and log of a screen."""
 
-    def __init__(self, screen: Screen[Any], house: House, facilitation: Facilitation) -> None:
+    def __init__(self, screen: Screen[Any], house: House, supervision: Supervision) -> None:
         self.grounds: list[Ground] = []
         """What each step of the present game rested on."""
         self.lesson = ""
@@ -50,15 +49,15 @@ class GamePicture:
         self._game: int | None = None
         self._screen = screen
         self._house = house
-        self._facilitation = facilitation
-        self._policy = facilitation.policy
+        self._supervision = supervision
+        self._policy = supervision.policy
 
     def begin(self) -> None:
         """Show what is known before the first game."""
         self._show_policy()
         self._show_beliefs(None)
 
-    def tell(self, events: Sequence[GameEvent], pace: float) -> None:
+    def tell(self, events: Sequence[Event], pace: float) -> None:
         """Show events; `pace` is how many times faster than life they are shown (0: at once)."""
         taught = next((event for event in events if isinstance(event, Taught)), None)
         log = self._screen.query_one(LogView)
@@ -99,7 +98,7 @@ class GamePicture:
             Status(
                 mode="play",
                 robot=robot,
-                stage="over" if self._facilitation.over else self._stage,
+                stage="over" if self._supervision.over else self._stage,
                 game=self._game,
                 step=self._step,
                 note=note,
@@ -109,7 +108,7 @@ class GamePicture:
 
     def why(self, chosen: int | None) -> WhyDialog | None:
         """Tell why: of the chosen step, what Tangy asks, or the last step; None: there is none."""
-        question = self._facilitation.question
+        question = self._supervision.question
         if chosen is None and question is not None:
             return why_asked(self._house, self._policy, question.state.situation)
         return self.why_step(len(self.grounds) if chosen is None else chosen)
@@ -168,11 +167,11 @@ class GamePicture:
 
     def _show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
         room = self._screen.query_one(RoomView)
-        scene = self._facilitation.world.scene()
+        scene = self._supervision.world.scene()
         if drive and pace:
             room.drive(scene.place, seconds / pace * DRIVING_SHARE)
         room.show(scene)
 
     def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
-        beliefs = self._facilitation.persuasion.beliefs
+        beliefs = self._supervision.persuasion.beliefs
         self._screen.query_one(Posteriors).show(beliefs, self._house.names, highlight)

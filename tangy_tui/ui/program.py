@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -181,18 +181,20 @@ class Program(TangyApp):
         seed: int | None = None,
         wanted: str = "",
         teacher: str = "",
+        injections: Sequence[str] = (),
     ) -> None:
         """Open the playing screen with a policy, the last one unless another is wanted.
 
         Args:
             teacher: who answers where Tangy asks.
+            injections: faults that are to come.
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
         policy = await self._load_policy(wanted)
         if policy is not None:
-            facilitation = self.house.facilitation(policy, seed, asks=True)
-            screen = PlayScreen(self.house, facilitation, games=games, speed=speed, teacher=teacher)
+            supervision = self.house.supervision(policy, seed, asks=True, injections=injections)
+            screen = PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
             await self.push_screen(screen)
 
     def action_compare(self) -> None:
@@ -328,8 +330,8 @@ class Program(TangyApp):
         if policy is None:
             return
         await self._open_policy(policy, leave_after=6.0)
-        facilitation = house.facilitation(policy, seed)
+        supervision = house.supervision(policy, seed)
         await self.push_screen_wait(
-            PlayScreen(house, facilitation, speed=STORY_PLAYING, leave_after=3.0)
+            PlayScreen(house, supervision, speed=STORY_PLAYING, leave_after=3.0)
         )
         await self.push_screen_wait(PeopleScreen(house, leave_after=None))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tangy_tui.house import House
@@ -62,11 +63,14 @@ def run_playing(
     seed: int | None,
     policy: str,
     teacher: str,
+    injections: Sequence[str] = (),
     ascii_only: bool,
 ) -> int:
     """Open the playing screen; return the exit status."""
     return _run(
-        house, lambda program: program.play(games, speed, seed, policy, teacher), ascii_only
+        house,
+        lambda program: program.play(games, speed, seed, policy, teacher, injections),
+        ascii_only,
     )
 
 

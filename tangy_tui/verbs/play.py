@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import (
     ActivityName,
@@ -26,6 +27,7 @@ from tangy_tui.verbs.common import (
 if TYPE_CHECKING:
     from tangy_tui.house import House
     from tangy_tui.learning.asking import Lesson
+    from tangy_tui.monitoring.supervision import Supervision
 
 
 def play(
@@ -39,6 +41,18 @@ def play(
     teacher: Annotated[
         str | None, typer.Option(help="Who answers where Tangy asks; 'scripted' knows the game.")
     ] = None,
+    inject: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KIND[@STEP|~P]",
+            help="Bring about a fault: as soon as it can show, at a step (@12), with a probability "
+            "at every step (~0.02), or while another is recovered from (@recovery). Repeatable.",
+        ),
+    ] = None,
+    expert: Annotated[
+        str,
+        typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you."),
+    ] = "",
     speed: Annotated[float, typer.Option(min=1, max=1000, help="Times life, 1 to 1000.")] = 10,
     seed: Seed = None,
     data: Data = None,
@@ -48,12 +62,16 @@ def play(
     """Let Tangy facilitate games in simulation, by the policy it has learnt.
 
     Where nobody has shown it what to do, it asks a teacher, and goes on with the answer. Without
-    one (--headless or --json) the game stops there.
+    one (--headless or --json) the game stops there. What goes wrong is diagnosed and recovered
+    from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
     """
     from tangy_tui.house import teacher_name
     from tangy_tui.learning.policies import load_policy, need_policy
 
     who = plain(teacher or teacher_name())[:40]
+    if expert not in ("", "scripted"):
+        raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
+    faults = tuple(inject or ())
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity, policy)
         if not (headless or as_json) and full_screen():
@@ -67,6 +85,7 @@ def play(
                     seed=seed,
                     policy=policy,
                     teacher=who,
+                    injections=faults,
                     ascii_only=ascii_only,
                 )
             )
@@ -74,9 +93,9 @@ def play(
         say_notices(notices)
         by_lines = not (headless or as_json)
         scripted = who == "scripted"
-        facilitation = house.facilitation(learnt, seed, asks=by_lines or scripted)
+        supervision = house.supervision(learnt, seed, asks=by_lines or scripted, injections=faults)
         if not by_lines:
-            _play_headless(house, facilitation, games, as_json)
+            _play_headless(house, supervision, games, as_json, expert=bool(expert))
             return
         from tangy_tui.game_lines import play_by_lines
         from tangy_tui.inputs import line_reader
@@ -84,7 +103,7 @@ def play(
 
         read = None if scripted else line_reader(None)
         play_by_lines(
-            facilitation,
+            supervision,
             games,
             house.name,
             print_line,
@@ -94,6 +113,7 @@ def play(
                 entry.demonstration
                 for entry in read_library(house.store, house.activity.name).entries.values()
             ],
+            expert=bool(expert),
         )
 
 
@@ -123,29 +143,31 @@ def demo(
             print_json(tally)
 
 
-def _play_headless(house: House, facilitation: Any, games: int, as_json: bool) -> None:
+def _play_headless(
+    house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
+) -> None:
     from tangy_tui.documents import lesson_document
     from tangy_tui.interaction.facilitation import Taught
-    from tangy_tui.interaction.scripted_answers import answer_by_script
     from tangy_tui.interaction.tally import Tally
+    from tangy_tui.monitoring.scripted_people import go_on_by_script
     from tangy_tui.ui import reports
     from tangy_tui.wording import lesson_words
 
     tally = Tally()
     lessons: list[Lesson] = []
+    faults: list[dict[str, Any]] = []
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
-            tally.add(facilitation.begin())
-            while not facilitation.over:
-                tally.add(facilitation.step())
-                if facilitation.question is not None:
-                    answered = answer_by_script(facilitation)
-                    tally.add(answered)
-                    lessons += [event.lesson for event in answered if isinstance(event, Taught)]
-    beliefs = facilitation.persuasion.beliefs
+            tally.add(supervision.begin())
+            while not supervision.over:
+                events = go_on_by_script(supervision, expert=expert)
+                tally.add(events)
+                lessons += [event.lesson for event in events if isinstance(event, Taught)]
+        faults += [fault.document() for fault in supervision.faults if not fault.asks_only]
+    beliefs = supervision.persuasion.beliefs
     if as_json:
         told = {"answers": [lesson_document(house, one) for one in lessons]} if lessons else {}
-        print_json({**tally.to_json(house.activity.situations, beliefs), **told})
+        print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
             print(lesson_words(house.activity, lesson))

@@ -66,8 +66,8 @@ def playing(
     """Make the program with the playing screen open."""
 
     async def start(program: Program) -> None:
-        facilitation = house.facilitation(policy, 5, asks=True)
-        await program.push_screen(PlayScreen(house, facilitation, speed=speed, teacher="ann"))
+        supervision = house.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(house, supervision, speed=speed, teacher="ann"))
 
     return Program(house, start, clock=clock or StillClock())
 
@@ -98,7 +98,7 @@ async def answer(pilot: TangyPilot, words: str = "call number") -> None:
 
 async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
     """Wait until the game is over."""
-    while not screen._facilitation.over:
+    while not screen._supervision.over:
         await pilot.pause(0.02)
     await pilot.pause()
 
@@ -158,7 +158,7 @@ async def test_nothing_happens_before_a_yes(run: Run, house: House, gappy: Polic
         await pilot.press("escape")
         await pilot.pause()
         assert list(house.store.events()) == before
-        assert screen._facilitation.question is not None
+        assert screen._supervision.question is not None
 
 
 async def test_keys_typed_ahead_answer_nothing(run: Run, house: House, gappy: Policy) -> None:
@@ -172,7 +172,7 @@ async def test_keys_typed_ahead_answer_nothing(run: Run, house: House, gappy: Po
         screen = await asked(pilot)
         await pilot.pause()
         assert screen.query_one(CommandBar).text == ""
-        assert screen._facilitation.question is not None
+        assert screen._supervision.question is not None
         assert isinstance(pilot.app.screen, PlayScreen)
 
 
@@ -217,7 +217,7 @@ async def test_the_game_is_given_up_on_purpose(
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await pilot.press("n")
         await pilot.pause()
-        assert screen._facilitation.question is not None
+        assert screen._supervision.question is not None
         if way == "word":
             pilot.type(*"quit", "enter")
         else:
@@ -251,14 +251,14 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         await pilot.press("colon", "enter")
         await pilot.pause()
         assert list(house.store.events()) == before
-        assert screen._facilitation.question is not None
+        assert screen._supervision.question is not None
         await pilot.press("escape", "p")
         await pilot.pause()
         assert "STOPPED" not in screen_text(pilot.app)
         await pilot.press("enter")
         await questioned(pilot)
         await pilot.press("y")
-        while screen._facilitation.question is not None:
+        while screen._supervision.question is not None:
             await pilot.pause(0.02)
 
 
@@ -292,7 +292,7 @@ async def test_demonstrations_that_disagree_are_shown_with_the_question(
         assert "by ben)" in seen
         assert "contested" in seen
         await answer(pilot)
-        while screen._facilitation.question is not None:
+        while screen._supervision.question is not None:
             await pilot.pause(0.02)
         await pilot.pause()
         assert "set aside" in " ".join(screen.query_one(LogView).sentences)
@@ -303,7 +303,7 @@ async def test_an_answered_step_says_who_answered(run: Run, house: House, gappy:
         screen = await asked(pilot)
         await pilot.press("escape", "p", "colon")
         await answer(pilot)
-        while screen._facilitation.question is not None:
+        while screen._supervision.question is not None:
             await pilot.pause(0.02)
         await pilot.pause()
         await pilot.press("w")
@@ -324,22 +324,22 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 
     async with run(app=playing(house, gappy)) as pilot:
         screen = await asked(pilot)
-        policy = screen._facilitation.policy
+        policy = screen._supervision.policy
         with monkeypatch.context() as broken:
             broken.setattr(house.store, "append", refuse)
             await answer(pilot)
             while not isinstance(pilot.app.screen, MessageDialog):
                 await pilot.pause(0.02)
         assert "the disk is full" in screen_text(pilot.app)
-        assert screen._facilitation.policy is policy
+        assert screen._supervision.policy is policy
         await pilot.press("enter")
         await pilot.pause()
         await pilot.press("p")
         await asked(pilot)
         await answer(pilot)
-        while screen._facilitation.question is not None:
+        while screen._supervision.question is not None:
             await pilot.pause(0.02)
-        assert screen._facilitation.policy is not policy
+        assert screen._supervision.policy is not policy
 
 
 async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(

@@ -56,8 +56,8 @@ def playing(house: House, policy: Policy, *, speed: float = 1, games: int = 1) -
     """Make the program with the playing screen open; at speed 1 only keys move the game."""
 
     async def start(started: Program) -> None:
-        facilitation = house.facilitation(policy, 5)
-        await started.push_screen(PlayScreen(house, facilitation, games=games, speed=speed))
+        supervision = house.supervision(policy, 5)
+        await started.push_screen(PlayScreen(house, supervision, games=games, speed=speed))
 
     return Program(house, start, clock=StillClock())
 
@@ -97,7 +97,7 @@ async def test_skipping_plays_the_game_to_its_end(run: Run, house: House, policy
     async with run(app=playing(house, policy)) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
-        while not screen._facilitation.over:
+        while not screen._supervision.over:
             await pilot.pause(0.02)
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]

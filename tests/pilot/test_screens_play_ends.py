@@ -60,8 +60,8 @@ def playing(house: House, policy: Policy, leave_after: float | None = None) -> P
     """Make the program with the playing screen open; what it leads to is kept in `results`."""
 
     async def start(program: Program) -> None:
-        facilitation = house.facilitation(policy, 5, asks=True)
-        screen = PlayScreen(house, facilitation, speed=1000, leave_after=leave_after, teacher="ann")
+        supervision = house.supervision(policy, 5, asks=True)
+        screen = PlayScreen(house, supervision, speed=1000, leave_after=leave_after, teacher="ann")
         program.results = [await program.push_screen_wait(screen)]  # type: ignore[attr-defined]
 
     return Program(house, start, clock=StillClock())
@@ -77,7 +77,7 @@ async def over(pilot: TangyPilot) -> PlayScreen:
     screen = pilot.app.screen
     assert isinstance(screen, PlayScreen)
     await pilot.press("e")
-    while not screen._facilitation.over:
+    while not screen._supervision.over:
         await pilot.pause(0.02)
     await pilot.pause()
     return screen

@@ -240,9 +240,9 @@ def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> N
 
 def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, cover: Cover) -> None:
     policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
-    facilitation = house.facilitation(policy, 3)
+    supervision = house.supervision(policy, 3)
     said: list[str] = []
-    play_by_lines(facilitation, 3, house.name, said.append)
+    play_by_lines(supervision, 3, house.name, said.append)
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. start · nobody asks -> greeting, 100% of the votes"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
@@ -250,18 +250,18 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, co
     learnt = [line for line in said if " complied (" in line or late in line]
     assert any(late in line for line in learnt)
     assert all("best so far: " in line for line in learnt)
-    assert said[-4:] == belief_lines(facilitation, house.name)
+    assert said[-4:] == belief_lines(supervision, house.name)
     assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
     assert all(line.isprintable() for line in said)
 
 
 def test_what_counts_as_no_is_said_to(house: House, cover: Cover) -> None:
     policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
-    facilitation = house.facilitation(policy, 3)
+    supervision = house.supervision(policy, 3)
 
     def line(*, followed: bool, complied: bool) -> str:
         response = Response("user2", "praise", followed, complied, 12.0)
-        return game_lines(Learnt(response, Beta(1, 2)), facilitation, house.name)[0]
+        return game_lines(Learnt(response, Beta(1, 2)), supervision, house.name)[0]
 
     assert line(followed=True, complied=True).startswith("   User 2 complied (praise now ")
     late = "   User 2 followed, but late, which counts as no (praise now "
@@ -274,7 +274,7 @@ def test_a_stopped_game_says_why(house: House, cover: Cover) -> None:
     shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
     policy = learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
     said: list[str] = []
-    play_by_lines(house.facilitation(policy, 3), 1, house.name, said.append)
+    play_by_lines(house.supervision(policy, 3), 1, house.name, said.append)
     stopped = next(line for line in said if line.startswith("The game stopped after "))
     assert "Nobody has shown Tangy what to do here yet: end · somebody asks." in stopped
 
@@ -292,7 +292,7 @@ def asked(house: House, *lines: str, knows: bool = True) -> list[str]:
     typed = iter(lines)
     said: list[str] = []
     play_by_lines(
-        house.facilitation(policy, 3, asks=True),
+        house.supervision(policy, 3, asks=True),
         1,
         house.name,
         said.append,

@@ -16,7 +16,7 @@ from textual.widgets import Static
 from textual.worker import WorkerFailed
 
 from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import Facilitation, GameEvent, Unsure
+from tangy_tui.interaction.facilitation import Unsure
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.explaining import Why
 from tangy_tui.learning.verifying import (
@@ -29,6 +29,7 @@ from tangy_tui.learning.verifying import (
     Verification,
     Verified,
 )
+from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
@@ -67,16 +68,16 @@ def answers_words(why: Why) -> str:
 
 
 async def learn_answer(
-    screen: Screen[Any], facilitation: Facilitation, answer: Verified, teacher: str
-) -> list[GameEvent]:
+    screen: Screen[Any], supervision: Supervision, answer: Verified, teacher: str
+) -> list[Event]:
     """Act on an answer and learn from it, beside the screen: the forest takes a moment.
 
     Raises:
         TangyError: it could not be kept, and nothing of it is.
     """
 
-    def learn() -> list[GameEvent]:
-        return facilitation.answer(answer.behaviour, answer.target, teacher)
+    def learn() -> list[Event]:
+        return supervision.answer(answer.behaviour, answer.target, teacher)
 
     worker = screen.run_worker(learn, thread=True, exit_on_error=False, group="learning")
     try:
@@ -103,14 +104,14 @@ class AskingPanel(Vertical):
         """Why was typed: the grounds are to be shown."""
 
     def __init__(
-        self, house: House, facilitation: Facilitation, question: Unsure, before: str = ""
+        self, house: House, supervision: Supervision, question: Unsure, before: str = ""
     ) -> None:
         """Make the panel for a question of Tangy's; `before` says what was learnt from the last."""
         super().__init__(id="asking")
         self._house = house
-        self._facilitation = facilitation
+        self._supervision = supervision
         self._question = question
-        self._verifier = facilitation.verifier()
+        self._verifier = supervision.verifier()
         self._phrasebook = Phrasebook(house.activity, house.people)
         self._answer: asyncio.Future[Verified | None] = asyncio.get_running_loop().create_future()
         self._held = False
@@ -248,11 +249,11 @@ class AskingPanel(Vertical):
         words = self._question.reason
         if self._question.decision.seen:
             situation = self._question.state.situation
-            why = why_of(self._house, self._facilitation.policy, situation)
+            why = why_of(self._house, self._supervision.policy, situation)
             words = f"{words} {answers_words(why)}"
         return clean(f"{words} What should Tangy do?")
 
     def _sees(self) -> str:
-        world, house = self._facilitation.world, self._house
+        world, house = self._supervision.world, self._house
         words = state_words(house.activity, self._question.state, world.scene(), house.name)
         return clean(f"Now: {words}")

@@ -12,8 +12,9 @@ from textual.containers import Horizontal, Vertical
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
-from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEnded, GameEvent, Unsure
+from tangy_tui.interaction.facilitation import Acted, GameEnded, Unsure
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -44,7 +45,7 @@ class PlayScreen(TangyScreen[Tally]):
     def __init__(
         self,
         house: House,
-        facilitation: Facilitation,
+        supervision: Supervision,
         *,
         games: int = 1,
         speed: float = 20,
@@ -61,13 +62,13 @@ class PlayScreen(TangyScreen[Tally]):
         """
         super().__init__()
         self._house = house
-        self._facilitation = facilitation
+        self._supervision = supervision
         self._games = games
         self._speed = speed
         self._leave_after = leave_after
         self._teacher = teacher or teacher_name()
         self._tally = Tally()
-        self._picture = GamePicture(self, house, facilitation)
+        self._picture = GamePicture(self, house, supervision)
         self._going = asyncio.Event()
         self._going.set()
         self._nudge = asyncio.Event()
@@ -114,7 +115,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_one_step(self) -> None:
         """Do one step and pause."""
-        if self._refused() or self._facilitation.over:
+        if self._refused() or self._supervision.over:
             return
         self._single = True
         self._going.set()
@@ -128,7 +129,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     def action_skip(self) -> None:
         """Play the rest of the game at once."""
-        if self._refused() or self._facilitation.over:
+        if self._refused() or self._supervision.over:
             return
         self._skipping = True
         self._going.set()
@@ -139,7 +140,7 @@ class PlayScreen(TangyScreen[Tally]):
         if self._refused():
             return
         self._games += 1
-        if self._facilitation.over and self._tally.games + 1 == self._games:
+        if self._supervision.over and self._tally.games + 1 == self._games:
             self._halted = False
             self._going.set()
             self.run_worker(self._play(), name="game", exclusive=True)
@@ -187,7 +188,7 @@ class PlayScreen(TangyScreen[Tally]):
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
-        elif self._facilitation.over or self._leave_after is not None:
+        elif self._supervision.over or self._leave_after is not None:
             close(self, self._tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
@@ -215,7 +216,7 @@ class PlayScreen(TangyScreen[Tally]):
         """Let the log say that a game was left."""
         if not self._learning:
             with suppress(TangyError):  # who leaves is not held up by a log that is full
-                self._tally.add(self._facilitation.leave())
+                self._tally.add(self._supervision.leave())
 
     def on_unmount(self) -> None:
         """End a game whose program is being left."""
@@ -276,18 +277,18 @@ class PlayScreen(TangyScreen[Tally]):
 
     async def _play_game(self) -> None:
         """Play one game, or the rest of one that was held."""
-        facilitation = self._facilitation
-        if facilitation.over:
-            self._tell(facilitation.begin())
-        while not facilitation.over:
+        supervision = self._supervision
+        if supervision.over:
+            self._tell(supervision.begin())
+        while not supervision.over:
             await self._going.wait()
             if self._single:
                 self._single = False
                 self._going.clear()
-            events = facilitation.step()
+            events = supervision.step()
             self._tell(events)
-            if facilitation.question is not None:
-                events = await self._ask(facilitation.question)
+            if supervision.question is not None:
+                events = await self._ask(supervision.question)
             if self._skipping:
                 await asyncio.sleep(0)  # let the screen and the keys live
             else:
@@ -304,14 +305,14 @@ class PlayScreen(TangyScreen[Tally]):
         await self._say_why(reason, "p tries again; esc leads home.")
         await self._going.wait()
 
-    async def _wait(self, events: list[GameEvent]) -> None:
+    async def _wait(self, events: list[Event]) -> None:
         """Let a step's time pass; a key that changes the pace ends it early."""
         seconds = sum(e.outcome.seconds for e in events if isinstance(e, Acted))
         self._nudge.clear()
         with suppress(TimeoutError):
             await asyncio.wait_for(self._nudge.wait(), seconds / self._speed)
 
-    def _tell(self, events: list[GameEvent], *, known: bool = False) -> None:
+    def _tell(self, events: list[Event], *, known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
         if not self.query(LogView):
@@ -338,12 +339,12 @@ class PlayScreen(TangyScreen[Tally]):
         panels = self.query(AskingPanel)
         return panels.first() if panels else None
 
-    async def _ask(self, question: Unsure) -> list[GameEvent]:
+    async def _ask(self, question: Unsure) -> list[Event]:
         """Wait for the teacher's answer, learn it beside the screen, and go on."""
         self.minimize()
         self.app.clear_notifications()  # they would lie over the question
         learnt, self._picture.lesson = self._picture.lesson, ""
-        asking = AskingPanel(self._house, self._facilitation, question, learnt)
+        asking = AskingPanel(self._house, self._supervision, question, learnt)
         self.add_class("-asking")
         await self.mount(asking, before="#keys")
         if self._stopped:
@@ -356,13 +357,13 @@ class PlayScreen(TangyScreen[Tally]):
             with suppress(Exception):  # the screen may be going as well
                 await asking.remove()
         if verified is None:
-            events = self._facilitation.give_up()
+            events = self._supervision.give_up()
             self._tell(events, known=True)
             return events
         self._learning = True
         self._show_status()
         try:
-            events = await learn_answer(self, self._facilitation, verified, self._teacher)
+            events = await learn_answer(self, self._supervision, verified, self._teacher)
         finally:
             self._learning = False
         self._tell(events)
@@ -377,7 +378,7 @@ class PlayScreen(TangyScreen[Tally]):
     # -------------------------------------------------------------------------------- status
 
     def _show_status(self) -> None:
-        asks = self._halted or self._facilitation.question is not None
+        asks = self._halted or self._supervision.question is not None
         robot = "STOPPED" if self._stopped else "ASKS" if asks else "OK"
         self._picture.show_status(robot, self._note())
         going = self._going.is_set()
@@ -391,6 +392,6 @@ class PlayScreen(TangyScreen[Tally]):
             return "p goes on"
         if self._learning:
             return "learning"
-        if self._facilitation.over:
+        if self._supervision.over:
             return "g plays again"
         return f"x{self._speed:g}" if self._going.is_set() else "paused"

@@ -1,0 +1,35 @@
+"""What a robot's devices say of themselves: one reading each, newest data only.
+
+A world hands these out (`World.health`); what they mean is the business of the fault rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+OK, WARN, ERROR, STALE = "OK", "WARN", "ERROR", "STALE"
+STATES = (OK, WARN, STALE, ERROR)
+"""The states of a device from best to worst. Stale is not an error: nothing was heard, so nothing
+is known; as ROS's diagnostics have it."""
+
+Fact = float | bool | str
+"""What a device measures about itself: a number, yes or no, or a word."""
+
+
+class Reading(NamedTuple):
+    """What is known of one device.
+
+    `age` is how long ago, in s, its newest data came; `state` is what the device says of itself;
+    `facts` are what it measures (which ones there are, the robot's profile says).
+    """
+
+    device: str
+    age: float = 0.0
+    state: str = OK
+    facts: Mapping[str, Fact] = MappingProxyType({})
+
+
+Health = tuple[Reading, ...]
+"""The readings of all devices of a robot."""

@@ -1,0 +1,382 @@
+"""A simulated world in which things go wrong: the same games, with faults brought about in them.
+
+Faults draw from a random stream of their own, so that without any the games are, behaviour for
+behaviour, those of `SimulatedWorld`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from random import Random
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.faults import Remedy
+from tangy_profiles.health import Health
+from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
+from tangy_sim import injection
+from tangy_sim.body import readings
+from tangy_sim.compliance import Preferences
+from tangy_sim.injection import KINDS, Injection, Kind
+from tangy_sim.users import Player, UserModel
+from tangy_sim.world import SimulatedWorld
+
+HELPS = 0.8
+"""P(somebody at the table does what Tangy asks for when it needs help)."""
+FINDS_ITSELF = 0.9
+"""P(the robot knows its place again after one turn on the spot)."""
+STARTS_AGAIN = 0.5
+"""P(a device comes back when it is started again)."""
+
+SECONDS = {"ask": 25.0, "call expert": 300.0, "spin": 10.0, "restart": 5.0, "other requests": 5.0}
+"""How long remedies take; others take no time."""
+
+NOTICED = 2.0
+"""s since which a fault is there that is brought about by hand, so that its data is stale."""
+
+
+@dataclass
+class Present:
+    """A fault that is there: since when (s), with whom, and whether it has shown."""
+
+    kind: Kind
+    since: float
+    person: str | None = None
+    shown: bool = False
+
+
+class FaultyWorld(SimulatedWorld):
+    """A simulated world with faults. Between games everything is put right."""
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        users: UserModel | None = None,
+        preferences: Preferences | None = None,
+        injections: Sequence[Injection] = (),
+    ) -> None:
+        self.injections = tuple(injections)
+        self._chance = Random(f"{seed}/faults").random
+        super().__init__(activity, people, seed=seed, users=users, preferences=preferences)
+
+    def begin(self) -> ActivityState:
+        """Begin a game in which nothing is wrong yet."""
+        state = super().begin()
+        self.present: dict[str, Present] = {}
+        self.came: list[tuple[int, str]] = []
+        """The faults that set in, and at which step."""
+        self._to_come = list(self.injections)
+        self._unheard: list[Player] = []
+        self._by_word = False  # whether requests are taken by voice and key
+        self._refused = False
+        self._health: tuple[float, tuple[str, ...], Health] | None = None
+        return state
+
+    @property
+    def seconds(self) -> float:
+        """The time in this game, in s."""
+        return self._now * self.users.call_seconds
+
+    # ------------------------------------------------------------------- faults come and go
+
+    def inject(self, kind: str) -> None:
+        """Bring about a fault by hand: now if a device shows it, else as soon as it can show.
+
+        Raises:
+            KeyError: there is no such kind.
+        """
+        chosen = KINDS[kind]
+        if chosen.shows in (injection.AT_ONCE, injection.DRIVING):
+            self._set_in(chosen, self.seconds - NOTICED)
+        else:
+            self._to_come.append(Injection(chosen))
+
+    def lift(self, kind: str) -> None:
+        """Put a fault right, whether it is there or to come."""
+        self.present.pop(kind, None)
+        self._to_come = [i for i in self._to_come if i.kind.name != kind or i in self.injections]
+        if kind == "requests-silent":
+            self._hear()
+
+    def can_show(self, kind: Kind, action: Action) -> bool:
+        """Say whether a fault of a kind would show in what follows the action."""
+        tracker, behaviour = self.tracker, action.behaviour
+        asked = tracker.place in tracker.queue
+        match kind.shows:
+            case injection.DRIVING:
+                return behaviour.effect in ("go to user", "go to front")
+            case injection.LOOKING:
+                if tracker.seen is None:
+                    return asked and behaviour.effect == "bring card closer"
+                return behaviour.effect in ("clear wrong marks", "set missing marks")
+            case injection.ASKING:
+                return asked and behaviour.effect in _ASKED_FOR and tracker.allows(behaviour)
+            case injection.CLOSING:
+                return asked and tracker.seen is not None and self._closes(behaviour)
+            case injection.MOVING_ON:
+                return self._moves_on(behaviour)
+            case injection.WAITING:
+                return len(tracker.queue) > 1 and tracker.state().attended is not None
+            case _:
+                return True
+
+    def _closes(self, behaviour: Behaviour) -> bool:
+        """Say whether a behaviour would close the request of the person beside the robot."""
+        if behaviour.closes != "when correct":
+            return behaviour.closes == "always" and self.tracker.seen == self._settled
+        player = self._players[self.tracker.place]
+        wrong, missing = player.marked & ~player.called, player.called & ~player.marked
+        left = missing if behaviour.effect == "clear wrong marks" else wrong
+        mended = wrong if behaviour.effect == "clear wrong marks" else missing
+        if not mended or left:
+            return False
+        return not any(player.called & line == line for line in self.activity.deck.lines)
+
+    def _moves_on(self, behaviour: Behaviour) -> bool:
+        """Say whether it is seen by the stage, the place or the request if it comes to nothing."""
+        tracker = self.tracker
+        if behaviour.effect in ("go to user", "go to front"):
+            return True
+        if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
+            return tracker.allows(behaviour)
+        stage = tracker.state().stage
+        return any(
+            r.stage == stage
+            and (
+                (r.condition == "before" and r.behaviour == behaviour.name)
+                or (r.condition == "count" and r.since == behaviour.name)
+            )
+            for r in self.activity.stage_rules
+        )
+
+    @property
+    def _settled(self) -> str:
+        return self.activity.card_states[-1].name
+
+    def _set_in(self, kind: Kind, since: float) -> None:
+        self.present[kind.name] = Present(kind, since, self._whom(kind))
+        self.came.append((self.tracker.step + 1, kind.name))
+
+    def _whom(self, kind: Kind) -> str | None:
+        if kind.shows in (injection.LOOKING, injection.ASKING, injection.CLOSING):
+            return self.tracker.state().attended
+        return None
+
+    def _let_faults_come(self, action: Action) -> None:
+        step, left = self.tracker.step + 1, list[Injection]()
+        for one in self._to_come:
+            if one.chance is not None:
+                left.append(one)
+                comes = self._chance() < one.chance
+            elif one.step is not None:
+                comes = one.step == step
+            else:
+                comes = not one.in_recovery and self.can_show(one.kind, action)
+            if comes and one.kind.name not in self.present:
+                self._set_in(one.kind, self.seconds)
+            elif one.chance is None and not comes:
+                left.append(one)
+        self._to_come = left
+
+    # ----------------------------------------------------------------- what is done meanwhile
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot try to carry out an action."""
+        if self.over:
+            return super().execute(action)
+        self._let_faults_come(action)
+        present = self.present
+        before, waited = self.tracker.state(), tuple(self.tracker.queue)
+        self._refused = False
+        mute = {"voice-dead", "screen-dead"} <= present.keys() or "link-lost" in present
+        vain = present.get("no-effect")
+        if mute and action.behaviour.effect not in ("go to user", "go to front"):
+            outcome = self._in_vain(action, completed=False)
+        elif vain is not None and (vain.shown or self.can_show(vain.kind, action)):
+            outcome = self._in_vain(action, completed=True)
+            self.lift("no-effect")
+        else:
+            outcome = super().execute(action)
+        if "carried-off" in present and not present["carried-off"].shown:
+            self._carry_off()
+        if "request-withdrawn" in present and before.attended is not None:
+            self._withdraw(before.attended, waited)
+        return outcome
+
+    def _in_vain(self, action: Action, *, completed: bool) -> Outcome:
+        """Let time pass with an action that changes nothing."""
+        away = self.tracker.place != FRONT
+        calls = self.users.away_calls if away else 1.0
+        self.tracker.executed(action.behaviour, succeeded=False)
+        self._pass(calls)
+        return Outcome(completed, calls * self.users.call_seconds, (), None)
+
+    def _pass(self, calls: float) -> None:
+        self._now += calls
+        if self._now >= self._next_ask:
+            self._let_people_ask()
+
+    def _carry_off(self) -> None:
+        """Push the robot to somewhere else than it is."""
+        elsewhere = [place for place in (FRONT, *self.people) if place != self.tracker.place]
+        self.tracker.arrive(elsewhere[int(self._chance() * len(elsewhere))])
+        self._in_view = False
+        self.present["carried-off"].shown = True
+
+    def _withdraw(self, attended: str, waited: Sequence[str]) -> None:
+        """Let somebody who waited take the request back, unseen by anybody."""
+        queue = self.tracker.queue
+        others = [person for person in waited if person != attended and person in queue]
+        if others:
+            queue.remove(others[int(self._chance() * len(others))])
+            self.lift("request-withdrawn")
+
+    def _drives(self) -> bool:
+        """Say whether the robot can drive now."""
+        for fault in self.present.values():
+            if fault.kind.shows == injection.DRIVING:
+                fault.shown = True
+        return not any(fault.kind.holds for fault in self.present.values())
+
+    def _go_to_user(self, action: Action) -> tuple[int, ...] | None:
+        return super()._go_to_user(action) if self._drives() else None
+
+    def _go_to_front(self, action: Action) -> tuple[int, ...] | None:
+        return super()._go_to_front(action) if self._drives() else None
+
+    def _read_card(self) -> None:
+        hidden = self.present.get("card-out-of-sight")
+        if hidden is not None and hidden.person is None:
+            hidden.person = self.tracker.place
+        mine = hidden is not None and hidden.person == self.tracker.place
+        if mine or any(fault.kind.blinds for fault in self.present.values()):
+            self._in_view = False
+            self.tracker.seen = None
+        else:
+            super()._read_card()
+
+    def _refuses(self) -> bool:
+        fault = self.present.get("never-complies")
+        if fault is None:
+            return False
+        if fault.person is None and self.tracker.place in self.tracker.queue:
+            fault.person = self.tracker.place
+        self._refused = fault.person == self.tracker.place
+        return self._refused
+
+    def _bring_card_closer(self, action: Action) -> tuple[int, ...] | None:
+        return () if self._refuses() else super()._bring_card_closer(action)
+
+    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...] | None:
+        if self.tracker.seen is None or not self._refuses():
+            return super()._correct(errors, verb)
+        player = self._players[self.tracker.place]
+        return player.cells(errors(player)) or None
+
+    def _respond(self, beside: str, action: Action) -> Response | None:
+        response = super()._respond(beside, action)
+        if response is not None and self._refused:
+            late = 2 * self.activity.patience
+            return response._replace(followed=False, complied=False, seconds=late)
+        if self.tracker.seen is None and action.behaviour.effect in _ASKED_FOR:
+            return None  # what the person did cannot be seen
+        return response
+
+    def _ask(self, player: Player) -> bool:
+        if "requests-silent" in self.present and not self._by_word:
+            if player not in self._unheard:
+                self._unheard.append(player)
+            return False
+        return super()._ask(player)
+
+    def _hear(self) -> None:
+        """Let those be heard who asked while nobody saw it."""
+        unheard, self._unheard = self._unheard, []
+        for player in unheard:
+            self.tracker.ask(player.id)
+
+    def _count(self, behaviour: Behaviour, succeeded: bool) -> None:
+        tracker = self.tracker
+        seen = tracker.seen
+        super()._count(behaviour, succeeded)
+        stuck = self.present.get("request-stuck")
+        if stuck is not None and tracker.closed is not None:
+            if stuck.person is None:
+                stuck.person = tracker.closed
+            if stuck.person == tracker.closed:
+                tracker.queue.insert(0, tracker.closed)
+                tracker.closed, tracker.seen = None, seen
+                stuck.shown = True
+
+    # ---------------------------------------------------------------------- health and recovery
+
+    def health(self) -> Health:
+        """Return what the devices report, with the symptoms of the faults that show."""
+        showing = [
+            (fault.kind.symptom, fault)
+            for fault in self.present.values()
+            if fault.kind.symptom and (fault.shown or fault.kind.shows != injection.DRIVING)
+        ]
+        if not showing:
+            return super().health()
+        key = tuple(fault.kind.name for _, fault in showing)
+        if self._health is None or self._health[:2] != (self._now, key):
+            told = [(symptom, self.seconds - fault.since) for symptom, fault in showing]
+            self._health = (self._now, key, readings(told))
+        return self._health[2]
+
+    def recover(self, remedy: Remedy) -> float:
+        """Let the robot, a user or an expert do something about a fault; return the s it took."""
+        for one in [i for i in self._to_come if i.in_recovery]:
+            self._to_come.remove(one)
+            if one.kind.name not in self.present:
+                self._set_in(one.kind, self.seconds)
+        seconds = SECONDS.get(remedy.kind, 0.0)
+        if seconds and not self.over:
+            self._pass(seconds / self.users.call_seconds)
+        found = [f.kind.name for f in self.present.values() if f.kind.code == remedy.fault]
+        match remedy.kind:
+            case "ask":
+                for name in found:
+                    if KINDS[name].helped and self._chance() < HELPS:
+                        self._is_helped(name, remedy.person)
+            case "call expert":
+                for name in found or _MUTE if remedy.fault == "mute" else found:
+                    self.lift(name)
+            case "spin":
+                if "carried-off" in found and self._chance() < FINDS_ITSELF:
+                    self.lift("carried-off")
+            case "restart":
+                for name in found:
+                    if self._chance() < STARTS_AGAIN:
+                        self.lift(name)
+            case "replan":
+                self.lift("path-detour")
+            case "other requests":
+                self._by_word = True
+                self._hear()
+            case "set aside" if remedy.person in self.tracker.queue:
+                self._set_aside(remedy.person)
+        return seconds
+
+    def _is_helped(self, kind: str, person: str | None) -> None:
+        self.lift(kind)
+        tracker = self.tracker
+        if kind == "card-out-of-sight" and tracker.place in tracker.queue:
+            self._read_card()
+        elif kind == "request-stuck" and person in tracker.queue:
+            self._set_aside(person)
+
+    def _set_aside(self, person: str) -> None:
+        self.tracker.queue.remove(person)
+        self.lift("request-stuck")
+        if person == self.tracker.place:
+            self.tracker.seen = None
+
+
+_ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
+_MUTE = ("voice-dead", "screen-dead")

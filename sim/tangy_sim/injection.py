@@ -1,0 +1,144 @@
+"""Which faults can be brought about in the simulated world, and how that is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import nearest, plain
+from tangy_sim.body import Symptom, dead, lasting, otherwise, silent
+
+AT_ONCE = "at once"
+DRIVING = "driving"
+LOOKING = "looking"
+ASKING = "asking"
+CLOSING = "closing"
+MOVING_ON = "moving on"
+WAITING = "waiting"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of fault: what happens in the room, and where it can show.
+
+    `shows`: at once, by what a device reports; or only while the robot is driving, looking at a
+    card, asking a person for something, closing a request, doing what moves the activity on, or
+    while somebody else is waiting. `code` is the diagnosis that is right.
+    """
+
+    name: str
+    words: str
+    code: str
+    shows: str
+    symptom: Symptom | None = None
+    holds: bool = False
+    """Whether the robot cannot drive with it."""
+    blinds: bool = False
+    """Whether it cannot see cards with it."""
+    helped: bool = False
+    """Whether people at the table can put it right."""
+
+
+_KINDS = (
+    Kind("emergency-stop", "somebody presses the emergency stop", "emergency-stop", AT_ONCE,
+         otherwise("stop_button", latched=True), holds=True),
+    Kind("link-lost", "nothing is heard from the robot", "link-lost", AT_ONCE,
+         silent("link", "stop_button", "laser", "base", "localisation", "navigator", "camera",
+                "requests", "voice", "screen", "arms"), holds=True, blinds=True),
+    Kind("laser-disconnected", "the laser scanner's cable comes off", "laser-disconnected",
+         AT_ONCE, silent("laser"), holds=True),
+    Kind("laser-occluded", "a coat hangs over the laser scanner", "laser-occluded", AT_ONCE,
+         otherwise("laser", near_share=0.85), holds=True, helped=True),
+    Kind("camera-disconnected", "the head camera's cable comes off", "camera-disconnected",
+         AT_ONCE, silent("camera"), blinds=True),
+    Kind("camera-occluded", "a scarf hangs over the head camera", "camera-occluded", AT_ONCE,
+         otherwise("camera", brightness=0.03, contrast=0.01), blinds=True, helped=True),
+    Kind("camera-frozen", "the head camera sends one picture for ever", "camera-frozen", AT_ONCE,
+         lasting("camera", "unchanged"), blinds=True),
+    Kind("base-failed", "the wheels report nothing", "base-failed", AT_ONCE, silent("base"),
+         holds=True),
+    Kind("base-stuck", "something is caught between the wheels", "base-stuck", DRIVING,
+         otherwise("base", still=4.0), holds=True),
+    Kind("wheels-slip", "a rug slides under the wheels", "wheels-slip", DRIVING,
+         otherwise("base", slip=0.9), holds=True),
+    Kind("path-blocked", "chairs block every way", "path-blocked", DRIVING,
+         otherwise("navigator", path="none"), holds=True, helped=True),
+    Kind("path-detour", "a chair stands in the shortest way", "path-detour", DRIVING,
+         otherwise("navigator", path="replanned")),
+    Kind("carried-off", "somebody pushes the robot elsewhere", "carried-off", AT_ONCE,
+         otherwise("localisation", fit=0.55, spread=1.6), holds=True),
+    Kind("card-out-of-sight", "a card is where the camera cannot see it", "card-out-of-sight",
+         LOOKING, helped=True),
+    Kind("requests-silent", "the request sensor sends nothing", "requests-silent", AT_ONCE,
+         silent("requests")),
+    Kind("request-stuck", "a sign stays up after its owner was helped", "request-stuck", CLOSING,
+         helped=True),
+    Kind("request-withdrawn", "somebody who waited asks no more", "unexplained", WAITING),
+    Kind("arm-failed", "a servo of an arm reports an error", "arm-failed", AT_ONCE,
+         otherwise("arms", hardware_error=True)),
+    Kind("voice-dead", "the voice ends", "voice-dead", AT_ONCE, dead("voice")),
+    Kind("screen-dead", "the chest screen goes dark", "screen-dead", AT_ONCE, dead("screen")),
+    Kind("never-complies", "a person follows no request any more", "never-complies", ASKING),
+    Kind("no-effect", "a behaviour comes to nothing, and no sensor says why", "unexplained",
+         MOVING_ON),
+)  # fmt: skip
+KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _KINDS})
+"""Every kind of fault that can be brought about, by name."""
+
+IN_RECOVERY = "recovery"
+"""The word for: while another fault is being recovered from."""
+
+
+@dataclass(frozen=True)
+class Injection:
+    """A fault that is to come: at a step of each game, by chance at every step, or in recovery.
+
+    Without any of these it comes as soon as it can show.
+    """
+
+    kind: Kind
+    step: int | None = None
+    chance: float | None = None
+    in_recovery: bool = False
+
+    def __str__(self) -> str:
+        if self.in_recovery:
+            return f"{self.kind.name}@{IN_RECOVERY}"
+        if self.step is not None:
+            return f"{self.kind.name}@{self.step}"
+        return self.kind.name if self.chance is None else f"{self.kind.name}~{self.chance:g}"
+
+
+def read_injection(text: str) -> Injection:
+    """Read `KIND`, `KIND@step`, `KIND~probability` or `KIND@recovery`.
+
+    Raises:
+        TangyError: one sentence that says what is wrong, and the nearest kind.
+    """
+    for sign in "@~":
+        name, found, when = text.partition(sign)
+        if found:
+            break
+    kind = KINDS.get(name.strip())
+    if kind is None:
+        raise TangyError(plain(f"There is no fault {name.strip()!r}: {nearest(name, KINDS)}"))
+    when = when.strip()
+    if not found:
+        return Injection(kind)
+    if sign == "@" and when == IN_RECOVERY:
+        return Injection(kind, in_recovery=True)
+    if sign == "@":
+        if when.isascii() and when.isdecimal() and 1 <= int(when[:7]) <= 1_000_000:
+            return Injection(kind, step=int(when))
+        raise TangyError(
+            plain(f"{text!r}: after @ comes a step from 1 on, or the word {IN_RECOVERY!r}.")
+        )
+    try:
+        chance = float(when)
+    except ValueError:
+        chance = -1.0
+    if not 0 < chance <= 1:
+        raise TangyError(plain(f"{text!r}: after ~ comes a probability above 0 and up to 1."))
+    return Injection(kind, chance=chance)

@@ -1,0 +1,83 @@
+"""Faults line by line: what is wrong, what is done about it, and staff who clear it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, Move
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.monitoring.telling import move_words
+
+Read = Callable[[], str | None]
+Write = Callable[[str], None]
+
+HALTED = "Tangy stands still. Type: seen, expert, clear, what, faults, or quit."
+MEANINGS = (
+    ("seen", "you have seen it"),
+    ("expert", "call the expert"),
+    ("clear", "all is well again: Tangy goes on"),
+    ("what", "what to do"),
+    ("faults", "all faults of this game"),
+    ("quit", "give the game up"),
+)
+
+
+def fault_lines(event: FaultEvent) -> list[str]:
+    """Put a fault, or what was done about it, into lines."""
+    fault = event.fault
+    if fault.asks_only:
+        return []  # the question that Tangy asks says all of it
+    if isinstance(event, Diagnosed):
+        kind = "CRITICAL" if fault.critical else "non-critical"
+        return [f"!  Fault, {kind}: {fault.name}. {fault.console}", f"   Why: {fault.why}."]
+    if event.move.kind == "halted" and not fault.critical:
+        return [f"!  Tangy halts: {fault.name}.", *_said(event.move)]
+    return [f"   {fault.name}: {move_words(event.move)}.", *_said(event.move)]
+
+
+def _said(move: Move) -> list[str]:
+    return [f"   Tangy says: {move.speech}"] if move.speech else []
+
+
+def list_lines(faults: list[Fault]) -> list[str]:
+    """List faults with what was done about each."""
+    lines: list[str] = []
+    for number, fault in enumerate(faults, 1):
+        lines.append(f"{number}. step {fault.step}: {fault.name} ({fault.status})")
+        lines += [f"   {move.seconds:.0f} s: {move_words(move)}" for move in fault.moves]
+    return lines or ["No faults in this game."]
+
+
+def attend(game: Supervision, write: Write, read: Read, who: str) -> list[Event]:
+    """Take what staff say while the robot is halted; at the end of their lines the game ends."""
+    fault = game.halted
+    if fault is None:
+        return []
+    write(HALTED)
+    while (line := read()) is not None:
+        word = line.strip().lower()
+        if word in ("seen", "acknowledge", "a"):
+            told = game.acknowledge(who)
+            if told:
+                return told
+            write("It was seen already: expert calls the expert, clear lets Tangy go on.")
+        elif word in ("expert", "call expert", "e"):
+            return game.call_expert(who)
+        elif word in ("clear", "cleared", "c"):
+            if fault.acknowledged:
+                return game.clear(who)
+            write("Say first that you have seen it: seen.")
+        elif word in ("what", "what to do", "why"):
+            write(f"{fault.console} Why: {fault.why}.")
+            for number, step in enumerate(fault.advice, 1):
+                write(f"  {number}. {step}")
+        elif word == "faults":
+            for told_line in list_lines(game.faults):
+                write(told_line)
+        elif word in ("quit", "exit", "leave"):
+            break
+        elif word and not word.startswith("#"):
+            write(HALTED)
+            for key, meaning in MEANINGS:
+                write(f"  {key}: {meaning}")
+    return game.give_up()

@@ -1,0 +1,136 @@
+"""Fault detection (III-C): what was observed, held against what was to be expected.
+
+After each behaviour the state is compared with the learnt effects; all the time the age and state
+of what the devices report is looked at. What comes out is evidence; what it means is `diagnosis`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.faults import Evidence
+from tangy_profiles.health import ERROR, STALE, STATES, Fact, Health, Reading
+from tangy_profiles.robot import Robot
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.learning.effects import Effects, Mismatch
+
+OWED_BY_PEOPLE = ("what was asked about", "request")
+"""The variables that stay as they were if a person does not do what was asked: an outcome, and
+no fault of the robot's."""
+
+
+class Detector:
+    """Turns observations into evidence. One per run of games; `begin` each game."""
+
+    def __init__(self, activity: Activity, robot: Robot, effects: Effects) -> None:
+        self.effects = effects
+        self._activity = activity
+        self._robot = robot
+        self._refusals: Counter[str] = Counter()
+        self._fruitless = 0
+        self._health: Health | None = None
+        self._devices: dict[str, Fact] = {}
+
+    def begin(self) -> None:
+        """Forget what the last game had."""
+        self._refusals.clear()
+        self._fruitless = 0
+
+    def forgive(self, person: str | None) -> None:
+        """Begin anew to count what a person does not do."""
+        self._fruitless = 0
+        if person is not None:
+            self._refusals.pop(person, None)
+
+    def state(self, reading: Reading) -> str:
+        """Return the state of a device: what it says of itself, or STALE if it says too little."""
+        device = self._robot.devices.get(reading.device)
+        stale = device is not None and reading.age > device.stale_after
+        return STALE if stale and reading.state != ERROR else reading.state
+
+    def watch(self, health: Health) -> Evidence:
+        """Return the evidence that the devices give; the same object for the same readings."""
+        if health is not self._health:
+            self._health, self._devices = health, {}
+            for reading in health:
+                self._devices[f"{reading.device}.state"] = self.state(reading)
+                self._devices[f"{reading.device}.age"] = reading.age
+                for fact, value in reading.facts.items():
+                    self._devices[f"{reading.device}.{fact}"] = value
+        return self._devices
+
+    def worst(self, health: Health) -> tuple[str, str]:
+        """Return the worst state of all devices, and the label of the one that has it."""
+        states = [(self.state(reading), reading.device) for reading in health]
+        state, name = max(states, key=lambda one: STATES.index(one[0]), default=("OK", ""))
+        device = self._robot.devices.get(name)
+        return state, device.label if device is not None else name
+
+    def compare(self, acted: Acted) -> tuple[dict[str, Fact], list[Mismatch]]:
+        """Compare what followed a behaviour with its learnt effects.
+
+        Where nothing at all is known of a behaviour's effects, nothing can be unexpected.
+
+        Returns:
+            The evidence of the execution, and what was not as expected.
+        """
+        behaviour, outcome = acted.action.behaviour, acted.outcome
+        followed = outcome.response is None or outcome.response.followed
+        found: list[Mismatch] = []
+        if behaviour.name in self.effects.values:
+            found = [
+                mismatch
+                for mismatch in self.effects.mismatches(
+                    behaviour.name, acted.state, acted.after, self._activity
+                )
+                if followed or mismatch.variable not in OWED_BY_PEOPLE
+            ]
+        evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
+        self._count(acted.state, acted.after, outcome)
+        person = acted.state.attended
+        if person is not None and self._refusals[person]:
+            evidence["person.refusals"] = self._refusals[person]
+        if self._fruitless:
+            evidence["visit.fruitless"] = self._fruitless
+        if evidence:
+            evidence["behaviour.name"] = behaviour.name
+            evidence["behaviour.effect"] = behaviour.effect
+            evidence["behaviour.completed"] = outcome.completed
+            evidence["behaviour.response"] = _response(outcome)
+        return evidence, found
+
+    def _count(self, before: ActivityState, after: ActivityState, outcome: Outcome) -> None:
+        """Count requests that a person did not follow, and behaviours that changed nothing."""
+        if outcome.response is not None:
+            person = outcome.response.person
+            if outcome.response.followed:
+                self._refusals.pop(person, None)
+            else:
+                self._refusals[person] += 1
+        alike = after._replace(step=before.step, closed=before.closed) == before
+        self._fruitless = self._fruitless + 1 if alike and before.attended is not None else 0
+
+
+def symptoms(evidence: Evidence) -> set[str]:
+    """Return the keys of evidence that asks for an explanation by itself."""
+    return {
+        key
+        for key, value in evidence.items()
+        if key.startswith("mismatch.") or (key.endswith(".state") and value in (ERROR, STALE))
+    }
+
+
+def together(*evidence: Mapping[str, Fact]) -> dict[str, Fact]:
+    """Join what devices, world state and execution give."""
+    return {key: value for one in evidence for key, value in one.items()}
+
+
+def _response(outcome: Outcome) -> str:
+    if outcome.response is None:
+        return "none"
+    if not outcome.response.followed:
+        return "not followed"
+    return "complied" if outcome.response.complied else "late"

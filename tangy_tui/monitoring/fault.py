@@ -1,0 +1,234 @@
+"""A fault and what was done about it: the record that console, log and reports share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+from tangy_profiles.faults import FaultRule
+from tangy_profiles.health import Fact
+from tangy_profiles.store import Event, Store
+from tangy_tui.learning.effects import Mismatch
+
+FAULT = "fault"
+RECOVERY = "recovery"
+ACCEPTED = "effect accepted"
+
+OPEN, BORNE, OVER = "open", "borne", "over"
+"""What a fault can be: still to be dealt with; there, but Tangy goes on without; over."""
+
+MOVES: Mapping[str, str] = {
+    "kept": "kept for later: another fault comes first",
+    "asked": "asked for help",
+    "remedied": "did something about it by itself",
+    "teacher asked": "asked the teacher",
+    "halted": "halted",
+    "acknowledged": "was acknowledged",
+    "expert called": "the expert was called",
+    "still there": "is still there",
+    "escalated": "that did not help",
+    "went on": "went on",
+    "recovered": "recovered",
+    "taught": "the teacher said what to do",
+    "accepted": "the teacher said that this is all right",
+    "cleared": "was cleared",
+    "ended": "ended by itself",
+    "given up": "the game was given up",
+    "left open": "was left open at the end of the game",
+}
+"""What can be done about a fault, in words."""
+
+ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended"))
+"""The moves after which a fault is over."""
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """One step of a recovery: what, the how-manieth time, by whom, what was said, when (s)."""
+
+    kind: str
+    seconds: float
+    attempt: int = 0
+    by: str = ""
+    to: str = ""
+    speech: str = ""
+    image: str = ""
+    remedy: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the move as the log keeps it; what is empty is left out."""
+        body = {name: getattr(self, name) for name in self.__slots__}
+        return {name: value for name, value in body.items() if value or name == "seconds"}
+
+    @classmethod
+    def from_json(cls, body: Mapping[str, Any]) -> Move:
+        """Read a move that `to_json` wrote."""
+        return cls(**{name: body[name] for name in cls.__slots__ if name in body})
+
+
+@dataclass
+class Fault:
+    """One occurrence of a fault.
+
+    `seconds` is the time in the game at which it was diagnosed, `step` the last step before that,
+    and `behaviour` what had been executed, if it was noticed by that. `why` is its evidence in
+    words, `console` what staff are told.
+    """
+
+    id: str
+    game: str
+    code: str
+    name: str
+    critical: bool
+    recovery: str
+    step: int
+    seconds: float
+    behaviour: str
+    person: str | None
+    console: str
+    why: str
+    evidence: Mapping[str, Fact]
+    mismatches: tuple[Mismatch, ...]
+    advice: tuple[str, ...]
+    moves: list[Move] = field(default_factory=list)
+    at: str = ""
+    """When it was logged (ISO 8601, UTC)."""
+
+    @property
+    def status(self) -> str:
+        """Whether it is open, borne or over."""
+        kinds = [move.kind for move in self.moves]
+        if not ENDINGS.isdisjoint(kinds):
+            return OVER
+        return BORNE if "went on" in kinds else OPEN
+
+    @property
+    def asks_only(self) -> bool:
+        """Whether nothing went wrong, and Tangy only does not know what to do."""
+        return "situation.shown" in self.evidence
+
+    @property
+    def acknowledged(self) -> bool:
+        """Whether staff said that they have seen it."""
+        return any(move.kind == "acknowledged" for move in self.moves)
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether it was recovered from, or Tangy went on with it as it should."""
+        return self.status in (OVER, BORNE)
+
+    @property
+    def ladder(self) -> tuple[str, ...]:
+        """The recoveries that were begun, from the first to the last that was needed."""
+        return (self.recovery, *(move.to for move in self.moves if move.kind == "escalated"))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the fault as the log keeps it, without its moves."""
+        return {
+            "game": self.game,
+            "fault": self.id,
+            "code": self.code,
+            "name": self.name,
+            "criticality": "critical" if self.critical else "non-critical",
+            "recovery": self.recovery,
+            "step": self.step,
+            "seconds": self.seconds,
+            "behaviour": self.behaviour,
+            "console": self.console,
+            "why": self.why,
+            "evidence": dict(self.evidence),
+            "mismatches": [
+                {
+                    "behaviour": m.behaviour,
+                    "variable": m.variable,
+                    "expected": list(m.expected),
+                    "seen": m.seen,
+                }
+                for m in self.mismatches
+            ],
+            "advice": list(self.advice),
+        }
+
+    def document(self) -> dict[str, Any]:
+        """Return the fault with what was done about it, as `--json` prints it."""
+        return {
+            **self.to_json(),
+            "person": self.person,
+            "status": self.status,
+            "ladder": list(self.ladder),
+            "moves": [move.to_json() for move in self.moves],
+            "reason": f"{self.name}: {self.console}",
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosed:
+    """A fault was detected and diagnosed."""
+
+    fault: Fault
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """Something was done about a fault, or happened to it."""
+
+    fault: Fault
+    move: Move
+
+
+FaultEvent: TypeAlias = Diagnosed | Moved
+
+
+def read_faults(store: Store, game: str | None = None) -> list[Fault]:
+    """Read the faults of a game (of all games) with their moves from the log, in order."""
+    return fold_faults(
+        event
+        for event in store.events(FAULT, RECOVERY)
+        if game is None or event.body["game"] == game
+    )
+
+
+def fold_faults(events: Iterable[Event]) -> list[Fault]:
+    """Put faults and their moves together from their events."""
+    found: dict[str, Fault] = {}
+    for event in events:
+        body = event.body
+        if event.kind == FAULT:
+            found[body["fault"]] = Fault(
+                id=body["fault"],
+                game=body["game"],
+                code=body["code"],
+                name=body["name"],
+                critical=body["criticality"] == "critical",
+                recovery=body["recovery"],
+                step=int(body["step"]),
+                seconds=float(body["seconds"]),
+                behaviour=body["behaviour"],
+                person=event.person,
+                console=body["console"],
+                why=body["why"],
+                evidence=body["evidence"],
+                mismatches=tuple(
+                    replace(Mismatch(**one), expected=tuple(one["expected"]))
+                    for one in body["mismatches"]
+                ),
+                advice=tuple(body["advice"]),
+                at=event.at,
+            )
+        elif body["fault"] in found:
+            found[body["fault"]].moves.append(Move.from_json(body))
+    return list(found.values())
+
+
+def rule_texts(rule: FaultRule, name: str, object: str, why: str) -> dict[str, Any]:
+    """Return the texts of a rule with person, object and evidence filled in."""
+
+    def fill(text: str) -> str:
+        return rule.fill(text, name=name, object=object, why=why)
+
+    return {
+        "name": fill(rule.name),
+        "console": fill(rule.console),
+        "advice": tuple(fill(step) for step in rule.advice),
+    }

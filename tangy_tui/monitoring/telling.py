@@ -1,0 +1,64 @@
+"""Evidence and moves in words, for console, lines and reports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_profiles.faults import CONTEXT, SYMPTOMS, Evidence
+from tangy_profiles.health import Fact
+from tangy_profiles.robot import Robot
+from tangy_tui.learning.effects import Mismatch
+from tangy_tui.monitoring.fault import MOVES, Move
+
+_STATES = {"STALE": "nothing comes from it", "ERROR": "it reports an error", "WARN": "it warns"}
+
+
+def evidence_words(evidence: Evidence, mismatches: Sequence[Mismatch], robot: Robot) -> str:
+    """Write evidence as one line: what was measured, and what was expected and seen."""
+    parts: list[str] = []
+    for key, value in evidence.items():
+        if key in CONTEXT or key.startswith("mismatch."):
+            continue
+        head, _, fact = key.partition(".")
+        device = robot.devices.get(head)
+        if device is None:
+            parts.append(f"{SYMPTOMS.get(key, key)}: {_number(value)}")
+        elif fact == "state":
+            parts.append(f"{device.label}: {_STATES.get(str(value), str(value))}")
+        else:
+            parts.append(f"{device.label}: {fact.replace('_', ' ')} {_number(value)}")
+    return "; ".join([*parts, *map(str, mismatches)])
+
+
+def move_words(move: Move) -> str:
+    """Say in a few words what was done."""
+    words = MOVES.get(move.kind, move.kind)
+    if move.remedy:
+        words = f"{words} ({move.remedy})"
+    if move.attempt > 1:
+        words = f"{words}, for the {_ordinal(move.attempt)} time"
+    if move.to:
+        words = f"{words}: now {_TO[move.to]}"
+    if move.by:
+        words = f"{words}, by {move.by}"
+    return words
+
+
+RECOVERY_WORDS = {
+    "expert": "halt, and ask an expert",
+    "user": "ask a user for help",
+    "teacher": "ask a teacher",
+    "continue": "go on",
+}
+"""The recoveries in words."""
+_TO = RECOVERY_WORDS
+
+
+def _number(value: Fact) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.2g}" if isinstance(value, float) else str(value)
+
+
+def _ordinal(number: int) -> str:
+    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
