@@ -1,0 +1,250 @@
+"""Drills: staff rehearse on the table-top what to do when something goes wrong, and get a score.
+
+Drive it by `next` and `answer`: screen, lines and scripts do the same. What was answered is in the
+log before the sheet is told; nothing else of a drill is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from random import Random
+from time import monotonic
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.faults import load_faults
+from tangy_profiles.robot import Robot
+from tangy_profiles.store import Store
+from tangy_tui.monitoring.drill_policy import policy_for_drill
+from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
+from tangy_tui.monitoring.drill_sheet import DRILL, Answered, Sheet, read_sheets
+
+ROUNDS, MOST_ROUNDS = 6, 50
+
+WHAT, DO, CLEAR = "what", "do", "clear"
+"""The three questions of a round; the last one only after a critical fault."""
+
+NOTHING = "0"
+"""The key for: nothing is wrong."""
+
+ACTIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "continue": "Nothing: Tangy goes on by itself",
+        "user": "Help it: do what it asks for",
+        "teacher": "Say what Tangy should do",
+        "expert": "Keep people away, call the expert, then clear",
+    }
+)
+"""What staff can do, by the recovery that it is, in their words."""
+
+ASKED: Mapping[str, str] = MappingProxyType(
+    {WHAT: "What is it?", DO: "What do you do?", CLEAR: "May Tangy be cleared now?"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """An answer that can be given: by which key, in words, and what it stands for."""
+
+    key: str
+    words: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is asked in a round, `kind` being one of WHAT, DO, CLEAR, and the answers there are."""
+
+    kind: str
+    text: str
+    choices: tuple[Choice, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys that answer it."""
+        return tuple(choice.key for choice in self.choices)
+
+
+class Drill:
+    """One drill. `next` begins a round, `answer` answers its questions until there is none."""
+
+    def __init__(
+        self,
+        tabletop: Tabletop,
+        store: Store,
+        *,
+        who: str,
+        seed: int | None = None,
+        rounds: int = ROUNDS,
+        clock: Callable[[], float] = monotonic,
+        note: str = "",
+    ) -> None:
+        """Prepare a drill.
+
+        Args:
+            store: where the sheet is kept; nothing else is written there.
+            who: who rehearses.
+            seed: the same one draws the same rounds (default: one that no drill has had).
+            clock: gives seconds; its beginning does not matter.
+            note: what is to be said before it begins.
+
+        Raises:
+            TangyError: there are too few rounds, or too many.
+        """
+        if not 1 <= rounds <= MOST_ROUNDS:
+            raise TangyError(f"A drill has from 1 to {MOST_ROUNDS} rounds, not {rounds}.")
+        if seed is None:
+            seed = 1 + max((sheet.seed for sheet in read_sheets(store)), default=0)
+        self.tabletop = tabletop
+        self.rounds = rounds
+        self.note = note
+        self.round: Round | None = None
+        """The round that is shown."""
+        self.question: Question | None = None
+        """What is asked; None once the round is answered, and before the first."""
+        self._store = store
+        self._who = who
+        self._seed = seed
+        self._clock = clock
+        self._plan = draw_rounds(tabletop.book, rounds, Random(f"{seed}/drill"))
+        self._given: dict[str, str] = {}
+        self._since = 0.0
+        self._answered: list[Answered] = []
+        self._kept = False
+
+    @classmethod
+    def of(
+        cls,
+        activity: Activity,
+        robot: Robot,
+        names: Mapping[str, str],
+        store: Store,
+        *,
+        who: str,
+        seed: int | None = None,
+        rounds: int = ROUNDS,
+        clock: Callable[[], float] = monotonic,
+    ) -> Drill:
+        """Make a drill by what Tangy has learnt, or else by what it is shown now; it takes a while.
+
+        Raises:
+            TangyError: there is nothing to rehearse with, or the fault rules have a mistake.
+        """
+        learnt = policy_for_drill(store, activity)
+        tabletop = Tabletop(
+            learnt.policy, learnt.effects, load_faults(robot), robot, activity, names
+        )
+        return cls(
+            tabletop, store, who=who, seed=seed, rounds=rounds, clock=clock, note=learnt.note
+        )
+
+    @property
+    def number(self) -> int:
+        """Which round is shown, from 1; 0 before the first."""
+        return 0 if self.round is None else self.round.number
+
+    @property
+    def over(self) -> bool:
+        """Whether every round has been answered."""
+        return len(self._answered) == self.rounds
+
+    @property
+    def sheet(self) -> Sheet:
+        """The score so far."""
+        return Sheet(
+            self._who, self.tabletop.activity.name, self._seed, self.rounds, tuple(self._answered)
+        )
+
+    def next(self) -> Round | None:
+        """Begin the next round; None when there is none, or when one is still to be answered."""
+        if self.over or self.question is not None:
+            return None
+        at = len(self._answered)
+        rng = Random(f"{self._seed}/drill/{at}")
+        self.round = self.tabletop.play(at + 1, self._plan[at], rng)
+        self._given = {}
+        self._ask(WHAT)
+        self._since = self._clock()
+        return self.round
+
+    def shown(self) -> None:
+        """Begin to take the time now, when the round can be read."""
+        if not self._given:
+            self._since = self._clock()
+
+    def answer(self, key: str) -> Answered | None:
+        """Answer the question by the key of one of its choices.
+
+        Returns:
+            The round with its answers once all were given; the sheet is kept after the last one.
+
+        Raises:
+            TangyError: nothing is asked, or the key stands for nothing.
+        """
+        question, shown = self.question, self.round
+        if question is None or shown is None:
+            raise TangyError("Nothing is asked now.")
+        chosen = next((choice for choice in question.choices if choice.key == key), None)
+        if chosen is None:
+            raise TangyError(f"Answer by one of: {', '.join(question.keys)}.")
+        self._given[question.kind] = chosen.value
+        self.question = None
+        if question.kind == WHAT:
+            self._ask(DO)
+        elif question.kind == DO and shown.release is not None:
+            self._ask(CLEAR)
+        if self.question is not None:
+            return None
+        answered = self._judge(shown, round(self._clock() - self._since, 1))
+        self._answered.append(answered)
+        if self.over:
+            self._keep()
+        return answered
+
+    def leave(self) -> Sheet | None:
+        """Leave the drill: what was answered is kept, unfinished; None if that is nothing."""
+        self.question = None
+        if not self._answered:
+            return None
+        self._keep()
+        return self.sheet
+
+    def _keep(self) -> None:
+        if not self._kept:
+            self._kept = True
+            self._store.append(DRILL, self.sheet.to_json())
+
+    def _judge(self, shown: Round, seconds: float) -> Answered:
+        rule, table = shown.rule, self.tabletop
+        answered = Answered(
+            shown.number,
+            shown.code,
+            "Nothing was wrong" if rule is None else table.rule_name(rule.code),
+            shown.recovery,
+            () if rule is None else tuple(table.plainly(rule, step) for step in rule.advice),
+            self._given[WHAT],
+            self._given[DO],
+            seconds,
+        )
+        if shown.release is None:
+            return answered
+        cleared = self._given[CLEAR] == "yes"
+        return replace(answered, may_clear=shown.release.right, cleared=cleared)
+
+    def _ask(self, kind: str) -> None:
+        if kind == WHAT and self.round is not None:
+            choices = [
+                Choice(str(number), self.tabletop.rule_name(code), code)
+                for number, code in enumerate(self.round.choices, 1)
+            ]
+            choices.append(Choice(NOTHING, "Nothing is wrong", ""))
+        elif kind == DO:
+            choices = [
+                Choice(str(number), words, recovery)
+                for number, (recovery, words) in enumerate(ACTIONS.items(), 1)
+            ]
+        else:
+            choices = [Choice("y", "Yes", "yes"), Choice("n", "No", "no")]
+        self.question = Question(kind, ASKED[kind], tuple(choices))

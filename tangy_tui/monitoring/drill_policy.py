@@ -1,0 +1,82 @@
+"""By which policy a drill is played: what Tangy has learnt, or else what it is shown in a moment."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.errors import TangyError
+from tangy_profiles.store import Store
+from tangy_sim.guide import GuidedWorld
+from tangy_sim.users import load_users
+from tangy_tui.learning.effects import Effects, learn_effects
+from tangy_tui.learning.policies import last_policy, load_policy
+from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+from tangy_tui.learning.scripted_teacher import MOST_STEPS
+from tangy_tui.monitoring.accepted import expected_effects
+
+FOREST = ForestSettings(trees=20)
+MOST_GAMES = 4
+"""Guided games that are shown at the most; one is enough unless an activity is an odd one."""
+
+PEOPLE = tuple(f"person{number}" for number in range(1, 5))
+
+
+class Learnt(NamedTuple):
+    """A policy, the effects it expects, and a sentence on where they come from ("": learnt)."""
+
+    policy: Policy
+    effects: Effects
+    note: str = ""
+
+
+def policy_for_drill(store: Store, activity: Activity) -> Learnt:
+    """Return the last policy if it knows every situation, or one that is learnt in a moment.
+
+    Nothing is written: what is shown for the drill is not kept.
+
+    Raises:
+        TangyError: neither is there, nor does the activity say what is expected.
+    """
+    if last_policy(store, activity.name) is not None:
+        policy, notices = load_policy(store, activity)
+        sure = all(policy.decide(situation).sure for situation in activity.situations)
+        if sure and not notices:
+            return Learnt(policy, expected_effects(store, activity, policy))
+        why = "What Tangy has learnt has gaps"
+    else:
+        why = "Tangy has learnt nothing yet"
+    if not activity.expected:
+        raise TangyError(f"{why}: teach it {activity.title} first, then rehearse.")
+    policy, effects = _taught_quickly(activity)
+    return Learnt(policy, effects, f"{why}: for this drill a scripted teacher has shown the game.")
+
+
+def _taught_quickly(activity: Activity) -> tuple[Policy, Effects]:
+    shown: list[Demonstration] = []
+    missing = set(activity.expected)
+    while missing and len(shown) < MOST_GAMES:
+        shown.append(_demonstrate(activity, len(shown) + 1))
+        missing -= {step.state.situation for step in shown[-1].steps}
+    return learn_policy(activity, shown, settings=FOREST), learn_effects(activity, shown)
+
+
+def _demonstrate(activity: Activity, seed: int) -> Demonstration:
+    """Show one guided game as the activity expects it."""
+    world = GuidedWorld(activity, PEOPLE, seed=seed, users=load_users().teaching())
+    state = world.begin()
+    steps: list[Step] = []
+    while not world.over and len(steps) < MOST_STEPS:
+        expected = activity.expected.get(state.situation)
+        if expected is None:
+            raise TangyError(f"Nothing is expected for {' / '.join(state.situation)}.")
+        behaviour = activity.behaviour(expected)
+        target = state.attended if behaviour.attends else None
+        outcome = world.execute(activity.action(behaviour, target, None))
+        after = world.observe()
+        steps.append(Step(behaviour.name, target, state, after, outcome.completed))
+        state = after
+    return Demonstration(
+        f"drill-{seed}", activity.name, "scripted", seed, PEOPLE, tuple(steps), True
+    )

@@ -1,0 +1,388 @@
+"""Rounds of a drill: faults that really happen, in simulated games that leave nothing behind.
+
+Each round is a game of its own, with a log of its own in a folder that is thrown away, so that
+nothing of it gets into what is kept of the facility's games and people.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.faults import URGENCY, FaultBook, FaultRule
+from tangy_profiles.health import Health
+from tangy_profiles.robot import Robot
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import ActivityState
+from tangy_profiles.store import Store
+from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import KINDS
+from tangy_tui.interaction.facilitation import Acted, Facilitation
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.learning.asking import Answers
+from tangy_tui.learning.effects import Effects
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.detection import Detector
+from tangy_tui.monitoring.fault import Diagnosed, Fault
+from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.monitoring.telling import evidence_words
+
+CHOICES = 4
+"""Names that are offered for what was seen."""
+
+QUIET_SHARE = 5
+"""One round in so many has no fault: people should know when to let Tangy go on."""
+
+MOST_TRIES = 40
+"""Games that are tried until a fault can be seen alone; a few are enough where it can be at all."""
+
+MOST_STEPS = 90
+SETS_IN = (4, 26)
+"""Between which steps of its game a fault sets in."""
+
+QUIET_KINDS = ("refused", "late", "asks")
+"""What may catch the eye although nothing is wrong: somebody does not do what was asked, or does
+it late, or asks while somebody else is being helped."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoundKind:
+    """What a round is about: a name, the diagnosis that is right ("": none), what is brought about.
+
+    `gap`: nothing is brought about, but Tangy was not shown one of the situations.
+    """
+
+    name: str
+    code: str = ""
+    injections: tuple[str, ...] = ()
+    gap: bool = False
+
+
+QUIET = RoundKind("quiet")
+_TWO_AT_ONCE = (RoundKind("mute", "mute", ("voice-dead", "screen-dead")),)
+_GAPS = (RoundKind("unknown-situation", "unknown-situation", gap=True),)
+
+
+def round_kinds(book: FaultBook) -> tuple[RoundKind, ...]:
+    """Return every kind of fault that can be rehearsed with a book."""
+    single = tuple(RoundKind(kind.name, kind.code, (kind.name,)) for kind in KINDS.values())
+    codes = {rule.code for rule in book.rules}
+    return tuple(kind for kind in (*single, *_TWO_AT_ONCE, *_GAPS) if kind.code in codes)
+
+
+def draw_rounds(book: FaultBook, rounds: int, rng: Random) -> list[RoundKind]:
+    """Draw what comes up in a drill.
+
+    From four rounds on every class of fault comes up; no kind comes twice before all have come.
+    """
+    share, rest = divmod(rounds, QUIET_SHARE)
+    quiet = share + (rng.random() < rest / QUIET_SHARE)
+    classes = {book.rule(kind.code).recovery[0] for kind in round_kinds(book)}
+    if rounds >= len(classes):
+        quiet = min(quiet, rounds - len(classes))
+    drawn: list[RoundKind] = []
+    while len(drawn) < rounds - quiet:
+        bag = list(round_kinds(book))
+        rng.shuffle(bag)
+        firsts = [
+            next(kind for kind in bag if book.rule(kind.code).recovery[0] == recovery)
+            for recovery in URGENCY
+            if recovery in classes
+        ]
+        bag = [*firsts, *(kind for kind in bag if kind not in firsts)]
+        some = bag[: rounds - quiet - len(drawn)]
+        rng.shuffle(some)
+        drawn += some
+    for _ in range(quiet):
+        drawn.insert(rng.randrange(len(drawn) + 1), QUIET)
+    return drawn
+
+
+@dataclass(frozen=True, slots=True)
+class Release:
+    """The question whether Tangy may be cleared: what is seen then, and the right answer."""
+
+    seen: str
+    right: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """One round as it can be shown, and what is right.
+
+    `noticed` is the evidence in words, `devices` all devices by label with their states, `choices`
+    the codes that are offered as names. `fault` and `rule` are None where nothing is wrong; `quiet`
+    then says what caught the eye.
+    """
+
+    number: int
+    kind: RoundKind
+    state: ActivityState
+    scene: Scene
+    acted: Acted | None
+    person: str | None
+    noticed: str
+    devices: tuple[tuple[str, str], ...]
+    choices: tuple[str, ...]
+    fault: Fault | None = None
+    rule: FaultRule | None = None
+    release: Release | None = None
+    quiet: str = ""
+
+    @property
+    def code(self) -> str:
+        """The diagnosis that is right; "" where nothing is wrong."""
+        return "" if self.rule is None else self.rule.code
+
+    @property
+    def recovery(self) -> str:
+        """What is to be done, as the first rung of a fault's ladder."""
+        return "continue" if self.rule is None else self.rule.recovery[0]
+
+
+class Tabletop:
+    """Plays rounds on the table-top: with a policy, its effects, the fault rules, and people."""
+
+    def __init__(
+        self,
+        policy: Policy,
+        effects: Effects,
+        book: FaultBook,
+        robot: Robot,
+        activity: Activity,
+        names: Mapping[str, str],
+    ) -> None:
+        """Prepare to play; `names` are those who take part, by id."""
+        self.book = book
+        self.robot = robot
+        self.activity = activity
+        self.names = dict(names)
+        self._policy = policy
+        self._effects = effects
+        self._detector = Detector(activity, robot, effects)
+
+    def name(self, person: str) -> str:
+        """Return a person's name."""
+        return self.names.get(person, person)
+
+    def rule_name(self, code: str) -> str:
+        """Return what a fault is called, of nobody in particular."""
+        return self.plainly(self.book.rule(code), self.book.rule(code).name)
+
+    def plainly(self, rule: FaultRule, text: str) -> str:
+        """Fill in a rule's text so that it names nobody."""
+        return rule.fill(text, name="the person", object=self.activity.object)
+
+    def play(self, number: int, kind: RoundKind, rng: Random) -> Round:
+        """Play games until what was drawn can be seen, and nothing else.
+
+        What cannot come about in this activity is replaced by something of the same class.
+
+        Raises:
+            TangyError: nothing at all can be rehearsed.
+        """
+        for one in self._instead(kind, rng):
+            for _ in range(MOST_TRIES):
+                found = self._try(number, one, rng.randrange(1_000_000_000))
+                if found is not None:
+                    return found
+        raise TangyError(f"No fault of {self.activity.title} could be brought about.")
+
+    def _instead(self, kind: RoundKind, rng: Random) -> Iterator[RoundKind]:
+        yield kind
+        others = [other for other in round_kinds(self.book) if other != kind]
+        rng.shuffle(others)
+        mine = self._recovery(kind)
+        yield from sorted(others, key=lambda other: self._recovery(other) != mine)
+
+    def _recovery(self, kind: RoundKind) -> str:
+        return self.book.rule(kind.code).recovery[0] if kind.code else "continue"
+
+    @contextmanager
+    def _game(self, kind: RoundKind, seed: int, rng: Random) -> Iterator[Supervision]:
+        """Open a game whose log is thrown away."""
+        ids = list(self.names)
+        strategies = tuple(self.activity.strategies)
+        policy = self._with_a_gap(rng) if kind.gap else self._policy
+        with TemporaryDirectory(prefix="tangy-drill-") as folder, Store.open(
+            Path(folder)
+        ) as store, store.transaction():  # fmt: skip
+            facilitation = Facilitation(
+                FaultyWorld(self.activity, ids, seed=seed),
+                policy,
+                Persuasion(ids, strategies, Random(f"{seed}/persuasion")),
+                store,
+                names=self.names,
+                seed=seed,
+                answers=Answers(store, self.activity),
+            )
+            yield Supervision(
+                facilitation, self.book, self.robot, store, lambda _: self._effects, self.name
+            )
+
+    def _with_a_gap(self, rng: Random) -> Policy:
+        """Return the policy as it is where one of the situations was never shown."""
+        table = dict(self._policy.table)
+        situation = rng.choice(list(self.activity.situations))
+        table[situation] = replace(table[situation], seen=0, right=())
+        return replace(self._policy, table=table)
+
+    def _try(self, number: int, kind: RoundKind, seed: int) -> Round | None:
+        """Play one game; None if something else happened in it, or nothing."""
+        rng = Random(f"{seed}/round")
+        sets_in, wanted = rng.randrange(*SETS_IN), rng.choice(QUIET_KINDS)
+        refused = Counter[str]()
+        acted: Acted | None = None
+        with self._game(kind, seed, rng) as game:
+            game.begin()
+            for step in range(MOST_STEPS):
+                if step == sets_in and isinstance(game.world, FaultyWorld):
+                    for injection in kind.injections:
+                        game.world.inject(injection)
+                for event in (events := game.step()):
+                    if isinstance(event, Acted):
+                        acted = event
+                        _count(refused, event)
+                found = [event.fault for event in events if isinstance(event, Diagnosed)]
+                if found:
+                    if [fault.code for fault in found] != [kind.code]:
+                        return None
+                    return self._fault_round(number, kind, game, found[0], acted, rng)
+                if game.over:
+                    return None
+                if kind == QUIET and step >= sets_in and acted is not None:
+                    person = _catches_the_eye(wanted, acted)
+                    if person is not None:
+                        return self._quiet_round(number, game, wanted, person, acted, refused, rng)
+        return None
+
+    def _fault_round(
+        self,
+        number: int,
+        kind: RoundKind,
+        game: Supervision,
+        fault: Fault,
+        acted: Acted | None,
+        rng: Random,
+    ) -> Round:
+        rule, world = self.book.rule(fault.code), game.world
+        shown = Round(
+            number,
+            kind,
+            world.observe(),
+            world.scene(),
+            acted,
+            fault.person,
+            fault.why,
+            self._states(world.health()),
+            self._names_to_choose(rule, rng),
+            fault,
+            rule,
+        )
+        if game.halted is None:
+            return shown
+        return replace(shown, release=self._release(game, fault, mended=rng.random() < 0.5))
+
+    def _release(self, game: Supervision, fault: Fault, *, mended: bool) -> Release:
+        """Let the expert mend the fault or not, and see whether the robot can be cleared then."""
+        who = "drill"
+        if mended:
+            game.call_expert(who)
+        else:
+            game.acknowledge(who)
+        now = self._detector.watch(game.world.health())
+        seen = evidence_words(
+            {key: now[key] for key in fault.evidence if key in now}, (), self.robot
+        )
+        game.clear(who)
+        return Release(seen, game.halted is not fault)
+
+    def _quiet_round(
+        self,
+        number: int,
+        game: Supervision,
+        quiet: str,
+        person: str,
+        acted: Acted,
+        refused: Mapping[str, int],
+        rng: Random,
+    ) -> Round:
+        name, response = self.name(person), acted.outcome.response
+        match quiet:
+            case "refused":
+                times = "once" if refused[person] == 1 else f"{refused[person]} times in a row"
+                noticed = f"{name} has not done what was asked, {times}"
+            case "late":
+                seconds = response.seconds if response is not None else 0.0
+                noticed = f"{name} did what was asked, but took {seconds:.0f} s"
+            case _:
+                noticed = f"{name} has begun to ask for help"
+        world = game.world
+        return Round(
+            number,
+            QUIET,
+            world.observe(),
+            world.scene(),
+            acted,
+            person,
+            noticed,
+            self._states(world.health()),
+            self._names_to_choose(None, rng),
+            quiet=quiet,
+        )
+
+    def _states(self, health: Health) -> tuple[tuple[str, str], ...]:
+        devices = self.robot.devices
+        return tuple(
+            (devices[one.device].label, self._detector.state(one))
+            for one in health
+            if one.device in devices
+        )
+
+    def _names_to_choose(self, rule: FaultRule | None, rng: Random) -> tuple[str, ...]:
+        """Draw names that are wrong; at least one is of the same device or class."""
+        others = [other for other in self.book.rules if rule is None or other.code != rule.code]
+        rng.shuffle(others)
+        first = next((other for other in others if _alike(rule, other)), others[0])
+        wrong = [first, *(other for other in others if other is not first)]
+        codes = [other.code for other in wrong[: CHOICES - (rule is not None)]]
+        if rule is not None:
+            codes.append(rule.code)
+        rng.shuffle(codes)
+        return tuple(codes)
+
+
+def _alike(rule: FaultRule | None, other: FaultRule) -> bool:
+    """Say whether a fault can be taken for another one; for none: one that no device reports."""
+    if rule is None:
+        return not other.device
+    return (rule.device != "" and rule.device == other.device) or (
+        rule.recovery[0] == other.recovery[0]
+    )
+
+
+def _count(refused: Counter[str], acted: Acted) -> None:
+    response = acted.outcome.response
+    if response is not None:
+        refused[response.person] = 0 if response.followed else refused[response.person] + 1
+
+
+def _catches_the_eye(wanted: str, acted: Acted) -> str | None:
+    """Return whom something was seen of that looks like a fault, and is none."""
+    response = acted.outcome.response
+    if wanted == "asks":
+        asked = {user.id for user in acted.state.users if user.request == "AR"}
+        new: Sequence[str] = [
+            user.id for user in acted.after.users if user.request == "AR" and user.id not in asked
+        ]
+        return new[0] if new and acted.state.attended not in (None, new[0]) else None
+    if response is None or response.complied or response.followed is not (wanted == "late"):
+        return None
+    return response.person
