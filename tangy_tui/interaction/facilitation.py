@@ -311,6 +311,7 @@ class Facilitation:
                 "draws": choice and dict(choice.draws),
                 "numbers": list(outcome.numbers),
                 "completed": outcome.completed,
+                "seconds": outcome.seconds,
                 "state": state.to_json(),
                 "after": after.to_json(),
             },
