@@ -7,8 +7,8 @@ from typing import Any
 
 from tangy_tui.experiments import figures
 from tangy_tui.experiments.comparison import compare, many, number, percent
-from tangy_tui.experiments.page import document as page
-from tangy_tui.experiments.page import figure, heading, paragraph, table
+from tangy_tui.pages.page import document as page
+from tangy_tui.pages.page import figure, heading, paragraph, table
 
 Document = Mapping[str, Any]
 

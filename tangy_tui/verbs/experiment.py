@@ -88,11 +88,11 @@ def _run(
     report: Path | None,
     as_json: bool,
 ) -> None:
-    from tangy_tui.experiments import page
     from tangy_tui.experiments.comparison import compare
     from tangy_tui.experiments.report import report as page_of
     from tangy_tui.experiments.sweep import Where
     from tangy_tui.house import data_folder
+    from tangy_tui.pages import page
 
     if jobs == 0 or jobs < -1:
         raise TangyError(f"--jobs {jobs}: say how many processes, or -1 for one on each core.")

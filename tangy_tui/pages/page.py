@@ -30,15 +30,24 @@ th { background: var(--shade); font-weight: 600; }
 td { font-variant-numeric: tabular-nums; }
 svg { display: block; width: 100%; height: auto; }
 figure { margin: 1rem 0; } figcaption { color: var(--dim); font-size: .9rem; }
+@media print { :root { color-scheme: light;
+  --paper: #ffffff; --ink: #1b1f24; --dim: #5b6570; --line: #d9dee3; --shade: #f4f6f8;
+  --series-1: #2166ac; --series-2: #c2410c; --series-3: #1b7837; --series-4: #7b3294;
+  --series-5: #a16207; --series-6: #0e7490; }
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  @page { size: A4; margin: 14mm; }
+  body { margin: 0; padding: 0; max-width: none; font-size: 11pt; }
+  .wide { overflow-x: visible; }
+  h2, h3 { break-after: avoid; } tr, figure { break-inside: avoid; } }
 """
 
 
-def document(title: str, subtitle: str, parts: Iterable[str]) -> str:
-    """Return a whole page, which is well-formed XML, too."""
+def document(title: str, subtitle: str, parts: Iterable[str], style: str = "") -> str:
+    """Return a whole page, which is well-formed XML, too; `style` is its own beside all pages'."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8"/>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1"/>\n'
-        f"<title>{escape(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
+        f"<title>{escape(title)}</title>\n<style>{STYLE}{style}</style>\n</head>\n<body>\n"
         f'<h1>{escape(title)}</h1>\n<p class="dim">{escape(subtitle)}</p>\n'
         + "\n".join(parts)
         + "\n</body>\n</html>\n"
@@ -75,20 +84,23 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     )
 
 
-def check_place(path: Path) -> None:
+def check_place(path: Path, option: str = "--report") -> None:
     """See, before anything is worked at for long, that a page can be written there.
+
+    Args:
+        option: how the place was given on the command line.
 
     Raises:
         TangyError: it cannot.
     """
     if path.is_dir():
-        raise TangyError(plain(f"--report {path}: that is a folder; name a file in it."))
+        raise TangyError(plain(f"{option} {path}: that is a folder; name a file in it."))
     if not path.absolute().parent.is_dir():
-        raise TangyError(plain(f"--report {path}: there is no such folder to put it in."))
+        raise TangyError(plain(f"{option} {path}: there is no such folder to put it in."))
 
 
-def write(path: Path, page: str) -> None:
-    """Write a page.
+def write(path: Path, page: str, option: str = "--report") -> None:
+    """Write a page; `option` is how its place was given on the command line.
 
     Raises:
         TangyError: it cannot be written there.
@@ -96,4 +108,4 @@ def write(path: Path, page: str) -> None:
     try:
         path.write_text(page, encoding="utf-8")
     except OSError as error:
-        raise TangyError(plain(f"--report {path}: cannot be written ({error.strerror}).")) from None
+        raise TangyError(plain(f"{option} {path}: cannot be written ({error.strerror}).")) from None
