@@ -1,0 +1,201 @@
+"""The games in the log: which there were, when, by which policy, and how each ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, datetime
+from typing import Any
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.faults import CRITICAL
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.store import Event, Store
+from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
+from tangy_tui.learning.policies import POLICY
+from tangy_tui.monitoring.fault import FAULT
+
+SHORTEST = 4
+"""Characters of an id that are enough to name a game."""
+LAST, ALL = "last", "all"
+NONE_YET = "No game was played yet: begin with `tangy play`."
+TO_ITS_END = "played to its end"
+BROKEN_OFF = "it has no end in the log: it is still going on, or the program was broken off"
+
+
+@dataclass(frozen=True, slots=True)
+class Game:
+    """One game of the log.
+
+    `number` counts all games of the log from 1; `seq` is the event with which it began, and
+    `last_seq` the one with which it ended. `digest` is the policy's, and `policy` its name, where
+    the log still says it. `critical` and `other` count its faults; what Tangy only asked is none.
+    """
+
+    number: int
+    id: str
+    seq: int
+    at: datetime
+    activity: str
+    policy: str
+    digest: str
+    people: tuple[str, ...]
+    steps: int
+    critical: int
+    other: int
+    ended: datetime | None
+    last_seq: int | None
+    stopped: str | None
+
+    @property
+    def ending(self) -> str:
+        """How it ended, in words."""
+        if self.ended is None:
+            return BROKEN_OFF
+        return TO_ITS_END if self.stopped is None else self.stopped
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the game as `--json` lists it."""
+        return {
+            "number": self.number,
+            "id": self.id,
+            "at": self.at.isoformat(),
+            "activity": self.activity,
+            "policy": self.policy,
+            "digest": self.digest,
+            "people": list(self.people),
+            "steps": self.steps,
+            "faults": {"critical": self.critical, "other": self.other},
+            "ended": self.ended and self.ended.isoformat(),
+            "stopped": self.stopped,
+            "ending": self.ending,
+        }
+
+
+def read_games(store: Store) -> list[Game]:
+    """Read all games of a log, the newest last."""
+    begun: dict[str, tuple[Event, str]] = {}
+    ended: dict[str, Event] = {}
+    faults: dict[str, list[bool]] = {}
+    policies: dict[str, str] = {}
+    for event in store.events(BEGUN, ENDED, FAULT, POLICY):
+        body = event.body
+        game = str(body.get("game"))
+        if event.kind == POLICY:
+            policies[str(body.get("digest"))] = str(body.get("name", ""))
+        elif event.kind == BEGUN:
+            begun[game] = (event, policies.get(str(body.get("policy")), ""))
+        elif event.kind == ENDED:
+            ended[game] = event
+        elif "situation.shown" not in body.get("evidence", {}):
+            faults.setdefault(game, []).append(body.get("criticality") == CRITICAL)
+    steps = _steps_of_unended(store, begun.keys() - ended.keys(), begun)
+    return [
+        _game(number, event, policy, ended.get(id), faults.get(id, []), steps.get(id, 0))
+        for number, (id, (event, policy)) in enumerate(begun.items(), 1)
+    ]
+
+
+def _steps_of_unended(
+    store: Store, games: set[str], begun: dict[str, tuple[Event, str]]
+) -> dict[str, int]:
+    """Count the steps of games that have no end which would say it."""
+    counts: dict[str, int] = dict.fromkeys(games, 0)
+    if games:
+        for event in store.events(STEP, after=min(begun[id][0].seq for id in games)):
+            game = str(event.body.get("game"))
+            if game in counts:
+                counts[game] += 1
+    return counts
+
+
+def _game(
+    number: int, event: Event, policy: str, end: Event | None, faults: Sequence[bool], steps: int
+) -> Game:
+    body = event.body
+    digest = str(body.get("policy", ""))
+    return Game(
+        number=number,
+        id=str(body.get("game")),
+        seq=event.seq,
+        at=datetime.fromisoformat(event.at),
+        activity=str(body.get("activity", "")),
+        policy=policy or digest[:8],
+        digest=digest,
+        people=tuple(map(str, body.get("people", ()))),
+        steps=steps if end is None else int(end.body.get("steps", 0)),
+        critical=sum(faults),
+        other=len(faults) - sum(faults),
+        ended=None if end is None else datetime.fromisoformat(end.at),
+        last_seq=None if end is None else end.seq,
+        stopped=None if end is None else end.body.get("stopped"),
+    )
+
+
+def find_games(games: Sequence[Game], wanted: str) -> list[Game]:
+    """Return the games that a word means: a number, an id or its beginning, a day, last or all.
+
+    Raises:
+        TangyError: none or more than one is meant; says which there are.
+    """
+    word = wanted.strip().casefold()
+    if not games:
+        raise TangyError(NONE_YET)
+    if word == ALL:
+        return list(games)
+    if word == LAST:
+        return [games[-1]]
+    if word.isascii() and word.isdecimal() and 1 <= int(word[:9]) <= len(games):
+        return [games[int(word) - 1]]
+    day = _day(word)
+    if day is not None:
+        return _of_day(games, day)
+    found = [game for game in games if len(word) >= SHORTEST and game.id.startswith(word)]
+    if len(found) > 1:
+        numbers = " and ".join(str(game.number) for game in found)
+        raise TangyError(plain(f"More than one game begins with {wanted!r}: {numbers}."))
+    if not found:
+        raise TangyError(plain(f"There is no game {wanted[:60]!r}: {_which(games, word)}"))
+    return found
+
+
+def find_game(games: Sequence[Game], wanted: str) -> Game:
+    """Return the one game that a word means.
+
+    Raises:
+        TangyError: none or more than one is meant; says which there are.
+    """
+    found = find_games(games, wanted)
+    if len(found) > 1:
+        raise TangyError(
+            plain(
+                f"{wanted!r} means {len(found)} games: choose one of them, "
+                f"such as {found[-1].number} or {LAST}."
+            )
+        )
+    return found[0]
+
+
+def _which(games: Sequence[Game], word: str) -> str:
+    close = nearest(word, [LAST, ALL, *(game.id for game in games)])
+    if close.startswith("did you mean"):
+        return close
+    numbers = "there is only game 1" if len(games) == 1 else f"there are 1 to {len(games)}"
+    day = games[-1].at.astimezone().date()
+    return f"{numbers}; or say {LAST}, {ALL}, a day such as {day}, or the beginning of an id."
+
+
+def _day(word: str) -> date | None:
+    try:
+        return date.fromisoformat(word) if "-" in word else None
+    except ValueError:
+        return None
+
+
+def _of_day(games: Sequence[Game], day: date) -> list[Game]:
+    found = [game for game in games if game.at.astimezone().date() == day]
+    if not found:
+        days = sorted({game.at.astimezone().date() for game in games})
+        close = min(days, key=lambda other: abs(other - day))
+        raise TangyError(f"No game was played on {day}; the nearest day with one is {close}.")
+    return found

@@ -1,0 +1,219 @@
+"""Games read back from the log, moment by moment: what was seen and done, responses, faults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.state import ActivityState
+from tangy_profiles.store import Event, Store
+from tangy_tui.interaction.facilitation import ENDED, RESPONSE, STEP
+from tangy_tui.interaction.feedback import AWAITED
+from tangy_tui.monitoring.fault import (
+    FAULT,
+    RECOVERY,
+    Diagnosed,
+    Fault,
+    Moved,
+    fold_faults,
+)
+from tangy_tui.monitoring.games import Game
+
+KINDS = (STEP, RESPONSE, AWAITED, FAULT, RECOVERY, ENDED)
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A behaviour that was executed: where, for whom, how, and whether it went as expected.
+
+    `begun` and `over` are in s since the game began. `right`: the world could carry it out, and
+    it is what the activity expects there, where the activity is known and expects something.
+    `said` is the speech, where the activity is known.
+    """
+
+    number: int
+    begun: float
+    over: float
+    state: ActivityState
+    after: ActivityState
+    behaviour: str
+    target: str | None
+    strategy: str
+    completed: bool
+    right: bool
+    teacher: str
+    said: str
+    draws: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """What a person did about a request; None where that was not known in the game."""
+
+    uuid: str
+    person: str
+    strategy: str
+    complied: bool | None
+    followed: bool | None
+    took: float | None
+
+
+What: TypeAlias = Done | Answered | Diagnosed | Moved
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Something that happened: at which time in the game (s), after which step, and when (UTC)."""
+
+    seconds: float
+    step: int
+    at: str
+    what: What
+
+
+@dataclass
+class Replay:
+    """One game as the log has it.
+
+    `timed`: the log says how long each behaviour took. Games of older versions do not have that;
+    their times are then those of the faults, or 0.
+    """
+
+    game: Game
+    moments: list[Moment] = field(default_factory=list)
+    faults: list[Fault] = field(default_factory=list)
+    seconds: float = 0.0
+    timed: bool = True
+
+    @property
+    def done(self) -> list[Done]:
+        """The behaviours that were executed."""
+        return [moment.what for moment in self.moments if isinstance(moment.what, Done)]
+
+    @property
+    def answers(self) -> list[tuple[Moment, Answered]]:
+        """What people did about requests, and when."""
+        return [(m, m.what) for m in self.moments if isinstance(m.what, Answered)]
+
+    @property
+    def real_faults(self) -> list[Fault]:
+        """The faults; where Tangy only asked what to do, nothing was wrong."""
+        return [fault for fault in self.faults if not fault.asks_only]
+
+
+def read_replays(
+    store: Store,
+    games: Sequence[Game],
+    activities: Mapping[str, Activity],
+    names: Mapping[str, str],
+) -> list[Replay]:
+    """Read games back.
+
+    Args:
+        activities: those that are known, by name; without its activity a game is told with less.
+        names: of the people, by id, for what Tangy said.
+    """
+    events: dict[str, list[Event]] = {game.id: [] for game in games}
+    for event in _events(store, games):
+        game = str(event.body.get("game"))
+        if game in events:
+            events[game].append(event)
+    return [_replay(game, events[game.id], activities.get(game.activity), names) for game in games]
+
+
+def _events(store: Store, games: Sequence[Game]) -> Iterator[Event]:
+    if not games:
+        return
+    ends = [game.last_seq for game in games]
+    until = max(end for end in ends if end is not None) if None not in ends else None
+    for event in store.events(*KINDS, after=min(game.seq for game in games)):
+        if until is not None and event.seq > until:
+            return
+        yield event
+
+
+def _replay(
+    game: Game, events: Sequence[Event], activity: Activity | None, names: Mapping[str, str]
+) -> Replay:
+    replay = Replay(game, faults=fold_faults(e for e in events if e.kind in (FAULT, RECOVERY)))
+    faults = {fault.id: fault for fault in replay.faults}
+    moved: dict[str, int] = dict.fromkeys(faults, 0)
+    step = 0
+    for event in events:
+        what: What
+        if event.kind == STEP:
+            step += 1
+            replay.timed &= "seconds" in event.body
+            begun = replay.seconds
+            replay.seconds += float(event.body.get("seconds") or 0.0)
+            what = _done(event.body, step, begun, replay.seconds, activity, names)
+        elif event.kind in (RESPONSE, AWAITED):
+            what = _answered(event)
+        elif event.kind in (FAULT, RECOVERY):
+            fault = faults.get(str(event.body.get("fault")))
+            if fault is None:
+                continue
+            replay.seconds = max(replay.seconds, float(event.body.get("seconds") or 0.0))
+            if event.kind == FAULT:
+                what = Diagnosed(fault)
+            else:
+                what = Moved(fault, fault.moves[moved[fault.id]])
+                moved[fault.id] += 1
+        else:
+            continue
+        replay.moments.append(Moment(replay.seconds, step, event.at, what))
+    return replay
+
+
+def _done(
+    body: Mapping[str, Any],
+    number: int,
+    begun: float,
+    over: float,
+    activity: Activity | None,
+    names: Mapping[str, str],
+) -> Done:
+    state, after = _state(body["state"]), _state(body.get("after") or body["state"])
+    name, target = str(body["behaviour"]), body.get("target")
+    completed = bool(body.get("completed", True))
+    strategy = str(body.get("strategy") or "")
+    behaviour = activity.behaviours.get(name) if activity is not None else None
+    expected = activity.expected.get(state.situation, name) if activity is not None else name
+    said = ""
+    if activity is not None and behaviour is not None:
+        speech = behaviour.speech.get(strategy or activity.plain_strategy, "")
+        numbers = tuple(n for n in body.get("numbers", ()) if isinstance(n, int))
+        said = activity.fill(speech, names.get(target or "", target or ""), numbers)
+    return Done(
+        number=number,
+        begun=begun,
+        over=over,
+        state=state,
+        after=after,
+        behaviour=name,
+        target=target,
+        strategy=strategy if behaviour is None or behaviour.persuades else "",
+        completed=completed,
+        right=completed and expected == name,
+        teacher=str(body.get("teacher") or ""),
+        said=said,
+        draws=behaviour is not None and behaviour.effect == "draw",
+    )
+
+
+def _state(body: Mapping[str, Any]) -> ActivityState:
+    return ActivityState.from_json({"closed": None, **body})
+
+
+def _answered(event: Event) -> Answered:
+    followed, took = event.body.get("followed"), event.body.get("seconds")
+    return Answered(
+        uuid=event.uuid,
+        person=event.person or "",
+        strategy=event.strategy or "",
+        complied=event.complied,
+        followed=None if followed is None else bool(followed),
+        took=None if took is None else float(took),
+    )

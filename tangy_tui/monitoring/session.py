@@ -1,0 +1,315 @@
+"""A session: one game or some together, as a report tells of them. Only the log is read."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.state import Situation
+from tangy_profiles.store import Store
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.memory import Known, Memory, counted, replayed
+from tangy_tui.interaction.tally import Row
+from tangy_tui.monitoring.fault import BORNE, OPEN, Fault
+from tangy_tui.monitoring.fault_table import fault_rows
+from tangy_tui.monitoring.games import Game
+from tangy_tui.monitoring.replay import Replay, read_replays
+
+SET_ASIDE = "set aside"
+"""The remedy after which a person is left alone: somebody should look after them."""
+
+
+@dataclass
+class Attempts:
+    """What came of one strategy with one person: how often it was used, and what they did.
+
+    `late`: they did it, but not soon enough to count as complied. `void` are left out of the
+    belief, `awaited` have no answer yet. `before` and `after` are the beliefs.
+    """
+
+    complied: int = 0
+    late: int = 0
+    refused: int = 0
+    void: int = 0
+    awaited: int = 0
+    before: Beta = field(default_factory=Beta)
+    after: Beta = field(default_factory=Beta)
+
+    @property
+    def used(self) -> int:
+        """How often the strategy was used in the session."""
+        return self.complied + self.late + self.refused + self.void + self.awaited
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the counts, and the beliefs with mean and interval."""
+        return {
+            "used": self.used,
+            "complied": self.complied,
+            "late": self.late,
+            "not": self.refused,
+            "void": self.void,
+            "awaited": self.awaited,
+            "before": _belief(self.before),
+            "after": _belief(self.after),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """One person in a session: strategy -> what came of it."""
+
+    id: str
+    name: str
+    strategies: Mapping[str, Attempts]
+
+    @property
+    def interactions(self) -> int:
+        """How often the person was asked for something."""
+        return sum(one.used for one in self.strategies.values())
+
+    def total(self, what: str) -> int:
+        """Add up one of the counts over the strategies."""
+        return sum(getattr(one, what) for one in self.strategies.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """Everything that is told of a session. `title` is the activity's."""
+
+    replays: tuple[Replay, ...]
+    title: str
+    rows: tuple[Row, ...]
+    people: tuple[Progress, ...]
+    notes: tuple[str, ...]
+    """What a reader should know of how this was put together."""
+    names: Mapping[str, str]
+    reads: frozenset[str] = frozenset()
+    """The stages in which Tangy helps somebody."""
+
+    @property
+    def games(self) -> tuple[Game, ...]:
+        """The games, the newest last."""
+        return tuple(replay.game for replay in self.replays)
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """The faults of all games, in order."""
+        return tuple(fault for replay in self.replays for fault in replay.real_faults)
+
+    @property
+    def questions(self) -> tuple[Fault, ...]:
+        """Where Tangy did not know what to do, though nothing was wrong."""
+        return tuple(fault for r in self.replays for fault in r.faults if fault.asks_only)
+
+    @property
+    def look_after(self) -> tuple[Fault, ...]:
+        """What staff should look after: what is open or borne, and who was left alone."""
+        return tuple(
+            fault
+            for replay in self.replays
+            for fault in replay.faults
+            if fault.status in (OPEN, BORNE)
+            or any(move.remedy == SET_ASIDE for move in fault.moves)
+        )
+
+    @property
+    def seconds(self) -> float:
+        """How long the games took together, in the world's own time (s)."""
+        return sum(replay.seconds for replay in self.replays)
+
+    @property
+    def timed(self) -> bool:
+        """Whether the log says how long everything took."""
+        return all(replay.timed for replay in self.replays)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the document that `--json` prints."""
+        return {
+            "title": self.title,
+            "seconds": self.seconds if self.timed else None,
+            "games": [
+                {**r.game.to_json(), "seconds": r.seconds if r.timed else None}
+                for r in self.replays
+            ],
+            "rows": [
+                {
+                    "stage": row.situation.stage,
+                    "request": row.situation.request,
+                    "user_state": row.situation.user_state,
+                    "behaviour": row.behaviour,
+                    "instances": row.instances,
+                    "success": row.success,
+                }
+                for row in self.rows
+            ],
+            "faults": fault_rows(self.faults),
+            "fault_list": [fault.document() for fault in self.faults],
+            "questions": [fault.document() for fault in self.questions],
+            "people": [
+                {
+                    "id": person.id,
+                    "name": person.name,
+                    "interactions": person.interactions,
+                    "strategies": {s: one.to_json() for s, one in person.strategies.items()},
+                }
+                for person in self.people
+            ],
+            "look_after": [
+                {"fault": f.id, "name": f.name, "status": f.status, "advice": list(f.advice)}
+                for f in self.look_after
+            ],
+            "notes": list(self.notes),
+        }
+
+
+def read_session(
+    store: Store,
+    games: Sequence[Game],
+    activities: Mapping[str, Activity],
+    names: Mapping[str, str],
+) -> Session:
+    """Put the session of some games together from the log.
+
+    Args:
+        activities: those that are known, by name; a game of another one is told with less.
+        names: of the people, by id.
+    """
+    replays = tuple(read_replays(store, games, activities, names))
+    activity = next((activities[g.activity] for g in games if g.activity in activities), None)
+    unknown = sorted({g.activity for g in games if g.activity not in activities})
+    notes = [
+        f"There is no activity {name!r} here any more: what was said is not told, and a behaviour "
+        "counts as a success if it could be carried out."
+        for name in unknown
+    ]
+    if not all(replay.timed for replay in replays):
+        notes.append("An older Tangy kept no times within a game: those games are drawn by steps.")
+    titles = {activities[g.activity].title if g.activity in activities else g.activity
+              for g in games}  # fmt: skip
+    return Session(
+        replays=replays,
+        title=", ".join(sorted(titles)),
+        rows=_rows(replays, activity),
+        people=_people(store, replays, activity, names),
+        notes=tuple(notes),
+        names=names,
+        reads=frozenset(s for s in activity.stages if activity.reads(s))
+        if activity
+        else frozenset(),
+    )
+
+
+def _rows(replays: Sequence[Replay], activity: Activity | None) -> tuple[Row, ...]:
+    done: Counter[tuple[Situation, str]] = Counter()
+    right: Counter[tuple[Situation, str]] = Counter()
+    for replay in replays:
+        for step in replay.done:
+            done[step.state.situation, step.behaviour] += 1
+            right[step.state.situation, step.behaviour] += step.right
+    order = (
+        activity.situations if activity is not None else tuple(dict.fromkeys(s for s, _ in done))
+    )
+    rank = {situation: place for place, situation in enumerate(order)}
+    return tuple(
+        Row(situation, behaviour, count, right[situation, behaviour] / count)
+        for (situation, behaviour), count in sorted(
+            done.items(), key=lambda item: (rank.get(item[0][0], len(rank)), item[0])
+        )
+    )
+
+
+def _people(
+    store: Store,
+    replays: Sequence[Replay],
+    activity: Activity | None,
+    names: Mapping[str, str],
+) -> tuple[Progress, ...]:
+    present = dict.fromkeys(person for replay in replays for person in replay.game.people)
+    if not present:
+        return ()
+    said = {a.uuid: a.followed for replay in replays for _, a in replay.answers}
+    strategies = activity.strategies if activity is not None else dict.fromkeys(
+        a.strategy for replay in replays for _, a in replay.answers
+    )  # fmt: skip
+    memory = Memory(store, tuple(strategies), activity.persuasion) if activity else Memory(
+        store, tuple(strategies)
+    )  # fmt: skip
+    responses = store.responses()
+    return tuple(
+        _progress(
+            person,
+            names.get(person, person),
+            memory.recall(person, responses),
+            memory.feedback.history(person),
+            replays,
+            said,
+        )
+        for person in present
+    )
+
+
+def _progress(
+    person: str,
+    name: str,
+    known: Known,
+    history: Sequence[Entry],
+    replays: Sequence[Replay],
+    said: Mapping[str, bool | None],
+) -> Progress:
+    """Count what came of each strategy, and say what was believed before and after.
+
+    What counts is as the log has it now: a response that was void later, counts in neither.
+    """
+    games = {replay.game.id for replay in replays}
+    first, last = replays[0].game, replays[-1].game
+    asked = {entry.request: entry.seq for entry in history if entry.request == entry.uuid}
+    before = [e for e in history if asked.get(e.request, e.seq) < first.seq]
+    after = [
+        e for e in history
+        if last.last_seq is None or asked.get(e.request, e.seq) <= last.last_seq or e.game in games
+    ]  # fmt: skip
+    until = last.ended or max((entry.at for entry in after), default=last.at)
+    old = _beliefs(known, person, before, first.at)
+    new = _beliefs(known, person, after, until)
+    found = {s: Attempts(before=old[s], after=new[s]) for s in known.beliefs}
+    for entry in history:
+        one = found.get(entry.strategy)
+        if entry.game not in games or one is None or entry.settled:
+            continue  # another line holds the answer to a request that is settled
+        if entry.void:
+            one.void += 1
+        elif entry.complied is None:
+            one.awaited += 1
+        elif entry.complied:
+            one.complied += 1
+        elif said.get(entry.uuid):
+            one.late += 1
+        else:
+            one.refused += 1
+    return Progress(person, name, found)
+
+
+def _beliefs(known: Known, person: str, entries: Sequence[Entry], now: datetime) -> Beliefs:
+    if known.method.forgets:
+        return replayed(known.method, known.prior, entries, now)
+    counts: dict[tuple[str, str], tuple[int, int]] = {}
+    for entry in entries:
+        if entry.counts:
+            yes, no = counts.get((person, entry.strategy), (0, 0))
+            complied = bool(entry.complied)
+            counts[person, entry.strategy] = (yes + complied, no + (not complied))
+    return counted(known.prior, person, counts)
+
+
+def _belief(belief: Beta) -> dict[str, Any]:
+    return {
+        "alpha": belief.alpha,
+        "beta": belief.beta,
+        "mean": belief.mean,
+        "interval": list(belief.interval()),
+    }
