@@ -15,7 +15,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui import __version__
-from tangy_tui.verbs import demonstrations, experiment, learn, machine, people, play, teach
+from tangy_tui.verbs import demonstrations, drill, experiment, learn, machine, people, play, teach
 from tangy_tui.verbs.common import Ascii, Data, full_screen, open_house
 
 app = typer.Typer(
@@ -56,6 +56,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     learn.policy,
     play.play,
     play.demo,
+    drill.drill,
     machine.listen,
     machine.doctor,
 )

@@ -31,7 +31,7 @@ NOTHING = "0"
 
 ACTIONS: Mapping[str, str] = MappingProxyType(
     {
-        "continue": "Nothing: Tangy goes on by itself",
+        "continue": "Let Tangy go on by itself",
         "user": "Help it: do what it asks for",
         "teacher": "Say what Tangy should do",
         "expert": "Keep people away, call the expert, then clear",

@@ -1,4 +1,4 @@
-"""By which policy a drill is played: what Tangy has learnt, or else what it is shown in a moment."""
+"""By which policy a drill is played: what Tangy has learnt, or else what it is shown quickly."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tangy_sim.users import load_users
 from tangy_tui.learning.effects import Effects, learn_effects
 from tangy_tui.learning.policies import last_policy, load_policy
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
-from tangy_tui.learning.scripted_teacher import MOST_STEPS
+from tangy_tui.learning.scripted_teacher import MOST_STEPS, SCRIPTED
 from tangy_tui.monitoring.accepted import expected_effects
 
 FOREST = ForestSettings(trees=20)
@@ -77,6 +77,4 @@ def _demonstrate(activity: Activity, seed: int) -> Demonstration:
         after = world.observe()
         steps.append(Step(behaviour.name, target, state, after, outcome.completed))
         state = after
-    return Demonstration(
-        f"drill-{seed}", activity.name, "scripted", seed, PEOPLE, tuple(steps), True
-    )
+    return Demonstration(f"drill-{seed}", activity.name, SCRIPTED, seed, PEOPLE, tuple(steps), True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from statistics import median
 from typing import Any
 
 from tangy_profiles.faults import URGENCY
@@ -134,6 +133,8 @@ class Sheet:
     @property
     def median(self) -> float | None:
         """The median time that a round took, in s; None where none was answered."""
+        from statistics import median  # not needed for the first screen, which looks at the points
+
         return median(one.seconds for one in self.answered) if self.answered else None
 
     @property

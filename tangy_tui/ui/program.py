@@ -14,6 +14,7 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
+from tangy_tui.monitoring.drill_sheet import last_sheet
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.wording import counted
@@ -67,12 +68,14 @@ class Program(TangyApp):
         away = sum(1 for entry in there.entries.values() if entry.hidden)
         kept = policies.last_policy(self.house.store, self.house.activity.name)
         people = ", ".join(person.name for person in self.house.people)
+        drilled = last_sheet(self.house.store)
         return {
             "teach": counted(finished, "demonstration")
             + (f", {unfinished} unfinished" if unfinished else ""),
             "library": f"{len(shown)} in use, {away} put away" if away else "",
             "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
             "play": "" if kept is not None else "learn first",
+            "rehearse": "" if drilled is None else f"last {drilled.points} of {drilled.most}",
             "policy": "" if kept is None else str(kept["name"]),
             "people": people,
         }
@@ -94,6 +97,8 @@ class Program(TangyApp):
                 self._open(self._learn())
             case "play":
                 self._open(self.play())
+            case "rehearse":
+                self._open(self.drill())
             case "policy":
                 self._open(self._show_policy())
             case "people":
@@ -196,6 +201,30 @@ class Program(TangyApp):
             supervision = self.house.supervision(policy, seed, asks=True, injections=injections)
             screen = PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
             await self.push_screen(screen)
+
+    async def drill(
+        self, rounds: int | None = None, seed: int | None = None, who: str = ""
+    ) -> None:
+        """Open a drill: faults to rehearse; of as many rounds as usual unless said otherwise."""
+        from tangy_tui.monitoring.drill import ROUNDS, Drill
+        from tangy_tui.ui.screens.drill import DrillScreen
+
+        house = self.house
+        made = await self._in_thread(
+            "Tangy is preparing the drill ...",
+            lambda: Drill.of(
+                house.activity,
+                house.robot,
+                house.names,
+                house.store,
+                who=who or teacher_name(),
+                seed=seed,
+                rounds=rounds or ROUNDS,
+                clock=self.clock,
+            ),
+        )
+        if made is not None:
+            await self.push_screen(DrillScreen(made))
 
     def action_compare(self) -> None:
         """Compare two policies, or what two teachers show."""

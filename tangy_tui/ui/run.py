@@ -74,6 +74,11 @@ def run_playing(
     )
 
 
+def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_only: bool) -> int:
+    """Open the screen on which faults are rehearsed; return the exit status."""
+    return _run(house, lambda program: program.drill(rounds, seed, who), ascii_only)
+
+
 def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:
     """Tell the whole story in the program; return the exit status."""
 

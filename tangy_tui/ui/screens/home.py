@@ -41,6 +41,7 @@ CHOICES = (
     Choice("i", "Library", "all demonstrations: look, mend, delete"),
     Choice("l", "Learn", "make a policy from what was shown"),
     Choice("p", "Play", "let Tangy run the activity"),
+    Choice("r", "Rehearse", "practise what to do when things go wrong"),
     Choice("o", "Policy", "what Tangy does in which situation"),
     Choice("e", "People", "who takes part, and what persuades them"),
     Choice("d", "Demo", "the whole story in a minute"),
@@ -173,7 +174,7 @@ class HomeScreen(TangyScreen[None]):
     AUTO_FOCUS = "#home"
 
     class Chosen(Message):
-        """A choice was made; `id` is teach, library, learn, play, policy, people, demo."""
+        """A choice was made; `id` is teach, library, learn, play, rehearse, and so on."""
 
         def __init__(self, id: str) -> None:
             super().__init__()

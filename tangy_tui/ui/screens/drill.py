@@ -1,0 +1,219 @@
+"""The drill: what staff see when something goes wrong, two questions, and in the end a score."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_tui.drill_lines import (
+    WELCOME,
+    Told,
+    question_words,
+    round_parts,
+    sheet_lines,
+    told_lines,
+)
+from tangy_tui.monitoring.drill import Drill
+from tangy_tui.monitoring.drill_rounds import Round
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.fresh_keys import SETTLE_SECONDS, clock_of
+from tangy_tui.ui.panels import LOW, KeyLine, key_line, panel
+from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.wrapping import wrap
+
+LABEL = 11
+"""Columns of the labels beside what is seen."""
+
+ON = ("enter", "space")
+"""The keys that go on."""
+
+
+class DrillScreen(TangyScreen[None]):
+    """Round after round: what is seen, the questions, what was right; then the score sheet.
+
+    Keys typed before a question was on the screen do not answer it.
+    """
+
+    TITLE = "Rehearse"
+    CSS_PATH = "drill.tcss"
+    VERTICAL_BREAKPOINTS = LOW
+    AUTO_FOCUS = "#drill"
+    HELP = (
+        f"{WELCOME} Answer by the number or letter. Some rounds have no fault: then Tangy goes on "
+        "by itself. One point for each right answer; the time is told, and not scored. "
+        "Esc leaves; what you answered is kept as an unfinished sheet."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("1,2,3,4,0", "nothing", "Answer", key_display="0 to 4"),
+        Binding("y,n", "nothing", "Yes or no", key_display="y n"),
+        Binding("enter,space", "nothing", "Go on", key_display="enter"),
+        Binding("escape", "leave", "Leave the drill"),
+    ]
+
+    def __init__(self, drill: Drill) -> None:
+        """Make the screen of a drill that has not begun."""
+        super().__init__()
+        self._drill = drill
+        self._from: float | None = None
+        self._at_end = False
+
+    def compose(self) -> ComposeResult:
+        """Lay out what is seen above the question."""
+        yield StatusLine(Status(mode="rehearse"))
+        yield panel(Page(id="drill"))
+        yield Static(id="asked", markup=False)
+        yield key_line(("esc", "leave"), ("?", "help"))
+
+    def on_mount(self) -> None:
+        """Say what it is, and wait for a key."""
+        page = self.query_one(Page)
+        page.border_title = "Rehearse"
+        text = [self._drill.note, WELCOME, "There is no hurry: the time is told, and not scored."]
+        page.show(lambda width: [
+            line for part in text if part for line in [*paragraph(part, width), Line()]
+        ])  # fmt: skip
+        self._ask("Ready?", (("enter", "the first round"),))
+
+    def on_unmount(self) -> None:
+        """Keep what was answered, however the screen is left."""
+        self._drill.leave()
+
+    def on_key(self, event: events.Key) -> None:
+        """Answer, or go on; keys that were typed ahead do neither."""
+        question = self._drill.question
+        keys = ON if question is None else question.keys
+        if event.key not in (*keys, *ON):
+            return
+        event.stop()
+        if self._from is None or event.time < self._from or event.key not in keys:
+            return
+        if question is None:
+            self._go_on()
+            return
+        answered, shown = self._drill.answer(event.key), self._drill.round
+        if answered is None or shown is None:
+            self._show_question()
+            return
+        self._show_told(shown, told_lines(self._drill.tabletop, shown, answered))
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def action_leave(self) -> None:
+        """Leave; ask first if something was answered, and something is left."""
+        if self._at_end or not self._drill.sheet.answered or self._drill.over:
+            close(self, None)
+            return
+        self.app.push_screen(
+            ConfirmDialog(
+                "Leave the drill?",
+                "What you answered is kept as an unfinished sheet.",
+                yes="leave",
+                no="go on with the drill",
+            ),
+            self._left,
+        )
+
+    def _left(self, leaves: bool | None) -> None:
+        if leaves:
+            self.call_later(close, self, None)
+
+    def _go_on(self) -> None:
+        if self._at_end:
+            close(self, None)
+        elif self._drill.over:
+            self._show_sheet()
+        else:
+            self._show_round()
+
+    def _show_round(self) -> None:
+        shown = self._drill.next()
+        if shown is None:
+            return
+        self._status(f"{shown.number} of {self._drill.rounds}")
+        page = self.query_one(Page)
+        page.border_title = "What you see"
+        page.show(lambda width: _seen(self._drill, shown, width))
+        page.scroll_home(animate=False)
+        self._show_question()
+        self.call_after_refresh(self._drill.shown)
+
+    def _show_question(self) -> None:
+        question, shown = self._drill.question, self._drill.round
+        if question is None or shown is None:
+            return
+        choices = tuple((choice.key, choice.words) for choice in question.choices)
+        self._ask(question_words(question, shown), choices)
+
+    def _show_told(self, shown: Round, told: Sequence[Told]) -> None:
+        page = self.query_one(Page)
+        page.border_title = "What was right"
+        page.show(
+            lambda width: [
+                *(line for ink, text in told for line in paragraph(clean(text), width, ink)),
+                *heading("What you saw"),
+                *_seen(self._drill, shown, width),
+            ]
+        )
+        page.scroll_home(animate=False)
+        sheet = self._drill.sheet
+        what = "your score" if self._drill.over else "the next round"
+        self._ask(f"{sheet.points} of {sheet.most} so far.", (("enter", what),))
+
+    def _show_sheet(self) -> None:
+        self._at_end = True
+        sheet = self._drill.sheet
+        self._status("score")
+        page = self.query_one(Page)
+        page.border_title = "Score sheet"
+        page.show(
+            lambda width: [
+                line
+                for ink, text in sheet_lines(sheet, width)
+                for line in ([Line(((text, ink),))] if len(text) <= width else
+                             paragraph(text, width, ink))
+            ]
+        )  # fmt: skip
+        page.scroll_home(animate=False)
+        self._ask("The sheet is kept.", (("enter", "back"),))
+
+    def _status(self, note: str) -> None:
+        self.query_one(StatusLine).show(Status(mode="rehearse", note=note))
+
+    def _ask(self, question: str, choices: tuple[tuple[str, str], ...]) -> None:
+        """Show a question; keys count from a moment after it can be seen."""
+        parts: list[str | tuple[str, str]] = [(clean(question), "bold")]
+        for key, words in choices:
+            parts += ["\n", (f" {key} ", "$warning bold"), f" {clean(words)}"]
+        self.query_one("#asked", Static).update(Content.assemble(*parts))
+        keys = [key for key, _ in choices]
+        answers = ("enter", "go on") if keys == ["enter"] else (" ".join(keys), "answer")
+        self.query_one(KeyLine).show(
+            answers, ("up down", "scroll"), ("esc", "leave"), ("?", "help")
+        )
+        self._from = None
+        self.call_after_refresh(self._settle)
+
+    def _settle(self) -> None:
+        self._from = clock_of(self.app)() + SETTLE_SECONDS
+
+
+def _seen(drill: Drill, shown: Round, width: int) -> list[Line]:
+    """Write what can be seen in a round, the labels beside it."""
+    lines: list[Line] = []
+    for label, text in round_parts(drill.tabletop, shown):
+        for number, part in enumerate(wrap(clean(text), max(8, width - LABEL))):
+            name = label if number == 0 else ""
+            ink = "strong" if label == "Noticed" else "text"
+            lines.append(Line(((f"{name:{LABEL}}", "dim"), (part, ink))))
+    return lines

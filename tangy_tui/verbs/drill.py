@@ -1,0 +1,86 @@
+"""`tangy drill`: rehearse what to do when something goes wrong, and see the score."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Ascii,
+    Data,
+    Json,
+    Seed,
+    Users,
+    full_screen,
+    open_house,
+    print_json,
+    print_line,
+)
+
+LONGEST_WHO = 40  # characters
+
+
+def drill(
+    rounds: Annotated[int, typer.Option(min=1, max=50, help="How many rounds.")] = 6,
+    seed: Seed = None,
+    who: Annotated[str | None, typer.Option(help="Who rehearses; default your login name.")] = None,
+    scores: Annotated[bool, typer.Option("--scores", help="List earlier score sheets.")] = False,
+    plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
+    activity: ActivityName = "bingo",
+    users: Users = 4,
+    data: Data = None,
+    as_json: Json = False,
+    ascii_only: Ascii = False,
+) -> None:
+    """Rehearse faults on the table-top: say what is wrong and what you do, and get a score.
+
+    With --json the answers come as lines on standard input. --scores lists the sheets of everybody,
+    or of --who.
+    """
+    from tangy_tui.house import teacher_name
+
+    name = plain(who if who is not None else teacher_name()).strip()
+    if not name or len(name) > LONGEST_WHO:
+        raise TangyError(f"--who: a name has from 1 to {LONGEST_WHO} characters.")
+    with open_house(data, activity, users, write=not scores) as house:
+        if scores:
+            from tangy_tui.drill_lines import sheets_lines
+            from tangy_tui.monitoring.drill_sheet import read_sheets
+            from tangy_tui.ui.local_time import local_time
+
+            sheets = read_sheets(house.store, "" if who is None else name)
+            if as_json:
+                print_json([{"at": sheet.at, **sheet.to_json()} for sheet in sheets])
+            else:
+                for line in sheets_lines(sheets, local_time):
+                    print_line(line)
+            return
+        if not (plain_lines or as_json) and full_screen():
+            from tangy_tui.ui.run import run_drill
+
+            raise typer.Exit(
+                run_drill(house, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
+            )
+        from tangy_tui.drill_lines import drill_by_lines
+        from tangy_tui.inputs import line_reader
+        from tangy_tui.monitoring.drill import Drill
+
+        if not as_json:
+            print_line("Tangy is preparing the drill ...")
+        made = Drill.of(
+            house.activity,
+            house.robot,
+            house.names,
+            house.store,
+            who=name,
+            seed=seed,
+            rounds=rounds,
+        )
+        write = (lambda _: None) if as_json else print_line
+        sheet = drill_by_lines(made, write, line_reader(None), strict=as_json)
+        if as_json:
+            print_json((sheet or made.sheet).to_json())
