@@ -18,7 +18,7 @@ Read = Callable[[], str | None]
 Write = Callable[[str], None]
 
 Told = tuple[str, str]
-"""How a line is written (an ink of the screens: text, dim, strong, good, bad), and the line."""
+"""How a line is written (by an ink of the screens: text, dim, strong, ...), and the line."""
 
 CLASS_WORDS: Mapping[str, str] = MappingProxyType(
     {
@@ -43,6 +43,7 @@ _QUIET = {
     "refused": "People may refuse. Tangy asks again, and after a while leaves it at that.",
     "late": "It was done. Late counts as no for how Tangy asks next time, and is no fault.",
     "asks": "Whoever asks waits for their turn; Tangy comes by itself.",
+    "reading": "That is how it should be.",
 }
 _LABEL = 9
 
@@ -101,7 +102,7 @@ def told_lines(table: Tabletop, shown: Round, answered: Answered) -> list[Told]:
     if answered.may_clear is not None:
         yes = "it is mended, so Tangy may be cleared"
         no = "it is still there, so Tangy must not be cleared"
-        said = "you said yes" if answered.cleared else "you said no"
+        said = "yes" if answered.cleared else "no"
         lines.append(
             _verdict(answered.cleared_right is True, yes if answered.may_clear else no, said)
         )
@@ -143,7 +144,7 @@ def sheet_lines(sheet: Sheet, width: int = 80) -> list[Told]:
     for one in sheet.answered:
         marks = f"{_mark(one.named_right):5}  {_mark(one.acted_right):4}  "
         marks += f"{_mark(one.cleared_right):5}  {one.seconds:3.0f}"
-        ink = "text" if one.points == one.most else "bad"
+        ink = "text" if one.points == one.most else "warn"
         lines.append((ink, f"{one.number:2}  {_cut(one.name, name_width)}  {marks}"))
     for kind, (points, most) in sheet.by_class.items():
         lines.append(("text", f"{CLASS_WORDS[kind]:>{name_width + 4}}  {points} of {most}"))

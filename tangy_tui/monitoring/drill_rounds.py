@@ -7,7 +7,7 @@ nothing of it gets into what is kept of the facility's games and people.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -47,9 +47,10 @@ MOST_STEPS = 90
 SETS_IN = (4, 26)
 """Between which steps of its game a fault sets in."""
 
-QUIET_KINDS = ("refused", "late", "asks")
+REFUSED, LATE, ASKS, READING = "refused", "late", "asks", "reading"
+QUIET_KINDS = (REFUSED, LATE, ASKS, READING)
 """What may catch the eye although nothing is wrong: somebody does not do what was asked, or does
-it late, or asks while somebody else is being helped."""
+it late, or asks while somebody else is being helped; or a device measures what it should."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +68,8 @@ class RoundKind:
 
 QUIET = RoundKind("quiet")
 _TWO_AT_ONCE = (RoundKind("mute", "mute", ("voice-dead", "screen-dead")),)
+_NOT_YET_A_FAULT = ("never-complies",)
+"""What makes somebody refuse, which is a fault only when it goes on."""
 _GAPS = (RoundKind("unknown-situation", "unknown-situation", gap=True),)
 
 
@@ -238,13 +241,14 @@ class Tabletop:
         """Play one game; None if something else happened in it, or nothing."""
         rng = Random(f"{seed}/round")
         sets_in, wanted = rng.randrange(*SETS_IN), rng.choice(QUIET_KINDS)
+        brought = _NOT_YET_A_FAULT if (kind, wanted) == (QUIET, REFUSED) else kind.injections
         refused = Counter[str]()
         acted: Acted | None = None
         with self._game(kind, seed, rng) as game:
             game.begin()
             for step in range(MOST_STEPS):
                 if step == sets_in and isinstance(game.world, FaultyWorld):
-                    for injection in kind.injections:
+                    for injection in brought:
                         game.world.inject(injection)
                 for event in (events := game.step()):
                     if isinstance(event, Acted):
@@ -258,9 +262,9 @@ class Tabletop:
                 if game.over:
                     return None
                 if kind == QUIET and step >= sets_in and acted is not None:
-                    person = _catches_the_eye(wanted, acted)
-                    if person is not None:
-                        return self._quiet_round(number, game, wanted, person, acted, refused, rng)
+                    noticed = self._catches_the_eye(wanted, acted, refused, game, rng)
+                    if noticed:
+                        return self._quiet_round(number, game, wanted, noticed, acted, rng)
         return None
 
     def _fault_round(
@@ -309,21 +313,10 @@ class Tabletop:
         number: int,
         game: Supervision,
         quiet: str,
-        person: str,
+        noticed: str,
         acted: Acted,
-        refused: Mapping[str, int],
         rng: Random,
     ) -> Round:
-        name, response = self.name(person), acted.outcome.response
-        match quiet:
-            case "refused":
-                times = "once" if refused[person] == 1 else f"{refused[person]} times in a row"
-                noticed = f"{name} has not done what was asked, {times}"
-            case "late":
-                seconds = response.seconds if response is not None else 0.0
-                noticed = f"{name} did what was asked, but took {seconds:.0f} s"
-            case _:
-                noticed = f"{name} has begun to ask for help"
         world = game.world
         return Round(
             number,
@@ -331,12 +324,37 @@ class Tabletop:
             world.observe(),
             world.scene(),
             acted,
-            person,
+            None,
             noticed,
             self._states(world.health()),
             self._names_to_choose(None, rng),
             quiet=quiet,
         )
+
+    def _catches_the_eye(
+        self, quiet: str, acted: Acted, refused: Mapping[str, int], game: Supervision, rng: Random
+    ) -> str:
+        """Say what was seen that looks like a fault, and is none; "" if there was no such thing."""
+        response = acted.outcome.response
+        if quiet == READING:
+            told = [one for one in game.world.health() if one.facts]
+            one = rng.choice(told)
+            facts = {f"{one.device}.{fact}": value for fact, value in one.facts.items()}
+            return evidence_words(facts, (), self.robot)
+        if quiet == ASKS:
+            asked = {user.id for user in acted.state.users if user.request == "AR"}
+            waiting = [user.id for user in acted.after.users if user.request == "AR"]
+            new = [person for person in waiting if person not in asked]
+            busy = acted.state.attended is not None and acted.state.attended not in new
+            return f"{self.name(new[0])} has begun to ask for help" if new and busy else ""
+        if response is None or response.complied or response.followed is not (quiet == LATE):
+            return ""
+        name = self.name(response.person)
+        if quiet == LATE:
+            return f"{name} did what was asked, but took {response.seconds:.0f} s"
+        count = refused[response.person]
+        times = "once" if count == 1 else f"{count} times in a row"
+        return f"{name} has not done what was asked, {times}"
 
     def _states(self, health: Health) -> tuple[tuple[str, str], ...]:
         devices = self.robot.devices
@@ -372,17 +390,3 @@ def _count(refused: Counter[str], acted: Acted) -> None:
     response = acted.outcome.response
     if response is not None:
         refused[response.person] = 0 if response.followed else refused[response.person] + 1
-
-
-def _catches_the_eye(wanted: str, acted: Acted) -> str | None:
-    """Return whom something was seen of that looks like a fault, and is none."""
-    response = acted.outcome.response
-    if wanted == "asks":
-        asked = {user.id for user in acted.state.users if user.request == "AR"}
-        new: Sequence[str] = [
-            user.id for user in acted.after.users if user.request == "AR" and user.id not in asked
-        ]
-        return new[0] if new and acted.state.attended not in (None, new[0]) else None
-    if response is None or response.complied or response.followed is not (wanted == "late"):
-        return None
-    return response.person

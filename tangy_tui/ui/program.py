@@ -68,14 +68,14 @@ class Program(TangyApp):
         away = sum(1 for entry in there.entries.values() if entry.hidden)
         kept = policies.last_policy(self.house.store, self.house.activity.name)
         people = ", ".join(person.name for person in self.house.people)
-        drilled = last_sheet(self.house.store)
+        sheet = last_sheet(self.house.store)
         return {
             "teach": counted(finished, "demonstration")
             + (f", {unfinished} unfinished" if unfinished else ""),
             "library": f"{len(shown)} in use, {away} put away" if away else "",
             "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
             "play": "" if kept is not None else "learn first",
-            "rehearse": "" if drilled is None else f"last {drilled.points} of {drilled.most}",
+            "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
             "policy": "" if kept is None else str(kept["name"]),
             "people": people,
         }
