@@ -14,11 +14,13 @@ at run time a module called conftest may be any folder's.
 
 from __future__ import annotations
 
+import asyncio
 import re
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass, field
-from time import monotonic
+from functools import partial
+from time import monotonic, process_time
 from typing import Any
 
 import pytest
@@ -61,6 +63,55 @@ def type_at_once(app: App[Any], *keys: str, at: float | None = None) -> None:
         event.set_sender(app)
         event.time = monotonic() if at is None else at
         app.post_message(event)
+
+
+LONGEST = 1.0
+"""Seconds after which a program that is never done is waited for no longer (Textual's own)."""
+
+GLANCE = 0.02
+"""Seconds for which a thread is watched: it thinks if it uses a twentieth of them (Textual's)."""
+
+
+def _to_be_painted(screen: Screen[Any]) -> bool:
+    return bool(
+        screen._layout_required
+        or screen._scroll_required
+        or screen._repaint_required
+        or screen._recompose_required
+        or screen._dirty_widgets
+        or screen._callbacks
+    )
+
+
+async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -> None:
+    """Wait until a program has done what there was to do, and waits for keys or for time to pass.
+
+    Textual watches the processor to find out, for 20 ms or 40 at every key and every pause; half
+    of the time of these tests went by like that. The loop knows at once: nothing in it can run,
+    nothing is left to be painted, the window is not being resized. Only while a worker's thread
+    is at work is the processor watched as Textual does it.
+    """
+    loop: Any = asyncio.get_running_loop()
+    start = monotonic()
+    quiet = 0
+    while monotonic() - start < most:
+        used = process_time()
+        thread = any(worker._thread_worker and worker.is_running for worker in app.workers)
+        await asyncio.sleep(GLANCE if thread else 0)  # the loop looks what has arrived, too
+        thinks = thread and process_time() - used >= GLANCE / 20
+        screen = app._screen_stack[-1] if app._screen_stack else None
+        if app._resize_event is not None:
+            await asyncio.sleep(1 / 120)  # so long Textual waits for a window's last size
+            quiet = 0
+        elif loop._ready or thinks:
+            quiet = 0
+        elif screen is not None and _to_be_painted(screen):
+            screen._on_timer_update()  # as Textual does at the next sixtieth of a second
+            quiet = 0
+        else:
+            quiet += 1
+            if quiet > 1 and monotonic() - start >= least:
+                return
 
 
 class TangyPilot(Pilot[None]):
@@ -133,7 +184,7 @@ Run = Callable[..., AbstractAsyncContextManager[TangyPilot]]
 
 
 @pytest.fixture
-def run() -> Run:
+def run(monkeypatch: pytest.MonkeyPatch) -> Run:
     """Start Tangy with a screen: `async with run(Screen(), size=(80, 24)) as pilot`."""
 
     @asynccontextmanager
@@ -149,6 +200,8 @@ def run() -> Run:
         if app is None:
             first = None if screen is None else lambda: screen
             app = TangyApp(first, kind=kind, clock=clock or StillClock())
+        for who_waits in ("textual.app", "textual.pilot"):
+            monkeypatch.setattr(f"{who_waits}.wait_for_idle", partial(until_idle, app))
         async with app.run_test(size=size, notifications=notifications):
             pilot = TangyPilot(app)
             await pilot.pause()
