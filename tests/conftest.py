@@ -170,6 +170,21 @@ def pytest_xdist_auto_num_workers() -> int:
     return (os.cpu_count() or 1) + 1
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Keep on one worker what shares costly preparations (`xdist_group`).
+
+    From pytest 9.2 on, pytest-xdist 3.8 writes the group where nobody reads it any more, and says
+    nothing (pytest-xdist#1386): three workers then prepare, or wait for, the same thing.
+    """
+    for item in items if config.getoption("loadgroup", False) else ():
+        groups = sorted({str(mark.args[0]) for mark in item.iter_markers("xdist_group")})
+        there = getattr(item, "_id", None)  # before pytest 9.2 there is none, and xdist manages
+        if groups and there is not None:
+            group = "_".join(groups)
+            setattr(item, "_id", type(there).parse(f"{item.nodeid}@{group}"))  # noqa: B010
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
