@@ -80,7 +80,7 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
         for state, labels in by_state.items()
     ]
     if well:
-        parts.append(f"the other {len(well)} report no error")
+        parts.append(f"no error from the other {len(well)}")
     return "; ".join(parts) + "."
 
 

@@ -39,14 +39,17 @@ def policy_for_drill(store: Store, activity: Activity) -> Learnt:
     Raises:
         TangyError: neither is there, nor does the activity say what is expected.
     """
+    why = "Tangy has learnt nothing yet"
     if last_policy(store, activity.name) is not None:
-        policy, notices = load_policy(store, activity)
-        sure = all(policy.decide(situation).sure for situation in activity.situations)
-        if sure and not notices:
-            return Learnt(policy, expected_effects(store, activity, policy))
-        why = "What Tangy has learnt has gaps"
-    else:
-        why = "Tangy has learnt nothing yet"
+        try:
+            policy, notices = load_policy(store, activity)
+        except TangyError:
+            why = "What Tangy has learnt cannot be used"
+        else:
+            sure = all(policy.decide(situation).sure for situation in activity.situations)
+            if sure and not notices:
+                return Learnt(policy, expected_effects(store, activity, policy))
+            why = f"What Tangy has learnt {'has changed' if sure else 'has gaps'}"
     if not activity.expected:
         raise TangyError(f"{why}: teach it {activity.title} first, then rehearse.")
     policy, effects = _taught_quickly(activity)

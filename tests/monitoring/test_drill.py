@@ -1,0 +1,440 @@
+"""Drills: rounds that really happen, what is right in them, and the score that is kept."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from random import Random
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.faults import RECOVERIES, load_faults
+from tangy_profiles.person import Person
+from tangy_profiles.robot import load_robot
+from tangy_profiles.store import Store
+from tangy_tui.drill_lines import (
+    device_words,
+    drill_by_lines,
+    round_parts,
+    sheet_lines,
+    sheets_lines,
+    told_lines,
+)
+from tangy_tui.learning.policies import keep_policy
+from tangy_tui.monitoring import drill_policy
+from tangy_tui.monitoring.drill import NOTHING, Drill
+from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
+from tangy_tui.monitoring.drill_rounds import (
+    CHOICES,
+    QUIET,
+    QUIET_KINDS,
+    Round,
+    Tabletop,
+    draw_rounds,
+    round_kinds,
+)
+from tangy_tui.monitoring.drill_sheet import (
+    DRILL,
+    NOTHING_WRONG,
+    Answered,
+    Sheet,
+    last_sheet,
+    read_sheets,
+)
+
+BOOK = load_faults(load_robot())
+KINDS = round_kinds(BOOK)
+
+
+class Clock:
+    """A clock that goes on only when it is told to."""
+
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture(scope="module")
+def learnt(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Learnt:
+    """What a drill is played by where nothing was learnt."""
+    with Store.open(tmp_path_factory.mktemp("nothing") / "data") as nothing:
+        return policy_for_drill(nothing, activity)
+
+
+@pytest.fixture(scope="module")
+def table(learnt: Learnt, activity: Activity, people: tuple[Person, ...]) -> Tabletop:
+    """A table-top with the four sample people."""
+    names = {person.id: person.name for person in people}
+    return Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
+
+
+def right_keys(drill: Drill) -> list[str]:
+    """Answer a round as is right; return the keys."""
+    keys: list[str] = []
+    shown = drill.round
+    assert shown is not None
+    while drill.question is not None:
+        right = {
+            "what": shown.code,
+            "do": shown.recovery,
+            "clear": "yes" if shown.release and shown.release.right else "no",
+        }[drill.question.kind]
+        key = next(c.key for c in drill.question.choices if c.value == right)
+        drill.answer(key)
+        keys.append(key)
+    return keys
+
+
+# ------------------------------------------------------------------------------ what is drawn
+
+
+@pytest.mark.parametrize("rounds", range(1, 51))
+def test_every_class_comes_up_and_nothing_twice_before_all_have_come(rounds: int) -> None:
+    for seed in range(20):
+        drawn = draw_rounds(BOOK, rounds, Random(seed))
+        assert len(drawn) == rounds
+        faults = [kind for kind in drawn if kind != QUIET]
+        if rounds >= 4:
+            assert {BOOK.rule(kind.code).recovery[0] for kind in faults} == set(RECOVERIES)
+        for start in range(0, len(faults), len(KINDS)):
+            some = faults[start : start + len(KINDS)]
+            assert len(set(some)) == len(some)
+        assert drawn == draw_rounds(BOOK, rounds, Random(seed))
+
+
+def test_about_one_round_in_five_has_no_fault() -> None:
+    drawn = Counter(
+        kind == QUIET for seed in range(200) for kind in draw_rounds(BOOK, 6, Random(seed))
+    )
+    assert 0.15 < drawn[True] / 1200 < 0.25
+
+
+def test_different_seeds_draw_different_drills() -> None:
+    drills = {tuple(draw_rounds(BOOK, 6, Random(seed))) for seed in range(20)}
+    assert len(drills) == 20
+
+
+# --------------------------------------------------------------------------- what happens then
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
+def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: object) -> None:
+    assert kind in KINDS
+    wanted = next(one for one in KINDS if one == kind)
+    shown = table.play(3, wanted, Random(1))
+    rule = BOOK.rule(wanted.code)
+    assert (shown.number, shown.kind, shown.rule) == (3, wanted, rule)
+    assert shown.fault is not None
+    assert (shown.fault.code, shown.fault.recovery) == (rule.code, shown.recovery)
+    assert shown.noticed == shown.fault.why
+    assert (shown.release is not None) is rule.critical
+    assert len(set(shown.choices)) == CHOICES
+    assert shown.code in shown.choices
+    others = [BOOK.rule(code) for code in shown.choices if code != shown.code]
+    assert any(
+        (rule.device and other.device == rule.device) or other.recovery[0] == rule.recovery[0]
+        for other in others
+    )
+
+
+def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop) -> None:
+    for kind in KINDS:
+        shown = table.play(1, kind, Random(2))
+        assert shown.rule is not None
+        assert shown.fault is not None
+        seen = " ".join(text for _, text in round_parts(table, shown)).lower()
+        for told in (shown.fault.name, shown.fault.console, *shown.fault.advice):
+            assert told.lower() not in seen, kind.name
+        assert "critical" not in seen
+
+
+def test_in_a_quiet_round_nothing_is_wrong_and_something_catches_the_eye(table: Tabletop) -> None:
+    rounds = [table.play(1, QUIET, Random(seed)) for seed in range(24)]
+    assert {shown.quiet for shown in rounds} == set(QUIET_KINDS)
+    for shown in rounds:
+        assert (shown.fault, shown.code, shown.recovery) == (None, "", "continue")
+        assert len(set(shown.choices)) == CHOICES
+        assert shown.noticed
+        assert {state for _, state in shown.devices} == {"OK"}
+
+
+def test_whether_tangy_may_be_cleared_is_what_clearing_it_comes_to(table: Tabletop) -> None:
+    critical = [kind for kind in KINDS if BOOK.rule(kind.code).critical]
+    right = Counter[bool]()
+    for seed in range(3):
+        for kind in critical:
+            shown = table.play(1, kind, Random(seed))
+            assert shown.release is not None
+            assert shown.fault is not None
+            # Gone exactly if what is seen now is no longer what was seen then.
+            same = shown.fault.why.startswith(shown.release.seen)
+            assert shown.release.right is not same, (kind.name, shown.release, shown.fault.why)
+            right[shown.release.right] += 1
+    assert min(right.values()) >= len(critical) // 2, "both come up"
+
+
+def test_the_same_seed_gives_the_same_rounds(table: Tabletop, store: Store) -> None:
+    def seen() -> list[tuple[object, ...]]:
+        drill = Drill(table, store, who="ada", seed=7, rounds=4)
+        found: list[tuple[object, ...]] = []
+        while (shown := drill.next()) is not None:
+            found.append((shown.kind, shown.state, shown.noticed, shown.choices, shown.release))
+            right_keys(drill)
+        return found
+
+    assert seen() == seen()
+
+
+def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
+    table: Tabletop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = next(kind for kind in KINDS if BOOK.rule(kind.code).recovery[0] == "user")
+    real = Tabletop._try
+
+    def hardly(self: Tabletop, number: int, kind: object, seed: int) -> Round | None:
+        return None if kind == wanted else real(self, number, kind, seed)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Tabletop, "_try", hardly)
+    shown = table.play(1, wanted, Random(1))
+    assert shown.kind != wanted
+    assert shown.recovery == "user"
+    monkeypatch.setattr(Tabletop, "_try", lambda *_: None)
+    with pytest.raises(TangyError, match="No fault of Bingo could be brought about"):
+        table.play(1, wanted, Random(1))
+
+
+# ----------------------------------------------------------------------------------- the policy
+
+
+def test_a_fresh_installation_is_taught_for_the_drill_and_nothing_of_it_is_kept(
+    store: Store, activity: Activity
+) -> None:
+    found = policy_for_drill(store, activity)
+    assert found.note.startswith("Tangy has learnt nothing yet")
+    assert all(found.policy.decide(situation).sure for situation in activity.situations)
+    assert list(store.events()) == []
+
+
+def test_a_policy_with_gaps_or_that_is_lost_is_not_drilled_with(
+    store: Store, activity: Activity, learnt: Learnt, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep_policy(store, replace(learnt.policy, demonstrations=("gone",)))
+    found = policy_for_drill(store, activity)
+    assert found.note.startswith("What Tangy has learnt cannot be used")
+    gap = dict(learnt.policy.table)
+    first = next(iter(activity.situations))
+    gap[first] = replace(gap[first], seen=0)
+    gappy = replace(learnt.policy, table=gap)
+    monkeypatch.setattr(drill_policy, "load_policy", lambda *_: (gappy, []))
+    found = policy_for_drill(store, activity)
+    assert found.note.startswith("What Tangy has learnt has gaps")
+    assert found.policy.decide(first).sure
+    whole = replace(learnt.policy, name="whole")
+    monkeypatch.setattr(drill_policy, "load_policy", lambda *_: (whole, []))
+    found = policy_for_drill(store, activity)
+    assert (found.policy.name, found.note) == ("whole", "")
+
+
+def test_an_activity_that_expects_nothing_must_be_taught_first(
+    store: Store, activity: Activity
+) -> None:
+    with pytest.raises(TangyError, match="teach it Bingo first"):
+        policy_for_drill(store, replace(activity, expected={}))
+
+
+# ---------------------------------------------------------------------------- answers and score
+
+
+def test_right_answers_get_every_point_and_only_the_sheet_is_logged(
+    table: Tabletop, store: Store
+) -> None:
+    clock = Clock()
+    drill = Drill(table, store, who="ada", seed=2, rounds=6, clock=clock)
+    while drill.next() is not None:
+        drill.shown()
+        clock.now += 3.0
+        assert list(store.events()) == []
+        right_keys(drill)
+    assert drill.over
+    sheet = drill.sheet
+    assert sheet.finished
+    assert sheet.points == sheet.most == sum(one.most for one in sheet.answered)
+    assert sheet.median == 3.0
+    assert sheet.again == ()
+    (event,) = store.events()
+    assert (event.kind, event.person) == (DRILL, None)
+    assert [replace(kept, at="") for kept in read_sheets(store)] == [sheet]
+    assert drill.next() is None
+    drill.leave()
+    assert len(list(store.events())) == 1, "it is kept once"
+
+
+def test_each_wrong_answer_costs_its_point(table: Tabletop, store: Store) -> None:
+    drill = Drill(table, store, who="ada", seed=2, rounds=4)
+    while (shown := drill.next()) is not None:
+        answered = None
+        while (question := drill.question) is not None:
+            right = {
+                "what": shown.code,
+                "do": shown.recovery,
+                "clear": "yes" if shown.release and shown.release.right else "no",
+            }[question.kind]
+            answered = drill.answer(next(c.key for c in question.choices if c.value != right))
+        assert answered is not None
+        assert (answered.named_right, answered.acted_right) == (False, False)
+        assert answered.cleared_right is (None if shown.release is None else False)
+        assert (answered.points, answered.most) == (0, 2 if shown.release is None else 3)
+        told = [text for _, text in told_lines(table, shown, answered)]
+        assert told[0].startswith("No: ")
+        assert shown.fault is None or all(any(a in t for t in told) for a in shown.fault.advice)
+    sheet = drill.sheet
+    assert sheet.points == 0
+    assert len(sheet.again) == 4
+    assert set(sheet.by_class) == {one.kind for one in sheet.answered}
+    assert sum(most for _, most in sheet.by_class.values()) == sheet.most
+    assert all(one.advice for one in sheet.again if one.code)
+
+
+def test_the_time_begins_when_the_round_can_be_read(table: Tabletop, store: Store) -> None:
+    clock = Clock()
+    drill = Drill(table, store, who="ada", seed=1, rounds=1, clock=clock)
+    drill.next()
+    clock.now += 50
+    drill.shown()
+    clock.now += 4
+    drill.answer(NOTHING)
+    drill.shown()  # too late to begin anew
+    clock.now += 2
+    right_keys(drill)
+    assert drill.sheet.answered[0].seconds == 6
+
+
+def test_a_drill_that_is_left_keeps_what_was_answered(table: Tabletop, store: Store) -> None:
+    drill = Drill(table, store, who="ada", seed=1, rounds=5)
+    assert drill.leave() is None
+    assert last_sheet(store) is None
+    drill = Drill(table, store, who="ada", seed=1, rounds=5)
+    drill.next()
+    right_keys(drill)
+    drill.next()
+    drill.answer(NOTHING)
+    drill.leave()
+    kept = last_sheet(store)
+    assert kept is not None
+    assert (len(kept.answered), kept.rounds, kept.finished) == (1, 5, False)
+    assert "left after 1 of 5" in sheet_lines(kept)[0][1]
+
+
+def test_what_is_no_answer_is_refused(table: Tabletop, store: Store) -> None:
+    drill = Drill(table, store, who="ada", seed=1, rounds=1)
+    with pytest.raises(TangyError, match="Nothing is asked"):
+        drill.answer("1")
+    drill.next()
+    assert drill.next() is None, "the round is to be answered first"
+    with pytest.raises(TangyError, match="one of: 1, 2, 3, 4, 0"):
+        drill.answer("5")
+    for rounds in (0, 51):
+        with pytest.raises(TangyError, match="from 1 to 50"):
+            Drill(table, store, who="ada", rounds=rounds)
+
+
+def test_without_a_seed_no_drill_is_like_an_earlier_one(table: Tabletop, store: Store) -> None:
+    for expected in (1, 2, 3):
+        drill = Drill(table, store, who="ada", rounds=1)
+        assert drill.sheet.seed == expected
+        drill.next()
+        right_keys(drill)
+
+
+def test_no_name_of_a_person_gets_into_the_log(
+    learnt: Learnt, store: Store, activity: Activity
+) -> None:
+    names = {f"user{number}": f"Xaver{number}" for number in range(1, 5)}
+    table = Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
+    drill = Drill(table, store, who="ada", seed=4, rounds=30)
+    while drill.next() is not None:
+        right_keys(drill)
+    assert "Xaver" not in str([event.body for event in store.events()])
+
+
+# ------------------------------------------------------------------------------------- in words
+
+
+SHEET = Sheet(
+    "ada",
+    "bingo",
+    3,
+    2,
+    (
+        Answered(
+            1, "mute", "Neither voice nor screen", "expert", ("Call.",), "mute", "user", 8.0, True
+        ),
+        Answered(2, "", "Nothing was wrong", "continue", (), "", "continue", 4.0),
+    ),
+    "2026-03-01T09:00:00+00:00",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [54, 74, 120])
+def test_the_sheet_is_a_table_that_fits(width: int) -> None:
+    lines = [text for _, text in sheet_lines(SHEET, width)]
+    assert lines[0] == "ada: 3 of 5 points. Median time 6 s."
+    assert lines[2].split()[-4:] == ["yes", "NO", "NO", "8"]
+    assert lines[3].split()[-4:] == ["yes", "yes", "-", "4"]
+    assert "1 of 3" in lines[4]
+    assert lines[-2:] == [
+        "Neither voice nor screen: keep people away, call the expert, then clear.",
+        "  1. Call.",
+    ]
+    assert all(len(line) <= width for line in lines[:6])
+
+
+def test_a_sheet_survives_the_log(store: Store) -> None:
+    store.append(DRILL, SHEET.to_json())
+    (kept,) = read_sheets(store, "ADA")
+    assert replace(kept, at=SHEET.at) == SHEET
+    assert read_sheets(store, "bea") == []
+    assert SHEET.to_json()["classes"] == {"expert": [1, 3], NOTHING_WRONG: [2, 2]}
+    (head, line) = sheets_lines([SHEET], lambda at: at[:10])
+    assert head.startswith("When")
+    assert " ".join(line.split()) == "2026-03-01 ada 2 of 2 3 of 5 6 Neither voice nor screen"
+    assert sheets_lines([], str) == ["No drill yet: tangy drill begins one."]
+
+
+def test_devices_are_told_by_the_ill_ones() -> None:
+    assert device_words([("a", "OK"), ("b", "OK")]) == "None reports an error."
+    assert device_words([("a", "STALE"), ("b", "STALE")]) == "all 2: nothing comes from it."
+    mixed = device_words([("a", "ERROR"), ("b", "OK"), ("c", "STALE")])
+    assert mixed == ("a: it reports an error; c: nothing comes from it; no error from the other 1.")
+
+
+def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
+    table: Tabletop, store: Store
+) -> None:
+    drill = Drill(table, store, who="ada", seed=3, rounds=4)
+    told: list[str] = []
+    lines = iter(["", "# a remark", "7", "0", "1", "y"])
+    sheet = drill_by_lines(drill, told.append, lambda: next(lines, None))
+    assert sum(line.startswith("Type the number") for line in told) >= 1
+    assert "Round 1 of 4" in told
+    assert sheet is not None
+    assert last_sheet(store) == replace(sheet, at=last_sheet(store).at)  # type: ignore[union-attr]
+
+
+def test_in_a_script_a_slip_ends_it_and_what_was_answered_stays(
+    table: Tabletop, store: Store
+) -> None:
+    drill = Drill(table, store, who="ada", seed=3, rounds=4)
+
+    def line() -> str:
+        assert drill.question is not None
+        return "seven" if drill.number == 2 else drill.question.keys[0]
+
+    with pytest.raises(TangyError, match="Round 2, What is it\\? 'seven'"):
+        drill_by_lines(drill, lambda _: None, line, strict=True)
+    kept = last_sheet(store)
+    assert kept is not None
+    assert (len(kept.answered), kept.finished) == (1, False)
