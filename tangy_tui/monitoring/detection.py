@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
-from tangy_profiles.health import ERROR, STALE, STATES, Fact, Health, Reading
+from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted
@@ -52,22 +52,28 @@ class Detector:
         return STALE if stale and reading.state != ERROR else reading.state
 
     def watch(self, health: Health) -> Evidence:
-        """Return the evidence that the devices give; the same object for the same readings."""
+        """Return the evidence that the devices give; the same object for the same readings.
+
+        What a device measured before it fell silent is no evidence any more.
+        """
         if health is not self._health:
             self._health, self._devices = health, {}
             for reading in health:
-                self._devices[f"{reading.device}.state"] = self.state(reading)
+                state = self.state(reading)
+                self._devices[f"{reading.device}.state"] = state
                 self._devices[f"{reading.device}.age"] = reading.age
-                for fact, value in reading.facts.items():
-                    self._devices[f"{reading.device}.{fact}"] = value
+                if state != STALE:
+                    for fact, value in reading.facts.items():
+                        self._devices[f"{reading.device}.{fact}"] = value
         return self._devices
 
     def worst(self, health: Health) -> tuple[str, str]:
-        """Return the worst state of all devices, and the label of the one that has it."""
+        """Return the worst state of all devices, and which one has it ("": all are well)."""
         states = [(self.state(reading), reading.device) for reading in health]
         state, name = max(states, key=lambda one: STATES.index(one[0]), default=("OK", ""))
         device = self._robot.devices.get(name)
-        return state, device.label if device is not None else name
+        label = device.label if device is not None else name
+        return state, label if state != OK else ""
 
     def compare(self, acted: Acted) -> tuple[dict[str, Fact], list[Mismatch]]:
         """Compare what followed a behaviour with its learnt effects.

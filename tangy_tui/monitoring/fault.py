@@ -94,14 +94,16 @@ class Fault:
     moves: list[Move] = field(default_factory=list)
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
+    status: str = OPEN
+    """Whether it is open, borne or over."""
 
-    @property
-    def status(self) -> str:
-        """Whether it is open, borne or over."""
-        kinds = [move.kind for move in self.moves]
-        if not ENDINGS.isdisjoint(kinds):
-            return OVER
-        return BORNE if "went on" in kinds else OPEN
+    def add(self, move: Move) -> None:
+        """Add what was done about it."""
+        self.moves.append(move)
+        if move.kind in ENDINGS:
+            self.status = OVER
+        elif move.kind == "went on":
+            self.status = BORNE
 
     @property
     def asks_only(self) -> bool:
@@ -217,7 +219,7 @@ def fold_faults(events: Iterable[Event]) -> list[Fault]:
                 at=event.at,
             )
         elif body["fault"] in found:
-            found[body["fault"]].moves.append(Move.from_json(body))
+            found[body["fault"]].add(Move.from_json(body))
     return list(found.values())
 
 

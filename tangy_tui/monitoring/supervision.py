@@ -14,7 +14,7 @@ from typing import TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.behaviour import Behaviour
-from tangy_profiles.faults import Evidence, FaultBook, FaultRule, Remedy
+from tangy_profiles.faults import URGENCY, Evidence, FaultBook, FaultRule, Remedy
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
@@ -92,6 +92,7 @@ class Supervision:
         """The critical fault because of which the robot stands still."""
         self.seconds = 0.0
         """The time in the present game, in s."""
+        self._there: list[Fault] = []  # those that are not over
         self._store = store
         self._effects_of = effects_of
         self._name = name
@@ -99,6 +100,7 @@ class Supervision:
         self._rules: dict[str, FaultRule] = {}
         self._rung: Counter[str] = Counter()
         self._tried: Counter[str] = Counter()
+        self._times: Counter[tuple[str, str | None, str]] = Counter()
         self._seen: Evidence | None = None
         self._acted: Acted | None = None
 
@@ -148,12 +150,13 @@ class Supervision:
     def begin(self) -> list[Event]:
         """Begin the next game, in which nothing is known to be wrong."""
         told: list[Event] = list(self.game.begin())
-        self.faults = []
+        self.faults, self._there = [], []
         self.halted = None
         self.seconds = 0.0
         self._rules.clear()
         self._rung.clear()
         self._tried.clear()
+        self._times.clear()
         self._seen = self._acted = None
         self._detector.begin()
         return told
@@ -184,7 +187,7 @@ class Supervision:
             return []
         self._seen = evidence
         told: list[Event] = []
-        for fault in self.faults:
+        for fault in list(self._there):
             reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
             if reported and self._rules[fault.id].matched(evidence) is None:
                 told += self._move(fault, Move("ended", self.seconds))
@@ -198,8 +201,7 @@ class Supervision:
         """
         if self.halted is not None:
             return "HALTED", self.halted.name
-        there = [fault for fault in self.faults if fault.status != OVER]
-        there.sort(key=lambda fault: (fault.status == BORNE, self._rules[fault.id].urgency))
+        there = sorted(self._there, key=lambda f: (f.status == BORNE, self._rules[f.id].urgency))
         if self.question is not None:
             return "ASKS", there[0].name if there else ""
         if there:
@@ -209,8 +211,8 @@ class Supervision:
     @property
     def waiting(self) -> list[Fault]:
         """The faults that are still to be dealt with, the most urgent first."""
-        there = [fault for fault in self.faults if fault.status == OPEN]
-        return sorted(there, key=lambda fault: self._urgency(fault))
+        there = [fault for fault in self._there if fault.status == OPEN]
+        return sorted(there, key=lambda fault: URGENCY.index(self._rung_of(fault)))
 
     # ------------------------------------------------------------------- what people do
 
@@ -350,8 +352,7 @@ class Supervision:
     def _known(self, diagnosis: Diagnosis, person: str | None) -> bool:
         """Say whether this is a fault that is there already, and not another one."""
         return any(
-            fault.code == diagnosis.rule.code and fault.status != OVER and fault.person == person
-            for fault in self.faults
+            fault.code == diagnosis.rule.code and fault.person == person for fault in self._there
         )
 
     def _keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
@@ -374,25 +375,18 @@ class Supervision:
             at=self._store.now().isoformat(),
             **rule_texts(rule, name, self.world.activity.object, why),
         )
-        before = [
-            other
-            for other in self.faults
-            if (other.code, other.person, other.behaviour)
-            == (fault.code, fault.person, fault.behaviour)
-        ]
+        self._times[fault.code, fault.person, fault.behaviour] += 1
+        times = self._times[fault.code, fault.person, fault.behaviour]
         self._rules[fault.id] = rule
         self.faults.append(fault)
+        self._there.append(fault)
         self._store.append(FAULT, fault.to_json(), person=person)
         told: list[Event] = [Diagnosed(fault)]
-        if len(before) >= AGAIN and acted is not None and rule.recovery[0] in ("user", "teacher"):
+        if times > AGAIN and acted is not None and rule.recovery[0] in ("user", "teacher"):
             told += self._escalate(fault)
         return told
 
     # ------------------------------------------------------------------------ recovering
-
-    def _urgency(self, fault: Fault) -> tuple[int, int]:
-        rung = self._rung_of(fault)
-        return (("expert", "user", "teacher", "continue").index(rung), self.faults.index(fault))
 
     def _rung_of(self, fault: Fault) -> str:
         ladder = self._rules[fault.id].recovery
@@ -511,7 +505,7 @@ class Supervision:
             return None
         asked = [
             fault
-            for fault in self.faults
+            for fault in self._there
             if fault.status == OPEN and any(move.kind == "teacher asked" for move in fault.moves)
         ]
         return next((fault for fault in asked if question.fault in ("", fault.id)), None)
@@ -523,7 +517,7 @@ class Supervision:
     def _leave_open(self) -> list[Event]:
         """Say of the faults that nobody has dealt with that the game ended before."""
         told: list[Event] = []
-        for fault in self.faults:
+        for fault in list(self._there):
             if fault.status == OPEN and not any(m.kind == "given up" for m in fault.moves):
                 told += self._move(fault, Move("left open", self.seconds))
         return told
@@ -531,5 +525,7 @@ class Supervision:
     def _move(self, fault: Fault, move: Move) -> list[Event]:
         body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
         self._store.append(RECOVERY, body, person=fault.person)
-        fault.moves.append(move)
+        fault.add(move)
+        if fault.status == OVER:
+            self._there.remove(fault)
         return [Moved(fault, move)]

@@ -1,0 +1,90 @@
+"""What the tests of execution monitoring share: supervised games with faults in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from tangy_sim.faulty import FaultyWorld
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+Supervise = Callable[..., Supervision]
+
+
+def world_of(game: Supervision) -> FaultyWorld:
+    """Return the simulated world of a game."""
+    assert isinstance(game.world, FaultyWorld)
+    return game.world
+
+
+def play(game: Supervision, *, expert: bool = True) -> list[Event]:
+    """Play one game to its end, with scripted people."""
+    events = game.begin()
+    while not game.over:
+        events += go_on_by_script(game, expert=expert)
+    return events
+
+
+def until(
+    game: Supervision, stops: Callable[[Supervision], object], most: int = 400
+) -> list[Event]:
+    """Do step after step until something is so; nobody clears or answers anything."""
+    events: list[Event] = []
+    for _ in range(most):
+        if stops(game):
+            return events
+        events += game.step()
+    raise AssertionError("It never came to that.")
+
+
+def codes(events: list[Event]) -> list[str]:
+    """Return the codes of what was diagnosed, in order."""
+    return [event.fault.code for event in events if isinstance(event, Diagnosed)]
+
+
+def moves(events: list[Event], code: str = "") -> list[str]:
+    """Return what was done about faults (of a code), in order."""
+    return [e.move.kind for e in events if isinstance(e, Moved) and code in ("", e.fault.code)]
+
+
+def acts(events: list[Event]) -> list[Acted]:
+    """Return the behaviours that were executed."""
+    return [event for event in events if isinstance(event, Acted)]
+
+
+@pytest.fixture(scope="session")
+def learnt(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
+    """The policy of the taught folder, fitted once for all tests."""
+    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("learnt") / "data")))
+    try:
+        return load_policy(house.store, house.activity)[0]
+    finally:
+        house.close()
+
+
+@pytest.fixture
+def house(taught: Path) -> Iterator[House]:
+    """A house in which three demonstrations were given and learnt from."""
+    opened = House(taught)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def supervise(house: House, learnt: Policy) -> Iterator[Supervise]:
+    """Make supervised games: (*injections, seed=1, asks=True) -> them; written in one go."""
+
+    def make(*injections: str, seed: int = 1, asks: bool = True) -> Supervision:
+        return house.supervision(learnt, seed, asks=asks, injections=injections)
+
+    with house.store.transaction():  # none of these tests is about the disk
+        yield make

@@ -1,0 +1,159 @@
+"""Detection: what is unexpected is noticed at once, what people owe is no fault, age tells."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.health import Reading
+from tangy_profiles.robot import load_robot
+from tangy_sim.body import READINGS, WELL
+from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import KINDS, read_injection
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.house import House
+from tangy_tui.learning.effects import Effects
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.detection import Detector, symptoms
+from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until, world_of
+
+
+@pytest.fixture
+def detector(house: House) -> Detector:
+    return Detector(house.activity, house.robot, Effects({}))
+
+
+def test_the_simulated_body_has_the_devices_of_the_robot() -> None:
+    devices = load_robot().devices
+    assert set(READINGS) == set(devices)
+    for name, facts in READINGS.items():
+        assert set(facts) == set(devices[name].facts), name
+
+
+@pytest.mark.parametrize("device", sorted(READINGS))
+def test_a_device_is_stale_by_the_age_of_its_data_and_not_before(
+    detector: Detector, device: str
+) -> None:
+    allowed = load_robot().devices[device].stale_after
+    assert detector.state(Reading(device, allowed)) == "OK"
+    assert detector.state(Reading(device, allowed * 1.01)) == "STALE"
+
+
+def test_what_a_device_says_is_an_error_is_not_called_stale(detector: Detector) -> None:
+    assert detector.state(Reading("voice", 60.0, "ERROR")) == "ERROR"
+
+
+def test_the_same_readings_are_looked_at_once(detector: Detector) -> None:
+    assert detector.watch(WELL) is detector.watch(WELL)
+    assert not symptoms(detector.watch(WELL))
+
+
+def test_the_worst_state_names_its_cause(detector: Detector) -> None:
+    silent = Reading("camera", 9.0)
+    assert detector.worst(WELL) == ("OK", "")
+    assert detector.worst((*WELL[:6], silent, *WELL[7:])) == ("STALE", "head camera")
+    failed = Reading("voice", 0.1, "ERROR")
+    assert detector.worst((silent, failed)) == ("ERROR", "voice")
+
+
+def test_games_without_faults_are_those_of_the_plain_world(house: House) -> None:
+    people = [person.id for person in house.people]
+    plain = SimulatedWorld(house.activity, people, seed=5)
+    faulty = FaultyWorld(house.activity, people, seed=5)
+    for _ in range(3):
+        while not plain.over:
+            state = plain.observe()
+            assert faulty.observe() == state
+            behaviour = house.activity.behaviours[house.activity.expected[state.situation]]
+            action = house.activity.action(behaviour, state.attended, None)
+            assert faulty.execute(action) == plain.execute(action)
+        plain.begin()
+        faulty.begin()
+
+
+def test_nothing_is_found_in_games_in_which_nothing_is_wrong(supervise: Supervise) -> None:
+    game = supervise(seed=11)
+    for _ in range(40):
+        assert not codes(play(game))
+        assert game.status == ("OK", "")
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_every_kind_is_noticed_in_the_step_in_which_it_can_show(
+    supervise: Supervise, kind: str
+) -> None:
+    game = supervise(kind, seed=2)
+    play(game)
+    assert world_of(game).came, "it never came about"
+    step, _ = world_of(game).came[0]
+    first = game.faults[0]
+    assert first.code == KINDS[kind].code
+    assert first.step == step + (2 if kind == "never-complies" else 0)  # after the third refusal
+
+
+def test_a_person_who_does_not_follow_is_no_fault_before_it_repeats(supervise: Supervise) -> None:
+    game = supervise("never-complies", seed=2)
+    game.begin()
+    events = until(game, lambda now: now.faults)
+    refused = [a for a in acts(events) if a.outcome.response and not a.outcome.response.followed]
+    assert len(refused) == 3
+    assert game.faults[0].person == refused[0].state.attended
+    assert moves(events, "never-complies") == []
+    assert moves(game.step(), "never-complies") == ["remedied", "recovered"]
+    assert world_of(game).observe().user(str(game.faults[0].person)).request == "ANR"
+
+
+def test_a_mismatch_says_variable_expected_and_seen(supervise: Supervise) -> None:
+    game = supervise("base-stuck", seed=2)
+    game.begin()
+    until(game, lambda now: now.halted)
+    (mismatch, *_) = game.faults[0].mismatches
+    assert mismatch.variable == "robot's place"
+    assert (mismatch.expected, mismatch.seen) == (("with the person who asked",), "front")
+    assert "should be with the person who asked, is front" in game.faults[0].why
+
+
+def test_what_is_brought_about_by_hand_is_seen_at_the_next_look(supervise: Supervise) -> None:
+    game = supervise(seed=2)
+    game.begin()
+    game.step()
+    assert game.look() == []
+    world_of(game).inject("camera-disconnected")
+    assert codes(game.look()) == ["camera-disconnected"]
+    assert game.look() == []
+    assert game.halted is game.faults[0]
+
+
+def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
+    house: House, learnt: Policy, supervise: Supervise
+) -> None:
+    game = supervise(seed=2)
+    game._detector.effects = Effects({})
+    assert not codes(play(game))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("base-stuk", "did you mean 'base-stuck'?"),
+        ("base-stuck@0", "a step from 1 on"),
+        ("base-stuck@soon", "a step from 1 on"),
+        ("base-stuck~2", "a probability above 0"),
+        ("base-stuck~nan", "a probability above 0"),
+        ("base-stuck~", "a probability above 0"),
+        ("", "There is no fault ''"),
+        ("\x1b[2J", "There is no fault"),
+    ],
+)
+def test_an_injection_that_is_none_says_why(text: str, says: str) -> None:
+    with pytest.raises(TangyError) as wrong:
+        read_injection(text)
+    assert says in str(wrong.value)
+    assert str(wrong.value).isprintable()
+
+
+@pytest.mark.parametrize(
+    "text", ["base-stuck", "voice-dead@12", "arm-failed~0.25", "voice-dead@recovery"]
+)
+def test_an_injection_is_written_as_it_is_read(text: str) -> None:
+    assert str(read_injection(text)) == text

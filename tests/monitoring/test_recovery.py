@@ -1,0 +1,338 @@
+"""Recovery: rung by rung, bounded, the worst first; and nothing moves while Tangy is halted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.store import Store
+from tangy_sim import faulty
+from tangy_sim.injection import KINDS
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, GameEnded, Taught
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+from tangy_tui.monitoring.fault import ACCEPTED, ENDINGS, FAULT, OVER, RECOVERY, read_faults
+from tangy_tui.monitoring.supervision import Supervision
+from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until, world_of
+
+CRITICAL = ("emergency-stop", "link-lost", "laser-disconnected", "camera-frozen", "base-failed")
+EASY = ("voice-dead", "arm-failed", "requests-silent", "laser-occluded", "camera-occluded")
+
+
+def ended(events: Sequence[object]) -> GameEnded:
+    return next(event for event in events if isinstance(event, GameEnded))
+
+
+# ------------------------------------------------------------------------------ standing still
+
+
+@pytest.mark.parametrize("kind", CRITICAL)
+def test_a_critical_fault_halts_at_once_and_staff_clear_it(supervise: Supervise, kind: str) -> None:
+    game = supervise(f"{kind}@5", seed=3)
+    events = game.begin() + until(game, lambda now: now.halted)
+    assert len(acts(events)) == 5
+    assert game.status == ("HALTED", game.faults[0].name)
+    assert game.step() == game.step() == []
+    assert game.clear("Ada") == []  # nobody has seen it yet
+    assert moves(game.acknowledge("Ada")) == ["acknowledged"]
+    assert game.acknowledge("Ada") == []
+    assert moves(game.clear("Ada")) == ["still there"]
+    assert game.step() == []
+    assert moves(game.call_expert("Ada")) == ["expert called"]
+    assert moves(game.clear("Ada")) == ["cleared"]
+    assert game.halted is None
+    assert acts(game.step())
+    assert game.faults[0].status == OVER
+
+
+def test_what_is_mended_without_the_expert_can_be_cleared(supervise: Supervise) -> None:
+    game = supervise("emergency-stop@2", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    game.acknowledge("Ada")
+    world_of(game).lift("emergency-stop")
+    assert moves(game.clear("Ada")) == ["cleared"]
+
+
+def test_a_halted_game_that_is_given_up_says_why(supervise: Supervise) -> None:
+    game = supervise("camera-disconnected@7", seed=3)
+    events = play(game, expert=False)
+    stopped = ended(events).stopped
+    assert stopped is not None and stopped.startswith("Tangy was halted. Head camera silent: ")
+    assert game.faults[0].status != OVER
+    assert moves(events)[-1] == "given up"
+
+
+def test_a_fault_in_the_last_step_does_not_hold_the_end_up(supervise: Supervise) -> None:
+    length = len(acts(play(supervise(seed=3))))
+    game = supervise(f"camera-frozen@{length}", seed=3)
+    events = play(game)
+    assert codes(events) == ["camera-frozen"]
+    assert moves(events) == ["left open"]
+    assert ended(events).stopped is None
+    assert game.halted is None
+
+
+# ----------------------------------------------------------------------------- the ladder
+
+
+def test_a_user_is_asked_and_what_helps_ends_it(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 1.0)
+    game = supervise("path-blocked", seed=3)
+    events = play(game)
+    assert moves(events) == ["asked", "recovered"]
+    asked = game.faults[0].moves[0]
+    assert asked.speech == "I cannot get through. Could somebody please move what stands in my way?"
+    assert asked.image == "Please move the obstacle"
+
+
+def test_who_does_not_help_is_asked_so_often_and_then_an_expert(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    game = supervise("path-blocked", seed=3)
+    events = play(game)
+    assert moves(events) == [
+        "asked", "asked", "asked", "escalated",
+        "halted", "acknowledged", "expert called", "cleared",
+    ]  # fmt: skip
+    assert [move.attempt for move in game.faults[0].moves[:3]] == [1, 2, 3]
+    assert game.faults[0].ladder == ("user", "expert")
+
+
+def test_a_request_that_does_not_end_is_set_aside_in_the_end(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    game = supervise("request-stuck", seed=2)
+    assert moves(play(game)) == ["asked", "asked", "escalated", "remedied", "recovered"]
+    assert game.faults[0].ladder == ("user", "continue")
+
+
+def test_what_is_borne_is_told_once_and_ends_when_it_is_over(supervise: Supervise) -> None:
+    game = supervise("requests-silent@4", seed=3)
+    game.begin()
+    until(game, lambda now: now.faults and now.faults[0].status == "borne")
+    assert game.status == ("WARN", "Request sensor silent")
+    told = [event for _ in range(10) for event in game.step()]
+    assert not codes(told)
+    assert acts(told)
+    world_of(game).lift("requests-silent")
+    assert moves(game.look()) == ["ended"]
+    assert game.status == ("OK", "")
+
+
+def test_people_are_heard_again_while_the_request_sensor_is_silent(supervise: Supervise) -> None:
+    visits = sum(a.action.behaviour.effect == "go to user" for a in acts(play(supervise(seed=3))))
+    silent = acts(play(supervise("requests-silent@3", seed=3)))
+    assert visits
+    assert sum(act.action.behaviour.effect == "go to user" for act in silent) >= visits - 1
+
+
+def test_without_a_teacher_an_expert_is_asked(supervise: Supervise) -> None:
+    game = supervise("no-effect", seed=3, asks=False)
+    assert moves(play(game)) == [
+        "escalated", "halted", "acknowledged", "expert called", "cleared",
+    ]  # fmt: skip
+
+
+def test_the_same_again_and_again_is_not_asked_for_ever(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 1.0)
+    game = supervise("card-out-of-sight~1", seed=3)
+    asked: list[str] = []
+    events = game.begin()
+    while not game.over and len(events) < 2_000:
+        asked += moves(events)
+        events = game.give_up() if game.halted or game.question else game.step()
+    assert game.over
+    person = [fault.person for fault in game.faults]
+    assert max(person.count(one) for one in person) <= 4
+
+
+# ----------------------------------------------------------------------------- two at once
+
+
+@pytest.mark.parametrize("other", EASY)
+@pytest.mark.parametrize("critical", CRITICAL[::2])
+def test_the_critical_one_wins_and_the_other_is_handled_after(
+    supervise: Supervise, critical: str, other: str
+) -> None:
+    hidden = critical == "link-lost" or {critical, other} == {
+        "laser-disconnected",
+        "laser-occluded",
+    }
+    game = supervise(f"{other}@6", f"{critical}@6", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    assert game.halted is not None and game.halted.code == critical
+    kept = [fault for fault in game.faults if fault is not game.halted]
+    assert [fault.code for fault in kept] == ([] if hidden else [other])
+    assert all([move.kind for move in fault.moves] == ["kept"] for fault in kept)
+    events = game.call_expert("Ada") + game.clear("Ada")
+    assert "cleared" in moves(events, critical)
+    until(game, lambda now: all(fault.status != "open" for fault in now.faults) or now.halted)
+    assert other in [fault.code for fault in game.faults]
+
+
+def test_a_critical_fault_during_the_recovery_of_another_comes_first(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    game = supervise("path-blocked", "laser-disconnected@recovery", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    assert game.halted is not None and game.halted.code == "laser-disconnected"
+    assert [move.kind for move in game.faults[0].moves] == ["asked", "kept"]
+    game.call_expert("Ada")
+    game.clear("Ada")
+    assert moves(game.step(), "path-blocked") == ["asked"]
+
+
+def test_while_a_teacher_is_asked_something_critical_takes_over(supervise: Supervise) -> None:
+    game = supervise("no-effect", seed=3)
+    game.begin()
+    until(game, lambda now: now.question)
+    world_of(game).inject("emergency-stop")
+    assert codes(game.look()) == ["emergency-stop"]
+    assert game.question is None and game.halted is not None
+    game.call_expert("Ada")
+    game.clear("Ada")
+    until(game, lambda now: now.question)
+    assert game.question is not None
+
+
+# ------------------------------------------------------------------------------ the teacher
+
+
+def test_a_teacher_says_what_to_do_and_the_game_goes_on(house: House, learnt: Policy) -> None:
+    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    events = play(game)
+    assert moves(events) == ["teacher asked", "taught"]
+    assert any(isinstance(event, Taught) for event in events)
+    assert game.policy.digest != learnt.digest
+    assert ended(events).stopped is None
+
+
+def test_a_teacher_says_that_it_is_all_right_and_it_is_expected_from_then_on(
+    house: House, learnt: Policy
+) -> None:
+    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game.begin()
+    until(game, lambda now: now.question)
+    assert game.acceptable
+    assert moves(game.accept("Ada")) == ["accepted"]
+    assert game.question is None
+    assert game.policy.digest == learnt.digest
+    assert next(house.store.events(ACCEPTED)).body["by"] == "Ada"
+    again = house.supervision(learnt, 4, asks=True, injections=["no-effect@1"])
+    assert not codes(play(again))
+
+
+def test_what_is_only_not_known_cannot_be_called_all_right(supervise: Supervise) -> None:
+    game = supervise("base-stuck", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    assert not game.acceptable
+    assert game.accept("Ada") == []
+
+
+# ----------------------------------------------------------------------------------- laws
+
+
+def check_log(store: Store) -> None:
+    """Between a halt and what ends it nothing is executed; every game ends; attempts are few."""
+    halted: set[str] = set()
+    going: set[str] = set()
+    for event in store.events(BEGUN, STEP, ENDED, FAULT, RECOVERY):
+        game = event.body["game"]
+        if event.kind == BEGUN:
+            going.add(game)
+        elif event.kind == ENDED:
+            going.discard(game)
+            halted.discard(game)
+        elif event.kind == STEP:
+            assert game in going
+            assert game not in halted, "a step after a halt that nobody cleared"
+        elif event.kind == RECOVERY and event.body["kind"] == "halted":
+            halted.add(game)
+        elif event.kind == RECOVERY and event.body["kind"] == "cleared":
+            halted.discard(game)
+    assert not going
+    for fault in read_faults(store):
+        kinds = [move.kind for move in fault.moves]
+        assert len(kinds) <= 25
+        assert sum(kind in ENDINGS for kind in kinds) <= 1
+        assert kinds.count("escalated") <= 2
+        assert all(move.attempt <= 3 for move in fault.moves)
+        times = [fault.seconds, *(move.seconds for move in fault.moves)]
+        assert times == sorted(times)
+
+
+@pytest.fixture(scope="module")
+def small_policy(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
+    """The same demonstrations, learnt by few trees: a teacher's answers are learnt at once."""
+    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("small") / "data")))
+    with closing(house):
+        shown = read_library(house.store, house.activity.name).finished
+        return learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
+
+
+injections = st.lists(
+    st.builds(
+        lambda kind, when: f"{kind}{when}",
+        st.sampled_from(sorted(KINDS)),
+        st.one_of(
+            st.integers(1, 70).map(lambda step: f"@{step}"),
+            st.just(""),
+            st.just("@recovery"),
+            st.sampled_from(["~0.02", "~0.2", "~1"]),
+        ),
+    ),
+    max_size=8,
+)
+
+
+@given(injections, st.integers(0, 10_000), st.booleans(), st.booleans())
+def test_whatever_goes_wrong_the_game_ends_and_nothing_moves_after_a_halt(
+    small_policy: Policy,
+    _taught: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+    injected: list[str],
+    seed: int,
+    asks: bool,
+    expert: bool,
+) -> None:
+    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("law") / "data")))
+    policy = small_policy
+    with closing(house), house.store.transaction():
+        game = house.supervision(policy, seed, asks=asks, injections=injected)
+        events = play(game, expert=expert)
+        stopped = ended(events).stopped
+        last = acts(events)[-1].action.behaviour if acts(events) else None
+        assert stopped or (last is not None and last.effect == "finish")
+        told = [fault.document() for fault in game.faults]
+        kept = [f.document() for f in read_faults(house.store, game.game.game)]
+        assert kept == told  # the log is the truth
+        check_log(house.store)
+
+
+def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House) -> None:
+    game: Supervision = supervise(*(f"{kind}~0.004" for kind in sorted(KINDS)), seed=8)
+    faults = 0
+    for _ in range(20):
+        events = play(game)
+        faults += len(codes(events))
+        assert ended(events).stopped is None or "halted" in str(ended(events).stopped)
+    assert faults >= 60
+    check_log(house.store)
