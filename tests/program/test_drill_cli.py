@@ -1,0 +1,113 @@
+"""`tangy drill` on the command line: by lines, as a document, and the scores that were kept."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.store import Store
+
+Tangy = Callable[..., CompletedProcess[str]]
+
+KEYS = "0\n1\n"
+"""Nothing is wrong, and let it go on; a critical round asks for one more answer."""
+
+
+def answers(rounds: int) -> str:
+    """Return enough lines for any drill: what is no answer is asked for again."""
+    return (KEYS + "n\n") * rounds
+
+
+def test_by_lines_a_drill_is_told_and_kept(tangy: Tangy, tmp_path: Path) -> None:
+    data = ("--data", tmp_path / "d")
+    asked = ("drill", "--plain", "--rounds", "4", "--seed", "3", "--who", "Ada")
+    done = tangy(*asked, *data, stdin=answers(8))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Tangy has learnt nothing yet" in done.stdout
+    for words in ("Round 1 of 4", "Round 4 of 4", "What is it?", "What do you do?", "Ada: "):
+        assert words in done.stdout
+    assert "May Tangy be cleared now?" in done.stdout
+    again = tangy(*asked, *data, stdin=answers(8))
+    assert again.stdout.replace(" 0 s", "") == done.stdout.replace(" 0 s", "")
+    listed = tangy("drill", "--scores", *data)
+    assert listed.returncode == 0
+    assert listed.stdout.count("Ada") == 2
+    with Store.open(tmp_path / "d", write=False) as store:
+        assert [event.kind for event in store.events()] == ["drill", "drill"]
+        assert store.responses() == {}
+
+
+def test_as_a_document_nothing_else_is_printed(tangy: Tangy, tmp_path: Path) -> None:
+    data = ("--data", tmp_path / "d")
+    done = tangy("drill", "--json", "--rounds", "2", "--seed", "1", *data, stdin=KEYS)
+    assert done.returncode == 0, done.stderr
+    sheet = json.loads(done.stdout)
+    assert (sheet["seed"], sheet["rounds"], sheet["finished"]) == (1, 2, False)
+    for one in sheet["answers"]:
+        assert one["points"] == sum(
+            (one["named_right"], one["acted_right"], one["cleared_right"] is True)
+        )
+    listed = json.loads(tangy("drill", "--scores", "--json", *data).stdout)
+    kept = [sheet] if sheet["answers"] else []
+    assert [{k: v for k, v in one.items() if k != "at"} for one in listed] == kept
+    nobody = tangy("drill", "--scores", "--json", "--who", "nobody", *data)
+    assert json.loads(nobody.stdout) == []
+
+
+def test_answers_that_are_right_by_the_document_get_all_points(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    """The document of a first run says what would have been right; the second run answers so."""
+    asked = ("drill", "--json", "--rounds", "1", "--data", tmp_path / "d", "--seed")
+    for seed in range(1, 30):
+        first = json.loads(tangy(*asked, seed, stdin=KEYS + "n\n").stdout)
+        one = first["answers"][0]
+        if not one["fault"]:
+            assert (first["points"], first["most"], first["again"]) == (2, 2, [])
+            return
+        assert not one["named_right"]
+    raise AssertionError("One round in five has no fault.")
+
+
+def test_without_lines_there_is_no_sheet_and_nothing_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+    data = ("--data", tmp_path / "d")
+    sheet = json.loads(tangy("drill", "--json", *data).stdout)
+    assert (sheet["answers"], sheet["points"], sheet["median_seconds"]) == ([], 0, None)
+    assert tangy("drill", "--scores", *data).stdout == "No drill yet: tangy drill begins one.\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--rounds", "0"), "--rounds"),
+        (("--rounds", "51"), "--rounds"),
+        (("--rounds", "many"), "--rounds"),
+        (("--seed", "x"), "--seed"),
+        (("--who", " "), "--who"),
+        (("--who", "x" * 41), "--who"),
+        (("--users", "9"), "from 1 to 8"),
+        (("--activity", "bingoo"), "did you mean 'bingo'?"),
+        (("--json",), "'7': choose one of: 0, 1, 2, 3, 4."),
+    ],
+)
+def test_bad_input_is_status_two_and_one_sentence(
+    arguments: tuple[str, ...], said: str, tangy: Tangy, tmp_path: Path
+) -> None:
+    done = tangy("drill", *arguments, "--data", tmp_path / "d", stdin="7\n")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("tangy: ")
+    assert done.stderr[:-1].isprintable()
+    assert said in done.stderr
+
+
+def test_with_what_was_learnt_nothing_has_to_be_shown(tangy: Tangy, taught: Path) -> None:
+    done = tangy("drill", "--plain", "--rounds", "1", "--data", taught, stdin=answers(2))
+    assert done.returncode == 0
+    assert "for this drill a scripted teacher" not in done.stdout
+    with Store.open(taught, write=False) as store:
+        assert not list(store.events("fault", "game begun"))
+        assert len(list(store.events("drill"))) == 1
