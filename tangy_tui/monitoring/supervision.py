@@ -316,8 +316,8 @@ class Supervision:
                 self.seconds += event.outcome.seconds
                 execution, mismatches = self._detector.compare(event)
                 devices = self._detector.watch(self.world.health())
-                self._seen = devices
-                if execution or devices:
+                known, self._seen = self._seen, devices
+                if execution or devices is not known:
                     evidence = together(devices, execution)
                     told += self._take(diagnose(self.book, evidence, mismatches), event)
             elif isinstance(event, Unsure) and not event.fault:
