@@ -126,6 +126,7 @@ class DrillScreen(TangyScreen[None]):
 
     def _left(self, leaves: bool | None) -> None:
         if leaves:
+            self._drill.leave()  # kept before home looks at it
             self.call_later(close, self, None)
 
     def _go_on(self) -> None:

@@ -1,0 +1,300 @@
+"""The drill walked with keys: rounds, what was right, leaving half-way, and the score sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.faults import FaultBook, load_faults
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.monitoring.drill import Drill
+from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
+from tangy_tui.monitoring.drill_rounds import Tabletop
+from tangy_tui.monitoring.drill_sheet import last_sheet, read_sheets
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.drill import DrillScreen
+from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, TangyPilot
+
+TINY = (60, 18)
+FEW = (
+    "emergency-stop", "laser-disconnected", "camera-occluded", "path-blocked", "voice-dead",
+    "requests-silent", "unexplained",
+)  # fmt: skip
+"""The rules that these drills are drawn from, so that a new one does not change the pictures."""
+SIZES = pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
+
+
+@pytest.fixture(scope="module")
+def learnt(tmp_path_factory: pytest.TempPathFactory) -> Learnt:
+    """What drills are played by where nothing was learnt, shown once for all tests."""
+    folder = tmp_path_factory.mktemp("nothing") / "data"
+    house = House(folder)
+    try:
+        return policy_for_drill(house.store, house.activity)
+    finally:
+        house.close()
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house in which nothing was learnt yet."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def make(house: House, learnt: Learnt, clock: StillClock) -> Callable[..., DrillScreen]:
+    """Make the screen of a drill: (rounds, seed) -> screen."""
+    rules = load_faults(house.robot).rules
+    few = FaultBook(tuple(rule for rule in rules if rule.code in FEW), "few")
+
+    def screen(rounds: int = 6, seed: int = 1, note: str = "") -> DrillScreen:
+        table = Tabletop(
+            learnt.policy,
+            learnt.effects,
+            few,
+            house.robot,
+            house.activity,
+            house.names,
+        )
+        drill = Drill(
+            table, house.store, who="ada", seed=seed, rounds=rounds, clock=clock, note=note
+        )
+        return DrillScreen(drill)
+
+    return screen
+
+
+def drill_of(screen: DrillScreen) -> Drill:
+    """Return the drill of a screen."""
+    return screen._drill
+
+
+def on_top(pilot: TangyPilot, screen: DrillScreen) -> bool:
+    """Whether a screen is the one that has the keys."""
+    return pilot.app.screen is screen
+
+
+def right_key(drill: Drill) -> str:
+    """Return the key of the right answer."""
+    shown, question = drill.round, drill.question
+    assert shown is not None
+    assert question is not None
+    right = {
+        "what": shown.code,
+        "do": shown.recovery,
+        "clear": "yes" if shown.release and shown.release.right else "no",
+    }[question.kind]
+    return next(choice.key for choice in question.choices if choice.value == right)
+
+
+async def answer_round(pilot: TangyPilot, drill: Drill) -> None:
+    """Answer a round as is right."""
+    while drill.question is not None:
+        await pilot.press(right_key(drill))
+        await pilot.pause()
+
+
+@SIZES
+async def test_a_drill_is_walked_to_its_sheet(
+    run: Run, make: Callable[..., DrillScreen], house: House, size: tuple[int, int]
+) -> None:
+    screen = make(4)
+    drill = drill_of(screen)
+    async with run(screen, size) as pilot:
+        assert "Ready?" in pilot.text()
+        await pilot.press("enter")
+        await pilot.pause()
+        for number in range(1, 5):
+            text = pilot.text()
+            assert f"{number} of 4" in text
+            assert drill.question is not None
+            for choice in drill.question.choices:
+                assert f" {choice.key}  {choice.words}" in text, "every answer can be seen"
+            for label in ("Now", "Noticed"):
+                assert label in text
+            await answer_round(pilot, drill)
+            assert "Right: " in pilot.text()
+            await pilot.press("enter")
+            await pilot.pause()
+        text = pilot.text()
+        assert f"ada: {drill.sheet.points} of {drill.sheet.most} points." in text
+        assert "The sheet is kept." in text
+    assert [sheet.finished for sheet in read_sheets(house.store)] == [True]
+
+
+@pytest.mark.parametrize(("seed", "wrong"), [(1, False), (1, True)], ids=["right", "wrong"])
+async def test_rounds_as_they_look(
+    run: Run,
+    make: Callable[..., DrillScreen],
+    clock: StillClock,
+    picture: Callable[[App[Any]], None],
+    seed: int,
+    wrong: bool,
+) -> None:
+    screen = make(4, seed)
+    drill = drill_of(screen)
+    async with run(screen) as pilot:
+        await pilot.press("enter")
+        await pilot.pause()
+        if not wrong:
+            picture(pilot.app)
+            return
+        while not drill.over:
+            clock.advance(7)
+            while drill.question is not None:
+                keys = [key for key in drill.question.keys if key != right_key(drill)]
+                await pilot.press(keys[0])
+                await pilot.pause()
+            await pilot.press("enter")
+            await pilot.pause()
+        picture(pilot.app)
+
+
+async def test_leaving_half_way_is_asked_about_and_kept_unfinished(
+    run: Run, make: Callable[..., DrillScreen], house: House
+) -> None:
+    screen = make(4)
+    drill = drill_of(screen)
+    async with run() as pilot:
+        await pilot.app.push_screen(screen)
+        await pilot.pause()
+        await pilot.press("enter")
+        await pilot.pause()
+        await answer_round(pilot, drill)
+        await pilot.press("enter")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ConfirmDialog)
+        await pilot.press("n")
+        await pilot.pause()
+        assert on_top(pilot, screen)
+        assert drill.question is not None, "the round goes on"
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        await pilot.pause()
+        assert not on_top(pilot, screen)
+    kept = last_sheet(house.store)
+    assert kept is not None
+    assert (len(kept.answered), kept.finished) == (1, False)
+
+
+async def test_leaving_before_anything_was_answered_asks_nothing_and_keeps_nothing(
+    run: Run, make: Callable[..., DrillScreen], house: House
+) -> None:
+    screen = make(4)
+    async with run() as pilot:
+        await pilot.app.push_screen(screen)
+        await pilot.press("enter", "1", "escape")
+        await pilot.pause()
+        assert not on_top(pilot, screen)
+    assert last_sheet(house.store) is None
+
+
+async def test_the_program_that_ends_half_way_keeps_what_was_answered(
+    run: Run, make: Callable[..., DrillScreen], house: House
+) -> None:
+    screen = make(4)
+    async with run(screen) as pilot:
+        await pilot.press("enter")
+        await pilot.pause()
+        await answer_round(pilot, drill_of(screen))
+        await pilot.press("ctrl+c")
+        await pilot.pause()
+    kept = last_sheet(house.store)
+    assert kept is not None
+    assert len(kept.answered) == 1
+
+
+async def test_keys_typed_ahead_do_not_answer(
+    run: Run, make: Callable[..., DrillScreen], clock: StillClock
+) -> None:
+    screen = make(4)
+    drill = drill_of(screen)
+    async with run(screen, clock=clock) as pilot:
+        await pilot.press("enter")
+        await pilot.pause()
+        clock.now = monotonic() + 1000
+        await pilot.press("1")  # this question was there already
+        await pilot.pause()
+        assert drill.question is not None
+        assert drill.question.kind == "do"
+        pilot.type("1", "1", "enter")
+        await pilot.pause()
+        assert drill.question is not None
+        assert drill.question.kind == "do"
+        pilot.type("1", at=clock.now + 1)
+        await pilot.pause()
+        assert drill.question is None or drill.question.kind == "clear"
+
+
+async def test_other_keys_do_nothing_and_help_helps(
+    run: Run, make: Callable[..., DrillScreen]
+) -> None:
+    screen = make(4)
+    drill = drill_of(screen)
+    async with run(screen) as pilot:
+        await pilot.press("1", "y")
+        await pilot.pause()
+        assert drill.round is None
+        await pilot.press("enter")
+        await pilot.pause()
+        await pilot.press("y", "9", "x", "enter", "down", "up", "ctrl+x")
+        await pilot.pause()
+        assert drill.question is not None
+        assert drill.question.kind == "what"
+        await pilot.press("question_mark")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HelpScreen)
+        text = " ".join(pilot.text().split())
+        assert "0 to 4 Answer" in text
+        assert "kept as an unfinished sheet" in text
+        await pilot.press("escape")
+        await pilot.pause()
+        assert on_top(pilot, screen)
+
+
+async def test_a_note_is_told_before_it_begins(run: Run, make: Callable[..., DrillScreen]) -> None:
+    async with run(make(1, 1, "Nothing was learnt [/] yet.")) as pilot:
+        assert "Nothing was learnt [/] yet." in pilot.text()
+
+
+async def test_it_is_opened_from_home_and_its_score_is_told_there(run: Run, house: House) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        assert "what to do when things go wrong" in pilot.text()
+        await pilot.press("r")
+        while not isinstance(pilot.app.screen, DrillScreen):
+            await pilot.pause(0.02)
+        screen = pilot.app.screen
+        await pilot.pause()
+        assert "Tangy has learnt nothing yet" in pilot.text()
+        await pilot.press("enter")
+        await pilot.pause()
+        await answer_round(pilot, drill_of(screen))
+        points = drill_of(screen).sheet.points
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("y")
+        while not isinstance(pilot.app.screen, HomeScreen):
+            await pilot.pause(0.02)
+        await pilot.pause()
+        assert f"last: {points} of {points} points" in pilot.text()
+
+
+def test_what_is_shown_for_a_drill_is_not_kept(house: House, learnt: Learnt) -> None:
+    assert learnt.note
+    store: Store = house.store
+    assert list(store.events()) == []
