@@ -32,9 +32,7 @@ def evidence_words(evidence: Evidence, mismatches: Sequence[Mismatch], robot: Ro
 
 def move_words(move: Move) -> str:
     """Say in a few words what was done."""
-    words = MOVES.get(move.kind, move.kind)
-    if move.remedy:
-        words = f"{words} ({move.remedy})"
+    words = _REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
     if move.attempt > 1:
         words = f"{words}, for the {_ordinal(move.attempt)} time"
     if move.to:
@@ -44,6 +42,14 @@ def move_words(move: Move) -> str:
     return words
 
 
+_REMEDIES = {
+    "spin": "Tangy turned on the spot to find its place",
+    "restart": "it was started again",
+    "replan": "Tangy took another way",
+    "do without": "Tangy does without it",
+    "other requests": "Tangy listens for requests instead",
+    "set aside": "Tangy left it at that",
+}
 RECOVERY_WORDS = {
     "expert": "halt, and ask an expert",
     "user": "ask a user for help",
