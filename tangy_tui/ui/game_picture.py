@@ -16,9 +16,11 @@ from tangy_tui.interaction.facilitation import (
     Taught,
     Unsure,
 )
+from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
+from tangy_tui.ui.fault_console import write_fault
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView
@@ -86,6 +88,9 @@ class GamePicture:
                     log.write(f"Tangy asks. {reason}", "warn")
                 case Taught():
                     self._show_lesson(event)
+                case Diagnosed() | Moved():
+                    write_fault(self._screen, event)
+                    self._show_scene(0, drive=False, pace=pace)
                 case GameEnded(_, steps, None):
                     words = f"The game is over after {counted(steps, 'step')}."
                     log.write(f"{words} g plays another.", "good")

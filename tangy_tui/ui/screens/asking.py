@@ -6,7 +6,8 @@ The answer goes through the same question as a command in teaching: nothing happ
 from __future__ import annotations
 
 import asyncio
-from typing import Any
+from enum import Enum
+from typing import Any, TypeVar
 
 from textual.app import ComposeResult
 from textual.containers import Vertical
@@ -30,19 +31,35 @@ from tangy_tui.learning.verifying import (
     Verified,
 )
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.fresh_keys import SETTLE_SECONDS
+from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.reasons import why_of
 from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.wording import counted, state_words
 
+ResultT = TypeVar("ResultT")
+
+ALL_RIGHT = ("all right", "all is right", "that is all right", "ok")
+"""What can be typed where what happened is all right."""
+
 HELD = "Tangy was stopped: press p to go on first, then answer."
 
 KEYS = "w why   : answer   p {}   esc give the game up"
+ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
 """The keys that count while the line does not have them."""
+
+
+class Instead(Enum):
+    """What can come in the place of an answer."""
+
+    GIVE_UP = "give up"
+    ACCEPT = "accept"
+    WITHDRAWN = "withdrawn"
 
 
 class AnswerBar(CommandBar):
@@ -113,7 +130,10 @@ class AskingPanel(Vertical):
         self._question = question
         self._verifier = supervision.verifier()
         self._phrasebook = Phrasebook(house.activity, house.people)
-        self._answer: asyncio.Future[Verified | None] = asyncio.get_running_loop().create_future()
+        self._acceptable = supervision.acceptable
+        self._answer: asyncio.Future[Verified | Instead]
+        self._answer = asyncio.get_running_loop().create_future()
+        self._dialog: Dialog[Any] | None = None
         self._held = False
         self._before = clean(before)
         self.set_class(bool(before), "-says")
@@ -121,13 +141,14 @@ class AskingPanel(Vertical):
 
     def compose(self) -> ComposeResult:
         """Lay out the question, what Tangy sees, and the line."""
+        other = f"{ALL_RIGHT[0]}, " if self._acceptable else ""
         yield Static(self._asks(), classes="asks", markup=False)
         yield Static(self._sees(), classes="now", markup=False)
         yield Static(self._before, classes="said", markup=False)
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
-            placeholder="what should Tangy do? (or: why, help, quit)",
-            resting=KEYS.format("pause"),
+            placeholder=f"what should Tangy do? (or: {other}why, help, quit)",
+            resting=self._keys.format("pause"),
             id="command",
         )
 
@@ -138,13 +159,42 @@ class AskingPanel(Vertical):
         line.focus()
         self.set_timer(SETTLE_SECONDS, self._open)
 
-    async def answer(self) -> Verified | None:
-        """Wait for an answer that was verified; None if the game is given up."""
+    @property
+    def _keys(self) -> str:
+        return ACCEPTING_KEYS if self._acceptable else KEYS
+
+    async def answer(self) -> Verified | Instead:
+        """Wait for an answer that was verified, or for what came in its place."""
         return await self._answer
+
+    def withdraw(self) -> None:
+        """Ask no more: something has come up that makes the question void."""
+        self._settle(Instead.WITHDRAWN)
+        if (dialog := self._dialog) is not None:
+            self._close(dialog)
+            self.screen.run_worker(self._take_away(dialog), group="take away")
+
+    def _close(self, dialog: Dialog[Any]) -> None:
+        dialog.on_stop(Stop("the question was withdrawn"))
+
+    async def _take_away(self, dialog: Dialog[Any]) -> None:
+        """Take a dialog of the question's away, as soon as nothing lies over it."""
+        while dialog.is_attached:
+            self._close(dialog)
+            await asyncio.sleep(0.05)
+
+    def accept(self) -> bool:
+        """Say that what happened is all right; False: that cannot be said of this question."""
+        if self._acceptable and self._held:
+            self.say(HELD)
+        elif self._acceptable:
+            self._settle(Instead.ACCEPT)
+        return self._acceptable
 
     def ask_to_give_up(self) -> None:
         """Give the game up, if that is meant."""
-        self.run_worker(self._confirm(), name="give up", group="give up", exclusive=True)
+        if self._dialog is None:
+            self.screen.run_worker(self._confirm(), name="give up", group="give up")
 
     async def _confirm(self) -> None:
         dialog = ConfirmDialog(
@@ -153,10 +203,21 @@ class AskingPanel(Vertical):
             yes="give the game up",
             no="go on",
         )
-        if await self.app.push_screen_wait(dialog):
-            self._settle(None)
+        if await self._put(dialog):
+            self._settle(Instead.GIVE_UP)
 
-    def _settle(self, answer: Verified | None) -> None:
+    async def _put(self, dialog: Dialog[ResultT]) -> ResultT:
+        """Put a question over the screen; it is taken away if what Tangy asks is withdrawn.
+
+        Its worker is the screen's: an answer must have somebody who waits for it.
+        """
+        self._dialog = dialog
+        try:
+            return await self.app.push_screen_wait(dialog)
+        finally:
+            self._dialog = None
+
+    def _settle(self, answer: Verified | Instead) -> None:
         if not self._answer.done():
             self._answer.set_result(answer)
 
@@ -187,6 +248,9 @@ class AskingPanel(Vertical):
             case "stop":
                 bar.ready()
                 self.app.run_worker(self.run_action("app.stop"))
+            case words if words.strip(" .!") in ALL_RIGHT and self._acceptable:
+                bar.ready()
+                self.accept()
             case _ if self._held:
                 self._return(event.text, HELD)
             case _:
@@ -195,7 +259,7 @@ class AskingPanel(Vertical):
     def _tell(self, said: Verification) -> None:
         match said:
             case Asked():
-                self.run_worker(self._verify(said), name="question")
+                self.screen.run_worker(self._verify(said), name="question", group="question")
             case NotUnderstood(heard, suggestions):
                 near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
                 self._return(heard, f"I do not know what {heard!r} means.{near}")
@@ -216,9 +280,11 @@ class AskingPanel(Vertical):
             confidence=None if sure else asked.confidence,
             alternatives=[behaviours[name].question for name in asked.alternatives],
         )
-        answer = await self.app.push_screen_wait(dialog)
+        answer = await self._put(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
+        if self._answer.done():
+            return
         chosen = None if answer.alternative is None else answer.alternative + 1
         self._tell(self._verifier.reply(Reply(answer.yes and not self._held, chosen)))
 
@@ -239,7 +305,7 @@ class AskingPanel(Vertical):
     def show_keys(self, *, going: bool) -> None:
         """Say which keys count while the line does not have them."""
         for bar in self.query(AnswerBar):
-            bar.rest(KEYS.format("pause" if going else "go on"))
+            bar.rest(self._keys.format("pause" if going else "go on"))
 
     def _open(self) -> None:
         self.query_one(CommandBar).ready()
@@ -247,7 +313,9 @@ class AskingPanel(Vertical):
     def _asks(self) -> str:
         """Write why Tangy asks; where answers were given, which."""
         words = self._question.reason
-        if self._question.decision.seen:
+        if self._acceptable:
+            words = f"{words} If all is well, type: {ALL_RIGHT[0]}. Otherwise:"
+        elif not self._question.fault and self._question.decision.seen:
             situation = self._question.state.situation
             why = why_of(self._house, self._supervision.policy, situation)
             words = f"{words} {answers_words(why)}"

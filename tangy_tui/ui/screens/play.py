@@ -1,4 +1,4 @@
-"""The playing screen: Tangy facilitates by itself; room, steps, policy, posteriors and log."""
+"""The playing screen: Tangy facilitates by itself; pausing, asking, and standing still."""
 
 from __future__ import annotations
 
@@ -6,34 +6,38 @@ import asyncio
 from contextlib import suppress
 from typing import ClassVar
 
-from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
-from tangy_tui.interaction.facilitation import Acted, GameEnded, Unsure
+from tangy_tui.interaction.facilitation import GameEnded, Unsure
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.learning.verifying import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel, room_panel
+from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
-from tangy_tui.ui.screens.asking import AskingPanel, learn_answer
-from tangy_tui.ui.screens.play_keys import ASKS_FIRST, STOPPED_FIRST, faster, keys
-from tangy_tui.ui.widgets.log_view import Kind, LogView
-from tangy_tui.ui.widgets.policy_table import PolicyTable
-from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.screens.asking import AskingPanel, Instead, learn_answer
+from tangy_tui.ui.screens.play_keys import (
+    ASKS_FIRST,
+    NOT_ACCEPTABLE,
+    NOT_IN_THE_DEMO,
+    STOPPED_FIRST,
+    TRIES_AGAIN,
+    faster,
+    keys,
+)
+from tangy_tui.ui.screens.play_panels import PlayPanels
+from tangy_tui.ui.widgets.fault_list import FaultList
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 
-class PlayScreen(TangyScreen[Tally]):
+class PlayScreen(PlayPanels):
     """Games by the learnt policy, watched at any speed. Dismissed with what they added up to."""
 
     CSS_PATH = "play.tcss"
@@ -60,15 +64,12 @@ class PlayScreen(TangyScreen[Tally]):
             leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
         """
-        super().__init__()
-        self._house = house
-        self._supervision = supervision
+        self._teacher = teacher or teacher_name()
+        super().__init__(house, supervision, self._teacher)
         self._games = games
         self._speed = speed
         self._leave_after = leave_after
-        self._teacher = teacher or teacher_name()
         self._tally = Tally()
-        self._picture = GamePicture(self, house, supervision)
         self._going = asyncio.Event()
         self._going.set()
         self._nudge = asyncio.Event()
@@ -79,22 +80,10 @@ class PlayScreen(TangyScreen[Tally]):
         self._learning = False
         self._leaving = False
 
-    def compose(self) -> ComposeResult:
-        """Lay out the panels; which of them are seen at 80 columns `1` to `5` choose."""
-        yield StatusLine()
-        with Horizontal(id="body"):
-            with Vertical(id="left"):
-                yield room_panel(self._house)
-                yield panel(LogView(id="log"))
-            with Vertical(id="right"):
-                yield panel(Transcript(id="transcript"))
-                yield panel(PolicyTable())
-                yield panel(Posteriors())
-        yield KeyLine(*keys(going=True))
-
     def on_mount(self) -> None:
         """Show what is known, and begin."""
         self._picture.begin()
+        self._faults.begin()
         self.action_panel("transcript")
         self.run_worker(self._play(), name="game", exclusive=True)
 
@@ -107,6 +96,7 @@ class PlayScreen(TangyScreen[Tally]):
         else:
             stopped, self._stopped = self._stopped, False
             self._halted = False
+            self._faults.busy = self._learning
             self._going.set()
             if stopped and (asking := self._asking) is not None:
                 asking.hold(False)
@@ -149,42 +139,12 @@ class PlayScreen(TangyScreen[Tally]):
             follow = "Another game" if more == 1 else f"{more} more games"
             self._tell_now(f"{follow} will follow.", "dim")
 
-    def action_panel(self, name: str) -> None:
-        """Show a panel where there is no room for all of them, and give it the keys."""
-        enlarged = self.maximized is not None
-        self.minimize()
-        for id in ("transcript", "policy", "posteriors", "log"):
-            self.query_one(f"#{id}").set_class(id == name, "-chosen")
-        self.set_class(name == "log", "-log")
-        if name != "room":
-            chosen = self.query_one(f"#{name}")
-            chosen.focus()
-            if enlarged:
-                self.maximize(chosen)
-
-    def action_why(self) -> None:
-        """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
-        dialog = self._picture.why(self.query_one(Transcript).chosen)
-        if dialog is not None:
-            self.app.push_screen(dialog)
-        else:
-            self._tell_now("Nothing has been decided yet.", "dim")
-
-    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
-        """Tell why, for the step that was chosen with Enter."""
-        event.stop()
-        if (dialog := self._picture.why_step(event.number)) is not None:
-            self.app.push_screen(dialog)
-
-    def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
-        """Tell why, for the row of the policy that was chosen with Enter."""
-        event.stop()
-        self.app.push_screen(self._picture.why_row(event.index))
-
     def action_leave(self) -> None:
         """Let go of a chosen step, give up what is asked, or go back; in mid-game it asks."""
-        steps = self.query_one(Transcript)
-        if steps.has_focus and steps.chosen is not None:
+        steps, faults = self.query_one(Transcript), self.query_one(FaultList)
+        if faults.has_focus and faults.filtered:
+            faults.unfilter()
+        elif steps.has_focus and steps.chosen is not None:
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
@@ -209,7 +169,7 @@ class PlayScreen(TangyScreen[Tally]):
         if leaves:
             self._end_game()
             close(self, self._tally)
-        elif going and not self._stopped:
+        elif going and not self._stopped and not self._halted:
             self._going.set()
 
     def _end_game(self) -> None:
@@ -242,28 +202,6 @@ class PlayScreen(TangyScreen[Tally]):
             self._tell_now(ASKS_FIRST, "warn")
         return self._stopped or self._asking is not None
 
-    def take_sentence(self, sentence: str, kind: Kind = "dim") -> bool:
-        """Say a sentence under what Tangy asks, and in the log; False: nothing is asked."""
-        if self._asking is not None:
-            self._asking.say(sentence)
-            self._write(sentence, kind)
-        return self._asking is not None
-
-    def _tell_now(self, sentence: str, kind: Kind) -> None:
-        """Say what a key did, or why it does nothing, where it is seen at every size."""
-        if not self.take_sentence(sentence, kind):
-            self._write(sentence, kind)
-            if not self.query_one(LogView).display:
-                self.app.clear_notifications()
-                self.notify(
-                    sentence,
-                    severity="warning" if kind == "warn" else "information",
-                    markup=False,
-                )
-
-    def _write(self, sentence: str, kind: Kind) -> None:
-        self.query_one(LogView).write(sentence, kind)
-
     # ---------------------------------------------------------------------------------- game
 
     async def _play(self) -> None:
@@ -282,37 +220,55 @@ class PlayScreen(TangyScreen[Tally]):
             self._tell(supervision.begin())
         while not supervision.over:
             await self._going.wait()
+            if supervision.halted is not None:
+                self._skipping = False
+                await self._faults.free()
+                continue
             if self._single:
                 self._single = False
                 self._going.clear()
-            events = supervision.step()
+            before = supervision.seconds
+            events, rest = supervision.step(), list[Event]()
+            if not self._skipping and self._going.is_set():
+                events, rest = self._faults.parts(events)
             self._tell(events)
             if supervision.question is not None:
-                events = await self._ask(supervision.question)
+                await self._ask(supervision.question)
             if self._skipping:
                 await asyncio.sleep(0)  # let the screen and the keys live
             else:
-                await self._wait(events)
+                await self._wait(supervision.seconds - before)
+            if rest:
+                self._faults.done()
+                self._tell(rest)
         self._skipping = False
 
-    async def _hold(self, reason: str) -> None:
-        """Stand still after a failure until somebody lets it try again."""
+    def _stand_still(self, reason: str) -> None:
+        """Do nothing more, after a failure, until somebody lets it try again."""
         self._halted = True
         self._skipping = False
         self._going.clear()
         self._write(f"{reason} p tries again.", "bad")
         self._show_status()
-        await self._say_why(reason, "p tries again; esc leads home.")
+
+    async def _hold(self, reason: str) -> None:
+        """Stand still after a failure until somebody lets it try again."""
+        self._stand_still(reason)
+        await self._say_why(reason, TRIES_AGAIN)
         await self._going.wait()
 
-    async def _wait(self, events: list[Event]) -> None:
-        """Let a step's time pass; a key that changes the pace ends it early."""
-        seconds = sum(e.outcome.seconds for e in events if isinstance(e, Acted))
+    def _fail(self, reason: str) -> None:
+        """Stand still after a failure that came between two steps."""
+        self._stand_still(reason)
+        self.run_worker(self._say_why(reason, TRIES_AGAIN), name="why", group="why")
+
+    async def _wait(self, seconds: float) -> None:
+        """Let a step's time (in the game, in s) pass; a key that changes the pace ends it early."""
         self._nudge.clear()
         with suppress(TimeoutError):
             await asyncio.wait_for(self._nudge.wait(), seconds / self._speed)
 
-    def _tell(self, events: list[Event], *, known: bool = False) -> None:
+    def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
         if not self.query(LogView):
@@ -333,13 +289,7 @@ class PlayScreen(TangyScreen[Tally]):
 
     # -------------------------------------------------------------------------------- asking
 
-    @property
-    def _asking(self) -> AskingPanel | None:
-        """The question that is open, if Tangy asks."""
-        panels = self.query(AskingPanel)
-        return panels.first() if panels else None
-
-    async def _ask(self, question: Unsure) -> list[Event]:
+    async def _ask(self, question: Unsure) -> None:
         """Wait for the teacher's answer, learn it beside the screen, and go on."""
         self.minimize()
         self.app.clear_notifications()  # they would lie over the question
@@ -351,40 +301,59 @@ class PlayScreen(TangyScreen[Tally]):
             asking.hold(True)
         self._show_status()
         try:
-            verified = await asking.answer()
+            answer = await asking.answer()
         finally:
             self.remove_class("-asking")
             with suppress(Exception):  # the screen may be going as well
                 await asking.remove()
-        if verified is None:
-            events = self._supervision.give_up()
-            self._tell(events, known=True)
-            return events
-        self._learning = True
+        match answer:
+            case Instead.WITHDRAWN:
+                pass
+            case Instead.GIVE_UP:
+                self._tell(self._supervision.give_up(), True)
+            case Instead.ACCEPT:
+                self._tell(self._supervision.accept(self._teacher))
+            case Verified():
+                self._tell(await self._learn(answer))
+
+    async def _learn(self, answer: Verified) -> list[Event]:
+        """Act on an answer and learn from it; nothing else is done or looked at meanwhile."""
+        self._learning = self._faults.busy = True
         self._show_status()
         try:
-            events = await learn_answer(self, self._supervision, verified, self._teacher)
+            return await learn_answer(self, self._supervision, answer, self._teacher)
         finally:
-            self._learning = False
-        self._tell(events)
-        return events
+            self._learning = self._faults.busy = False
 
-    def on_asking_panel_why_wanted(self, event: AskingPanel.WhyWanted) -> None:
-        """Tell why Tangy asks."""
-        event.stop()
-        self.query_one(Transcript).release()
-        self.action_why()
+    def action_accept(self) -> None:
+        """Say that what Tangy asks about is all right."""
+        if (asking := self._asking) is None or not asking.accept():
+            self._tell_now(NOT_ACCEPTABLE, "dim")
+
+    def action_inject(self) -> None:
+        """Bring about a fault in the simulated room, or lift one."""
+        if self._leave_after is not None:
+            self._tell_now(NOT_IN_THE_DEMO, "warn")
+        else:
+            super().action_inject()
 
     # -------------------------------------------------------------------------------- status
 
     def _show_status(self) -> None:
-        asks = self._halted or self._supervision.question is not None
-        robot = "STOPPED" if self._stopped else "ASKS" if asks else "OK"
+        asking = self._asking
+        if asking is not None and self._supervision.question is None and not self._learning:
+            asking.withdraw()
+        robot = self._faults.status
+        if self._halted and self._supervision.halted is None:
+            robot = "ASKS"
+        if self._stopped:
+            robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
         self._picture.show_status(robot, self._note())
         going = self._going.is_set()
         self.query_one(KeyLine).show(*keys(going=going))
-        if self._asking is not None:
-            self._asking.show_keys(going=going)
+        if asking is not None:
+            asking.show_keys(going=going)
+        self._faults.show()
 
     def _note(self) -> str:
         """Say what the keys would do next, or how fast it goes."""

@@ -9,6 +9,12 @@ SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 ASKS_FIRST = "Tangy asks first: answer it (: types), or press esc to give the game up."
 
+NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
+
+NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
+
+TRIES_AGAIN = "p tries again; esc leads home."
+
 STOPPED_FIRST = "Not now: Tangy was stopped. Press p to go on first."
 
 
@@ -16,7 +22,8 @@ def keys(*, going: bool) -> tuple[tuple[str, str], ...]:
     """Return the keys and what they do while the game goes on, or stands still."""
     return (
         ("p", "pause" if going else "go on"), ("n", "step"), ("<>", "speed"), ("e", "end"),
-        ("g", "game"), ("w", "why"), ("1-5", "show"), ("esc", "back"), ("?", "help"),
+        ("g", "game"), ("w", "why"), ("1-6", "show"), ("f", "fault"), ("esc", "back"),
+        ("?", "help"),
     )  # fmt: skip
 
 
@@ -29,11 +36,15 @@ def faster(speed: float, by: int) -> float:
 HELP = (
     "Tangy plays by what it has learnt. p pauses and goes on, n does one step, < and > change "
     "the speed, e skips to the end of the game, g begins another. w tells why: of the step "
-    "that is chosen, or of the last one. Where there is no room for all panels, 1 to 5 choose "
+    "that is chosen, or of the last one. Where there is no room for all panels, 1 to 6 choose "
     "one. Where Tangy is not sure it does nothing but ask: type what it should do, and y has "
     "it done; it learns that from you, and the game goes on. While it asks, esc leaves the "
     "line, so that keys are keys again, : leads back to it, and a second esc gives the game "
-    "up, if you mean it."
+    "up, if you mean it. Where something happened that was not to be expected, r (or typing: all "
+    "right) says that it is all right. When something goes wrong, a line under the first one says "
+    "what, and what Tangy does about it; a says that you have seen it, 6 shows all faults of this "
+    "game, and Enter there what to do. When it is critical Tangy stands still until you clear it. "
+    "f brings about a fault in the simulated room."
 )
 
 BINDINGS: list[BindingType] = [
@@ -49,5 +60,9 @@ BINDINGS: list[BindingType] = [
     Binding("3", "panel('policy')", "Show the policy"),
     Binding("4", "panel('posteriors')", "Show the posteriors"),
     Binding("5", "panel('log')", "Show the log"),
+    Binding("6", "panel('faults')", "Show the faults of this game"),
+    Binding("a", "acknowledge", "I have seen the fault"),
+    Binding("r", "accept", "What Tangy asks about is all right"),
+    Binding("f", "inject", "Bring about a fault (in simulation)"),
     Binding("escape", "leave", "Leave, or give up what Tangy asks"),
 ]

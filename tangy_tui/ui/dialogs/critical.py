@@ -1,0 +1,214 @@
+"""A fault for which Tangy stands still: what is wrong, what to do, and clearing it on purpose."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.robot import Robot
+from tangy_tui.monitoring.fault import OVER, Fault
+from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
+from tangy_tui.ui.fault_words import ages_of, clock_words, evidence_of, kind_words, mark_of
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import KeyLine
+from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+SEEN_FIRST = "Press a first: it says that you have seen this."
+SEEN = "You have seen it. Press e to call the expert, or c when all is well."
+CALLED = "The expert was called. Press c when all is well."
+STILL_THERE = "It is still there. Tangy stands still. Press e to call the expert (again)."
+STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
+KEYS = ("a", "e", "c", "g", "escape")
+
+
+class Desk(Protocol):
+    """What staff can do about the fault that halts the robot."""
+
+    supervision: Supervision
+
+    def acknowledge(self) -> None:
+        """Say that it was seen."""
+
+    def call_expert(self) -> None:
+        """Call the expert."""
+
+    def clear(self) -> None:
+        """Let the robot go on, if the fault is gone."""
+
+    def give_up(self) -> None:
+        """End the game."""
+
+
+class CriticalDialog(Dialog[None]):
+    """Stands until its fault is cleared or the game was given up; esc does not just hide it."""
+
+    DEFAULT_CSS = """
+    CriticalDialog > .box {
+        width: 76; padding: 0 1; margin-top: 1; border: heavy $error; border-title-color: $error;
+    }
+    CriticalDialog Page { height: auto; max-height: 1fr; }
+    CriticalDialog .said { height: auto; color: $warning; text-style: bold; }
+    CriticalDialog KeyLine { padding: 0; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("a", "nothing", "I have seen it"),
+        Binding("e", "nothing", "Call the expert"),
+        Binding("c", "nothing", "Clear it: all is well, Tangy goes on"),
+        Binding("g,escape", "nothing", "Give the game up", key_display="g esc"),
+    ]
+    HELP = (
+        "Tangy has stopped and stands still. a says that you have seen it, e calls the expert, "
+        "and c lets Tangy go on, if the fault is gone; otherwise nothing moves. g or esc gives "
+        "the game up, after asking. Up and down scroll."
+    )
+
+    def __init__(
+        self, desk: Desk, fault: Fault, robot: Robot, *, clock: Clock | None = None
+    ) -> None:
+        super().__init__(None)
+        self._desk = desk
+        self._fault = fault
+        self._robot = robot
+        self._clock = clock
+        self._keys = FreshKeys()
+        self._status = Status()
+
+    @property
+    def fault(self) -> Fault:
+        """The fault for which Tangy stands still."""
+        return self._fault
+
+    def compose(self) -> ComposeResult:
+        """Lay out the status, which stays in sight, and the fault with its keys."""
+        yield StatusLine(self._status)
+        fault = self._fault
+        said = SEEN if fault.acknowledged else SEEN_FIRST
+        box = Vertical(
+            Page(self._write),
+            Static(f"! {said}", classes="said", markup=False),
+            KeyLine(*self._key_words()),
+            id="critical",
+            classes="box",
+        )
+        title = f"{mark_of(fault)} Tangy stands still: {clean(fault.name)}"
+        box.border_title = Content(title)
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the arrows scroll, and take note of the moment from which keys count."""
+        self.query_one(Page).focus()
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+
+    def show(self, status: Status) -> None:
+        """Show what has changed, in the status line and of the fault."""
+        self._status = status
+        for line in self.query(StatusLine):
+            line.show(status)
+        for page in self.query(Page):
+            page.show(self._write, None)
+        for keys in self.query(KeyLine):
+            keys.show(*self._key_words())
+
+    def say(self, sentence: str) -> None:
+        """Say what a key did, or what has to be done first."""
+        for said in self.query(".said").results(Static):
+            said.update(f"! {clean(sentence)}")
+
+    def take_sentence(self, sentence: str) -> bool:
+        """Say a sentence of the program's here: nothing is to lie over the fault."""
+        self.say(sentence)
+        return True
+
+    def on_stop(self, message: Stop) -> None:
+        """Stay: the robot stands still, and the fault is still there."""
+        self.say(STOPPED)
+
+    def on_key(self, event: events.Key) -> None:
+        """Do what a key says, if the fault was on the screen by then."""
+        if event.key not in KEYS or not self._keys.take(event):
+            return
+        try:
+            self._do(event.key)
+        except TangyError as error:
+            self.say(f"{error} Nothing was changed: try again.")
+
+    def _do(self, key: str) -> None:
+        fault, desk = self._fault, self._desk
+        match key:
+            case "a":
+                desk.acknowledge()
+                self.say(SEEN)
+            case "e":
+                desk.call_expert()
+                self.say(CALLED)
+            case "c" if not fault.acknowledged:
+                self.say(SEEN_FIRST)
+            case "c":
+                desk.clear()
+                if desk.supervision.halted is fault:
+                    self.say(STILL_THERE)
+                else:
+                    self.answer(None)
+            case _:
+                self.run_worker(self._confirm(), group="give up", exclusive=True)
+
+    async def _confirm(self) -> None:
+        """Give the game up, if that is meant."""
+        dialog = ConfirmDialog(
+            "Give this game up?",
+            "The game ends here, and the log says why. Tangy stays where it is and does not move. "
+            "The fault is not mended by this: keep people away until somebody has seen to it.",
+            yes="give the game up",
+            no="back to the fault",
+        )
+        if not await self.app.push_screen_wait(dialog):
+            return
+        try:
+            self._desk.give_up()
+        except TangyError as error:
+            self.say(f"{error} Nothing was changed: try again.")
+        else:
+            self.answer(None)
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def _key_words(self) -> tuple[tuple[str, str], ...]:
+        seen = () if self._fault.acknowledged else (("a", "seen"),)
+        return (*seen, ("e", "call the expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
+
+    def _write(self, width: int) -> list[Line]:
+        fault, supervision = self._fault, self._desk.supervision
+        book, robot = supervision.book, self._robot
+        lines = paragraph(clean(fault.console), width, "strong")
+        where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
+        still = f"{where} Tangy has stopped, and nothing moves before this is cleared."
+        lines += paragraph(still, width)
+        lines += heading("What to do, and whom to call")
+        lines += advice_lines(fault.advice, width)
+        lines += paragraph("Who to call: the expert for the robot (e).", width)
+        pieces = evidence_of(fault, book, robot)
+        pieces += ages_of(fault, book, robot, supervision.world.health())
+        if pieces:
+            lines += heading("How Tangy knows") + evidence_lines(pieces, width)
+        lines += heading("So far") + moves_so_far(fault.moves, width)
+        others = [f for f in supervision.faults if f is not fault and f.status != OVER]
+        if others:
+            lines += heading("Also wrong")
+        for other in others:
+            words = f"{mark_of(other)} {clock_words(other.seconds)} {other.name}"
+            lines += paragraph(clean(words), width)
+        return lines

@@ -1,0 +1,126 @@
+"""One fault in full: what happened when, by what it was recognised, and what staff should do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+
+from tangy_profiles.faults import FaultBook
+from tangy_profiles.robot import Robot
+from tangy_tui.monitoring.fault import Fault, Move
+from tangy_tui.monitoring.telling import move_words
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fault_words import (
+    Piece,
+    clock_words,
+    evidence_of,
+    kind_words,
+    mark_of,
+    state_words,
+)
+from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.wrapping import wrap
+
+
+class FaultDialog(Dialog[None]):
+    """The timeline of a fault, its evidence, and the steps of the staff."""
+
+    DEFAULT_CSS = """
+    FaultDialog > .box { width: 78; padding: 0 1; }
+    FaultDialog Page { height: auto; max-height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,q,enter", "close", "Close", key_display="esc"),
+    ]
+    HELP = (
+        "One fault in full: what it is, what was seen against what was to be expected, what "
+        "Tangy and people did about it and when, and what you can do. Up and down scroll."
+    )
+
+    def __init__(self, fault: Fault, book: FaultBook, robot: Robot) -> None:
+        super().__init__(None)
+        self._fault = fault
+        self._book = book
+        self._robot = robot
+
+    @property
+    def fault(self) -> Fault:
+        """The fault that is told of."""
+        return self._fault
+
+    def compose(self) -> ComposeResult:
+        """Lay out the page."""
+        box = Vertical(Page(self._write), id="fault", classes="box")
+        box.border_title = Content(f"{mark_of(self._fault)} {clean(self._fault.name)}")
+        box.border_subtitle = "esc closes"
+        yield box
+
+    def on_mount(self) -> None:
+        """Let the arrows scroll."""
+        self.query_one(Page).focus()
+
+    def action_close(self) -> None:
+        """Go back."""
+        self.answer(None)
+
+    def _write(self, width: int) -> list[Line]:
+        fault = self._fault
+        lines = paragraph(clean(fault.console), width, "strong")
+        kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"
+        lines += paragraph(kind, width, "dim")
+        lines += heading("What was done, and when") + timeline(fault, width)
+        if pieces := evidence_of(fault, self._book, self._robot):
+            lines += heading("How Tangy knows") + evidence_lines(pieces, width)
+        return lines + heading("What should I do?") + advice_lines(fault.advice, width)
+
+
+def timeline(fault: Fault, width: int) -> list[Line]:
+    """Write each move with the time in the game."""
+    lines = _entry(fault.seconds, "noticed", width)
+    for move in fault.moves:
+        lines += _entry(move.seconds, move_words(move), width)
+        lines += _indented(f"“{clean(move.speech)}”", width, "person") if move.speech else []
+    return lines
+
+
+def moves_so_far(moves: Sequence[Move], width: int) -> list[Line]:
+    """Write moves with their times, without what was said."""
+    return [line for move in moves for line in _entry(move.seconds, move_words(move), width)]
+
+
+def _entry(seconds: float, words: str, width: int) -> list[Line]:
+    first, *more = wrap(clean(words), max(10, width - 8))
+    head = Line(((f"{clock_words(seconds):>6}  ", "dim"), (first, "text")))
+    return [head, *(Line(((f"{'':8}{text}", "text"),)) for text in more)]
+
+
+def _indented(words: str, width: int, ink: str) -> list[Line]:
+    return [Line(((f"{'':8}{text}", ink),)) for text in wrap(words, max(10, width - 8))]
+
+
+def evidence_lines(pieces: Sequence[Piece], width: int) -> list[Line]:
+    """Write what was observed, and under it what was to be expected."""
+    lines: list[Line] = []
+    for piece in pieces:
+        lines += paragraph(f"{clean(piece.what)}: {clean(piece.observed)}", width)
+        lines += [
+            Line(((f"  {text}", "dim"),))
+            for text in wrap(f"to be expected: {clean(piece.expected)}", max(10, width - 2))
+        ]
+    return lines
+
+
+def advice_lines(advice: Sequence[str], width: int) -> list[Line]:
+    """Number the steps of the staff."""
+    lines: list[Line] = []
+    for number, step in enumerate(advice, 1):
+        first, *more = wrap(clean(step), max(10, width - 3))
+        lines.append(Line(((f"{number}. ", "robot"), (first, "text"))))
+        lines += [Line(((f"   {text}", "text"),)) for text in more]
+    return lines

@@ -1,0 +1,130 @@
+"""Choosing a fault to bring about in the simulated world, or to put right again."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+
+from tangy_sim.injection import AT_ONCE, KINDS, Kind
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.rows import fit, shorten
+
+THERE, TO_COME = "there: enter lifts it", "to come: enter lifts it"
+LONGEST = 30
+
+
+class InjectDialog(Dialog[str | None]):
+    """Lists all kinds of faults; letters filter them, a number or Enter takes one."""
+
+    DEFAULT_CSS = """
+    InjectDialog > .box { width: 78; padding: 0 1; }
+    InjectDialog ChoiceList { height: auto; max-height: 18; min-height: 1; }
+    InjectDialog.-low ChoiceList { max-height: 12; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("enter", "nothing", "Bring it about, or lift it"),
+        Binding("escape", "nothing", "Show all, or go back", key_display="esc"),
+    ]
+    HELP = (
+        "What can go wrong in the simulated room. Type a part of a word to keep only what has it, "
+        "go to one with up and down and press Enter, or press its number. What is there already "
+        "is put right by choosing it again. Esc shows all, and then goes back."
+    )
+
+    def __init__(self, there: Collection[str], to_come: Collection[str]) -> None:
+        """Make the dialog; `there` and `to_come` are the kinds that can be lifted."""
+        super().__init__(None)
+        self._there = frozenset(there)
+        self._to_come = frozenset(to_come)
+        self._typed = ""
+        self._kinds: tuple[Kind, ...] = ()
+
+    def compose(self) -> ComposeResult:
+        """Lay out the kinds."""
+        box = Vertical(ChoiceList("", self.HELP), id="inject", classes="box")
+        box.border_title = "What should go wrong?"
+        yield box
+
+    def on_mount(self) -> None:
+        """Show all of them."""
+        self.query_one(ChoiceList).focus()
+        self._show()
+
+    def _show(self) -> None:
+        words = self._typed.lower().split()
+        order = sorted(KINDS.values(), key=lambda kind: not self._lifts(kind))
+        self._kinds = tuple(
+            kind for kind in order if all(w in f"{kind.name} {kind.words}" for w in words)
+        )
+        kinds = self.query_one(ChoiceList)
+        kinds.styles.height = max(1, len(self._kinds))
+        kinds.show(lambda width, height: self._lines(width))
+        keys = "type to search   1-9 or enter takes   esc goes back"
+        searched = Content(f"{clean(self._typed)}_   enter takes   esc shows all")
+        self.query_one("#inject").border_subtitle = searched if self._typed else keys
+
+    def _lines(self, width: int) -> list[Line]:
+        if not self._kinds:
+            return [Line((("Nothing has these letters.", "dim"),))]
+        label = max(cell_len(kind.name) for kind in KINDS.values())
+        lines: list[Line] = []
+        for number, kind in enumerate(self._kinds, 1):
+            note = THERE if kind.name in self._there else TO_COME
+            note = f"  ({note})" if self._lifts(kind) else ""
+            room = width - label - 5 - cell_len(note)
+            lines.append(
+                Line(
+                    (
+                        (f"{number if number <= 9 else '':>2} ", "robot"),
+                        (fit(kind.name, label), "strong"),
+                        (shorten(f"  {kind.words}", room), "text"),
+                        (note, "warn"),
+                    ),
+                    kind.name,
+                )
+            )
+        return lines
+
+    def _lifts(self, kind: Kind) -> bool:
+        return kind.name in self._there or kind.name in self._to_come
+
+    def on_key(self, event: events.Key) -> None:
+        """Take one with Enter or a number; letters filter."""
+        if event.key in ("up", "down", "pageup", "pagedown", "home", "end"):
+            return
+        if event.key != "question_mark":
+            event.stop()
+            event.prevent_default()
+        if event.key == "enter" and self._kinds:
+            self.answer(str(self.query_one(ChoiceList).chosen))
+        elif event.key == "escape":
+            if not self._typed:
+                self.answer(None)
+            self._typed = ""
+        elif event.key == "backspace":
+            self._typed = self._typed[:-1]
+        elif event.key in "123456789" and int(event.key) <= len(self._kinds):
+            self.answer(self._kinds[int(event.key) - 1].name)
+        elif event.character and (event.character.isalpha() or event.character in " -'"):
+            self._typed = (self._typed + event.character)[:LONGEST]
+        else:
+            return
+        if self.is_attached:
+            self._show()
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+
+def comes_later(kind: str) -> bool:
+    """Say whether a fault shows only when the robot does something."""
+    return KINDS[kind].shows != AT_ONCE

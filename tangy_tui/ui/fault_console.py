@@ -1,0 +1,265 @@
+"""The console for faults of a screen that shows games: looking all the time, telling, acting.
+
+The robot has stopped before anything of this is drawn; what is done here goes through
+`Supervision`, and is in the log before it is told.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from textual.screen import Screen
+
+from tangy_profiles.errors import TangyError
+from tangy_sim.faulty import FaultyWorld
+from tangy_tui.house import House
+from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, Fault, FaultEvent, Moved
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.monitoring.telling import move_words
+from tangy_tui.ui.dialogs.critical import CriticalDialog
+from tangy_tui.ui.dialogs.fault import FaultDialog
+from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
+from tangy_tui.ui.fault_words import (
+    banner_fault,
+    banner_words,
+    doing_words,
+    kind_words,
+    status_words,
+)
+from tangy_tui.ui.widgets.fault_banner import FaultBanner
+from tangy_tui.ui.widgets.fault_list import FaultList
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.status_line import StatusLine
+
+LOOK_SECONDS = 0.1
+"""How often the devices are looked at between behaviours, also while the game stands still."""
+
+NOT_SIMULATED = "Faults can be brought about in the simulated room only."
+NO_GAME = "No game is going on: press g to play one first."
+
+Tell = Callable[[list[Event], bool], None]
+"""Shows events; the second is whether it is known already why a game was stopped."""
+
+_TAKES_TIME = ("asked", "remedied")
+
+
+class FaultConsole:
+    """Looks for faults at 10 Hz, shows them on a screen's panels, and puts the critical ones."""
+
+    def __init__(
+        self,
+        screen: Screen[Any],
+        house: House,
+        supervision: Supervision,
+        who: str,
+        *,
+        tell: Tell,
+        failed: Callable[[str], None],
+    ) -> None:
+        """Make the console.
+
+        Args:
+            who: who acknowledges and clears.
+            tell: shows events on the screen.
+            failed: says that the log could not be written, and stands still.
+        """
+        self.supervision = supervision
+        self.ticks = 0
+        """How often the timer has looked."""
+        self.busy = False
+        """Whether something else has the supervision at this moment: a teacher is learnt from."""
+        self._screen = screen
+        self._house = house
+        self._who = who
+        self._tell = tell
+        self._failed = failed
+        self._free = asyncio.Event()
+        self._free.set()
+        self._dialog: CriticalDialog | None = None
+        self._status = ("", "")
+        self._during: tuple[Fault, int] | None = None
+        self._asked_for: dict[str, int] = {}
+        self._game = 0
+
+    def begin(self) -> None:
+        """Look from now on."""
+        self._screen.set_interval(LOOK_SECONDS, self.tick)
+
+    def tick(self) -> None:
+        """Look at the devices once, and tell what is new."""
+        self.ticks += 1
+        if self.busy or self.supervision.over:
+            return
+        try:
+            events = self.supervision.look()
+        except TangyError as error:
+            self.busy = True  # until somebody lets it try again
+            self._failed(str(error))
+            return
+        if events or self.supervision.status != self._status:
+            self._tell(events, False)
+
+    # ---------------------------------------------------------------------------- showing
+
+    @property
+    def status(self) -> str:
+        """How the robot is, in words, with the cause."""
+        supervision = self.supervision
+        if supervision.halted is None and supervision.over:
+            return "OK"
+        word, cause = self._status = supervision.status
+        question = supervision.question
+        if word == "ASKS" and question is not None:
+            named = (fault.name for fault in supervision.faults if fault.id == question.fault)
+            cause = next(named, "")
+        return status_words((word, cause))
+
+    @property
+    def asked_about(self) -> Fault | None:
+        """The fault about which Tangy asks, if it is not the situation that nobody has shown."""
+        question = self.supervision.question
+        wanted = "" if question is None else question.fault
+        return next((f for f in self.supervision.faults if f.id == wanted), None)
+
+    def show(self) -> None:
+        """Show banner and list as they are now, and put what halts the robot."""
+        screen, supervision = self._screen, self.supervision
+        fault, doing = banner_fault(supervision), ""
+        if self._during is not None and supervision.halted is None:
+            fault, count = self._during
+            doing = doing_words(fault, supervision.book, self._house.name, fault.moves[:count])
+        elif fault is not None:
+            doing = doing_words(fault, supervision.book, self._house.name)
+        if fault is None or (supervision.over and supervision.halted is None):
+            screen.query_one(FaultBanner).show("")
+        else:
+            screen.query_one(FaultBanner).show(
+                banner_words(fault, doing), critical=fault.critical, seen=fault.acknowledged
+            )
+        screen.query_one(FaultList).fill(supervision.faults)
+        there = any(not fault.asks_only for fault in supervision.faults)
+        screen.set_class(there, "-faulty")
+        if supervision.halted is not None and not supervision.over and self._free.is_set():
+            self._free.clear()
+            screen.run_worker(self._attend(), name="fault", group="fault")
+        elif self._dialog is not None:
+            self._dialog.show(screen.query_one(StatusLine).status)
+
+    def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
+        """Part what was begun about a fault from what came of it, which takes its time to see."""
+        for n, event in enumerate(events):
+            if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
+                if self.supervision.halted is not None or self.supervision.question is not None:
+                    break
+                count = next(k for k, m in enumerate(event.fault.moves, 1) if m is event.move)
+                self._during = (event.fault, count)
+                return events[: n + 1], events[n + 1 :]
+        return events, []
+
+    def done(self) -> None:
+        """Say that what came of it may be shown."""
+        self._during = None
+
+    def dialog(self, id: str) -> FaultDialog | None:
+        """Return the dialog that tells of one fault in full; None: there is no such fault."""
+        fault = next((f for f in self.supervision.faults if f.id == id), None)
+        if fault is None:
+            return None
+        return FaultDialog(fault, self.supervision.book, self.supervision.robot)
+
+    # ---------------------------------------------------------------------------- halting
+
+    async def free(self) -> None:
+        """Wait until nothing halts the robot any more."""
+        await self._free.wait()
+
+    async def _attend(self) -> None:
+        """Put what halts the robot, one fault after the other, until all is cleared or given up."""
+        supervision, app = self.supervision, self._screen.app
+        try:
+            while (fault := supervision.halted) is not None and not supervision.over:
+                app.clear_notifications()  # they would lie over it
+                dialog = self._dialog = CriticalDialog(self, fault, supervision.robot)
+                dialog.show(self._screen.query_one(StatusLine).status)
+                await app.push_screen_wait(dialog)
+                while dialog.is_attached:  # noqa: ASYNC110 - there is no event for it
+                    await asyncio.sleep(0)
+        finally:
+            self._dialog = None
+            self._free.set()
+
+    def acknowledge(self, fault: Fault | None = None) -> None:
+        """Say that a fault (default: the one that halts the robot) was seen."""
+        self._tell(self.supervision.acknowledge(self._who, fault), False)
+
+    def call_expert(self) -> None:
+        """Call the expert about the fault that halts the robot."""
+        self._tell(self.supervision.call_expert(self._who), False)
+
+    def clear(self) -> None:
+        """Let the robot go on, if the fault was seen and is gone."""
+        self._tell(self.supervision.clear(self._who), False)
+
+    def give_up(self) -> None:
+        """End the game that is halted."""
+        self._tell(self.supervision.give_up(), True)
+
+    # ---------------------------------------------------------------- bringing faults about
+
+    def refuses(self) -> str:
+        """Say why no fault can be brought about now; empty if one can."""
+        if not isinstance(self.supervision.world, FaultyWorld):
+            return NOT_SIMULATED
+        return NO_GAME if self.supervision.over else ""
+
+    async def inject(self) -> str:
+        """Let a fault be chosen, and bring it about or lift it; return what was done."""
+        world = self.supervision.world
+        if not isinstance(world, FaultyWorld):
+            return NOT_SIMULATED
+        if self._game != self.supervision.games:
+            self._game = self.supervision.games
+            self._asked_for.clear()
+        to_come = [
+            kind
+            for kind, came in self._asked_for.items()
+            if kind not in world.present and all(kind != late for _, late in world.came[came:])
+        ]
+        dialog = InjectDialog(world.present, to_come)
+        kind = await self._screen.app.push_screen_wait(dialog)
+        if kind is None or self.refuses():
+            return ""
+        if kind in world.present or kind in to_come:
+            world.lift(kind)
+            self._asked_for.pop(kind, None)
+            return f"Lifted: {kind}."
+        self._asked_for[kind] = len(world.came)
+        world.inject(kind)
+        later = comes_later(kind)
+        return f"Brought about: {kind}." if not later else f"{kind} comes as soon as it can show."
+
+
+def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
+    """Write a fault, or what was done about it, into the log; what Tangy says is seen as well."""
+    fault, log = event.fault, screen.query_one(LogView)
+    if isinstance(event, Moved) and event.move.speech:
+        screen.query_one(RoomView).say(event.move.speech)
+    if isinstance(event, Moved) and event.move.kind == "halted":
+        screen.query_one(RoomView).skip()
+    if fault.asks_only:
+        return  # the question that Tangy asks says all of it
+    kind: Kind = "bad" if fault.critical else "warn"
+    if isinstance(event, Diagnosed):
+        log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
+        return
+    move = event.move
+    if move.kind in ENDINGS:
+        kind = "good"
+    elif move.kind not in ("halted", "still there", "escalated", "given up"):
+        kind = "dim"
+    log.write(f"{fault.name}: {move_words(move)}.", kind)
+    if move.speech:
+        log.write(move.speech)

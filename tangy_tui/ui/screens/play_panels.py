@@ -1,0 +1,166 @@
+"""The panels of the playing screen: which of them are seen, and what they tell when chosen."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.screen import Screen
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.fault_console import FaultConsole
+from tangy_tui.ui.fault_words import banner_fault
+from tangy_tui.ui.game_picture import GamePicture
+from tangy_tui.ui.panels import KeyLine, panel, room_panel
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.play_keys import keys
+from tangy_tui.ui.widgets.fault_banner import FaultBanner
+from tangy_tui.ui.widgets.fault_list import FaultList
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+from tangy_tui.ui.widgets.policy_table import PolicyTable
+from tangy_tui.ui.widgets.posteriors import Posteriors
+from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.transcript import Transcript
+
+CHOOSABLE = ("transcript", "policy", "posteriors", "log", "faults")
+ON_THE_LEFT = ("log", "faults")
+"""Panels that live under the room; where one is seen at a time they take the others' place."""
+
+
+class PlayPanels(TangyScreen[Tally]):
+    """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
+
+    def __init__(self, house: House, supervision: Supervision, who: str) -> None:
+        """Make the panels; `who` answers, acknowledges and clears."""
+        super().__init__()
+        self._house = house
+        self._supervision = supervision
+        self._picture = GamePicture(self, house, supervision)
+        self._faults = FaultConsole(
+            self, house, supervision, who, tell=self._tell, failed=self._fail
+        )
+
+    def _tell(self, events: list[Event], known: bool = False) -> None:
+        """Show events; where a game was stopped a dialog says why, unless that is `known`."""
+        raise NotImplementedError
+
+    def _fail(self, reason: str) -> None:
+        """Stand still because something could not be kept."""
+        raise NotImplementedError
+
+    def compose(self) -> ComposeResult:
+        """Lay out the panels; which of them are seen at 80 columns `1` to `6` choose."""
+        yield StatusLine()
+        yield FaultBanner()
+        with Horizontal(id="body"):
+            with Vertical(id="left"):
+                yield room_panel(self._house)
+                yield panel(FaultList(self._house.name))
+                yield panel(LogView(id="log"))
+            with Vertical(id="right"):
+                yield panel(Transcript(id="transcript"))
+                yield panel(PolicyTable())
+                yield panel(Posteriors())
+        yield KeyLine(*keys(going=True))
+
+    def action_panel(self, name: str) -> None:
+        """Show a panel where there is no room for all of them, and give it the keys."""
+        enlarged = self.maximized is not None
+        self.minimize()
+        for id in CHOOSABLE:
+            self.query_one(f"#{id}").set_class(id == name, "-chosen")
+        self.set_class(name in ON_THE_LEFT, "-left")
+        if name != "room":
+            chosen = self.query_one(f"#{name}")
+            chosen.focus()
+            if enlarged:
+                self.maximize(chosen)
+
+    def action_why(self) -> None:
+        """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
+        chosen = self.query_one(Transcript).chosen
+        fault = self._faults.asked_about if chosen is None else None
+        dialog: Screen[Any] | None
+        dialog = self._faults.dialog(fault.id) if fault else self._picture.why(chosen)
+        if dialog is not None:
+            self.app.push_screen(dialog)
+        else:
+            self._tell_now("Nothing has been decided yet.", "dim")
+
+    def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
+        """Tell why, for the step that was chosen with Enter."""
+        event.stop()
+        if (dialog := self._picture.why_step(event.number)) is not None:
+            self.app.push_screen(dialog)
+
+    def on_policy_table_chosen(self, event: PolicyTable.Chosen) -> None:
+        """Tell why, for the row of the policy that was chosen with Enter."""
+        event.stop()
+        self.app.push_screen(self._picture.why_row(event.index))
+
+    def on_fault_list_chosen(self, event: FaultList.Chosen) -> None:
+        """Tell of a fault in full."""
+        event.stop()
+        if (dialog := self._faults.dialog(event.id)) is not None:
+            self.app.push_screen(dialog)
+
+    def on_asking_panel_why_wanted(self, event: AskingPanel.WhyWanted) -> None:
+        """Tell why Tangy asks."""
+        event.stop()
+        self.query_one(Transcript).release()
+        self.action_why()
+
+    def action_acknowledge(self) -> None:
+        """Say that the fault in the banner was seen."""
+        fault = banner_fault(self._supervision)
+        if fault is None or fault.acknowledged:
+            self._tell_now("No fault that nobody has seen.", "dim")
+            return
+        try:
+            self._faults.acknowledge(fault)
+        except TangyError as error:
+            self._fail(str(error))
+
+    def action_inject(self) -> None:
+        """Bring about a fault in the simulated room, or lift one."""
+        if refusal := self._faults.refuses():
+            self._tell_now(refusal, "warn")
+        else:
+            self.run_worker(self._inject(), name="inject", group="inject")
+
+    async def _inject(self) -> None:
+        if said := await self._faults.inject():
+            self._tell_now(said, "dim")
+
+    @property
+    def _asking(self) -> AskingPanel | None:
+        """The question that is open, if Tangy asks."""
+        panels = self.query(AskingPanel)
+        return panels.first() if panels else None
+
+    def take_sentence(self, sentence: str, kind: Kind = "dim") -> bool:
+        """Say a sentence under what Tangy asks, and in the log; False: nothing is asked."""
+        if self._asking is not None:
+            self._asking.say(sentence)
+            self._write(sentence, kind)
+        return self._asking is not None
+
+    def _tell_now(self, sentence: str, kind: Kind) -> None:
+        """Say what a key did, or why it does nothing, where it is seen at every size."""
+        if not self.take_sentence(sentence, kind):
+            self._write(sentence, kind)
+            if not self.query_one(LogView).display:
+                self.app.clear_notifications()
+                self.notify(
+                    sentence,
+                    severity="warning" if kind == "warn" else "information",
+                    markup=False,
+                )
+
+    def _write(self, sentence: str, kind: Kind) -> None:
+        self.query_one(LogView).write(sentence, kind)
