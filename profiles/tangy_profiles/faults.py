@@ -49,7 +49,7 @@ CONTEXT: Mapping[str, str] = MappingProxyType(
 SYMPTOMS: Mapping[str, str] = MappingProxyType(
     {
         "person.refusals": "how often in a row a person did not follow",
-        "visit.fruitless": "behaviours in a row for one person after which nothing had changed",
+        "visit.fruitless": "behaviours in a row after which nothing had changed",
         "situation.shown": "whether a teacher has shown what to do in the situation",
         **{f"mismatch.{name}": f"an unexpected value of: {name}" for name in VARIABLES},
     }

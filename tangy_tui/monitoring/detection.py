@@ -117,7 +117,8 @@ class Detector:
             else:
                 self._refusals[person] += 1
         alike = after._replace(step=before.step, closed=before.closed) == before
-        self._fruitless = self._fruitless + 1 if alike and before.attended is not None else 0
+        moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
+        self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
 
 
 def symptoms(evidence: Evidence) -> set[str]:

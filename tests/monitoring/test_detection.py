@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tangy_profiles.errors import TangyError
@@ -157,3 +159,19 @@ def test_an_injection_that_is_none_says_why(text: str, says: str) -> None:
 )
 def test_an_injection_is_written_as_it_is_read(text: str) -> None:
     assert str(read_injection(text)) == text
+
+
+def test_a_game_that_goes_round_in_circles_asks_the_teacher(supervise: Supervise) -> None:
+    """A policy that tells jokes where numbers should be called: nothing ever changes by it."""
+    game = supervise(seed=2)
+    policy = game.policy
+    joke = next(b for b in policy.table.values() if b.behaviour == "joke")
+    always = {
+        situation: joke if decision.behaviour == "call number" else decision
+        for situation, decision in policy.table.items()
+    }
+    game.game.policy = replace(policy, table=always)
+    game.begin()
+    until(game, lambda now: now.question, most=40)
+    assert game.faults[-1].code == "no-progress"
+    assert game.steps < 12
