@@ -94,7 +94,7 @@ def question_words(question: Question, shown: Round) -> str:
 def told_lines(table: Tabletop, shown: Round, answered: Answered) -> list[Told]:
     """Tell what was right in a round, why, and what to do then."""
     fault = shown.fault
-    what = "nothing was wrong" if fault is None else f"it was: {fault.name}"
+    what = "nothing was wrong" if fault is None else fault.name
     lines = [_verdict(answered.named_right, what, _named(table, answered.named))]
     lines.append(
         _verdict(answered.acted_right, _action(answered.recovery), _action(answered.acted))
@@ -132,13 +132,18 @@ def _action(recovery: str) -> str:
     return words[0].lower() + words[1:]
 
 
-def sheet_lines(sheet: Sheet, width: int = 80) -> list[Told]:
-    """Write a score sheet for so many columns: a table, totals, and what to rehearse again."""
+def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[Told]:
+    """Write a score sheet for so many columns: a table, totals, and what to rehearse again.
+
+    `before` is what the same person had the last time.
+    """
     state = "" if sheet.finished else f", left after {len(sheet.answered)} of {sheet.rounds}"
     took = "" if sheet.median is None else f" Median time {sheet.median:.0f} s."
     lines: list[Told] = [
         ("strong", f"{sheet.who}: {sheet.points} of {counted(sheet.most, 'point')}{state}.{took}")
     ]
+    if before is not None:
+        lines.append(("dim", f"The last time: {before.points} of {counted(before.most, 'point')}."))
     name_width = max(12, min(44, width - 32))
     lines.append(("dim", f" #  {'What it was':{name_width}}  Named  Done  Clear    s"))
     for one in sheet.answered:
@@ -210,7 +215,7 @@ def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = Fal
     sheet = drill.sheet if drill.sheet.answered else None
     if sheet is not None:
         write("")
-        for _, text in sheet_lines(sheet):
+        for _, text in sheet_lines(sheet, before=drill.before):
             write(text)
     return sheet
 

@@ -95,8 +95,12 @@ class Drill:
         """
         if not 1 <= rounds <= MOST_ROUNDS:
             raise TangyError(f"A drill has from 1 to {MOST_ROUNDS} rounds, not {rounds}.")
+        earlier = read_sheets(store)
         if seed is None:
-            seed = 1 + max((sheet.seed for sheet in read_sheets(store)), default=0)
+            seed = 1 + max((sheet.seed for sheet in earlier), default=0)
+        mine = [sheet for sheet in earlier if sheet.who.casefold() == who.casefold()]
+        self.before = mine[-1] if mine else None
+        """The sheet of the drill that the same person had before."""
         self.tabletop = tabletop
         self.rounds = rounds
         self.note = note

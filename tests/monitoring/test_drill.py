@@ -349,6 +349,19 @@ def test_without_a_seed_no_drill_is_like_an_earlier_one(table: Tabletop, store: 
         right_keys(drill)
 
 
+def test_what_the_same_person_had_the_last_time_is_told(table: Tabletop, store: Store) -> None:
+    first = Drill(table, store, who="ada", rounds=1)
+    assert first.before is None
+    first.next()
+    right_keys(first)
+    assert Drill(table, store, who="bea", rounds=1).before is None
+    before = Drill(table, store, who="Ada", rounds=1).before
+    assert before is not None
+    assert before.points == first.sheet.points
+    lines = [text for _, text in sheet_lines(SHEET, before=before)]
+    assert lines[1] == f"The last time: {before.points} of {before.most} points."
+
+
 def test_no_name_of_a_person_gets_into_the_log(
     learnt: Learnt, store: Store, activity: Activity
 ) -> None:

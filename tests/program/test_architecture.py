@@ -29,6 +29,7 @@ ENGINE = [
     ROOT / "tangy_tui" / "lines.py",
     ROOT / "tangy_tui" / "game_lines.py",
     ROOT / "tangy_tui" / "fault_lines.py",
+    ROOT / "tangy_tui" / "drill_lines.py",
 ]
 HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}
 

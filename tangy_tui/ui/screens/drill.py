@@ -180,7 +180,7 @@ class DrillScreen(TangyScreen[None]):
         page.show(
             lambda width: [
                 line
-                for ink, text in sheet_lines(sheet, width)
+                for ink, text in sheet_lines(sheet, width, self._drill.before)
                 for line in ([Line(((text, ink),))] if len(text) <= width else
                              paragraph(text, width, ink))
             ]
