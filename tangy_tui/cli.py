@@ -15,7 +15,17 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui import __version__
-from tangy_tui.verbs import demonstrations, drill, experiment, learn, machine, people, play, teach
+from tangy_tui.verbs import (
+    demonstrations,
+    drill,
+    experiment,
+    learn,
+    log,
+    machine,
+    people,
+    play,
+    teach,
+)
 from tangy_tui.verbs.common import Ascii, Data, full_screen, open_house
 
 app = typer.Typer(
@@ -65,6 +75,7 @@ for verb in VERBS:
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(log.app, name="log")
 
 
 def main() -> None:

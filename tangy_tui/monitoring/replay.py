@@ -72,6 +72,38 @@ class Moment:
     at: str
     what: What
 
+    def to_json(self) -> dict[str, Any]:
+        """Return what happened as `--json` tells it, with its kind."""
+        match self.what:
+            case Done() as done:
+                return {
+                    "kind": "step",
+                    "behaviour": done.behaviour,
+                    "target": done.target,
+                    "strategy": done.strategy,
+                    "situation": list(done.state.situation),
+                    "state": done.state.to_json(),
+                    "after": done.after.to_json(),
+                    "completed": done.completed,
+                    "right": done.right,
+                    "teacher": done.teacher,
+                    "said": done.said,
+                    "took": done.over - done.begun,
+                }
+            case Answered() as answer:
+                return {
+                    "kind": "response",
+                    "person": answer.person,
+                    "strategy": answer.strategy,
+                    "complied": answer.complied,
+                    "followed": answer.followed,
+                    "took": answer.took,
+                }
+            case Diagnosed(fault):
+                return {"kind": "fault", "fault": fault.id, **fault.to_json()}
+            case Moved(fault, move):
+                return {"kind": "recovery", "fault": fault.id, "move": move.to_json()}
+
 
 @dataclass
 class Replay:

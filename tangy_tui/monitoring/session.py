@@ -10,6 +10,7 @@ from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.reading import plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import Entry
@@ -182,11 +183,7 @@ def read_session(
     replays = tuple(read_replays(store, games, activities, names))
     activity = next((activities[g.activity] for g in games if g.activity in activities), None)
     unknown = sorted({g.activity for g in games if g.activity not in activities})
-    notes = [
-        f"There is no activity {name!r} here any more: what was said is not told, and a behaviour "
-        "counts as a success if it could be carried out."
-        for name in unknown
-    ]
+    notes = [unknown_words(name) for name in unknown]
     if not all(replay.timed for replay in replays):
         notes.append("An older Tangy kept no times within a game: those games are drawn by steps.")
     titles = {activities[g.activity].title if g.activity in activities else g.activity
@@ -201,6 +198,14 @@ def read_session(
         reads=frozenset(s for s in activity.stages if activity.reads(s))
         if activity
         else frozenset(),
+    )
+
+
+def unknown_words(activity: str) -> str:
+    """Say that an activity is not to be had, and what is not told for that."""
+    return plain(
+        f"There is no activity {activity!r} here any more: what was said is not told, and a "
+        "behaviour counts as a success if it could be carried out."
     )
 
 

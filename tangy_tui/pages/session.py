@@ -1,0 +1,338 @@
+"""The report of a session as one page: what a nurse wants to know first, then all the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.fault_table import fault_rows
+from tangy_tui.monitoring.replay import Replay
+from tangy_tui.monitoring.session import Progress, Session
+from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
+from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
+from tangy_tui.pages.beliefs import belief_drawing, interval
+from tangy_tui.pages.page import document, figure, heading, paragraph, table
+from tangy_tui.pages.timeline import SERIES, stages_of, timeline
+
+MOST_DRAWN = 24
+"""Games that are drawn on one page; of more, the last ones."""
+
+STATUS = {"open": "left open", "borne": "Tangy goes on with it", "over": "over"}
+"""What became of a fault, in words."""
+
+STYLE = """
+:root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
+@media (prefers-color-scheme: dark) { :root { --critical: #f87171; --minor: #fbbf24;
+  --on: #14181d; } }
+@media print { :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; } }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .8rem 0; }
+dt { color: var(--dim); } dd { margin: 0; }
+h3 { font-size: 1rem; margin: 1.4rem 0 .2rem; }
+.care { border-left: 4px solid var(--minor); background: var(--shade); padding: .5rem 1rem;
+  margin: .8rem 0; } .care.critical { border-color: var(--critical); }
+.care h3 { margin: 0 0 .2rem; } .care ul { margin: .2rem 0; padding-left: 1.2rem; }
+.fine { border-left: 4px solid var(--series-3); background: var(--shade); padding: .5rem 1rem; }
+.tag { border-radius: 3px; padding: .05rem .4rem; font-size: .8rem; font-weight: 600;
+  color: var(--on); background: var(--minor); white-space: nowrap; }
+.tag.critical { background: var(--critical); }
+.both { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr));
+  gap: .4rem 2rem; } .both figure { margin: .6rem 0; } .both h3 { margin-top: .6rem; }
+.moves { font-size: .9rem; margin: .3rem 0; padding-left: 0; list-style: none; }
+.moves li { padding: .15rem 0; border-bottom: 1px solid var(--line); display: flex; gap: .8rem; }
+.moves .when { color: var(--dim); white-space: nowrap; font-variant-numeric: tabular-nums; }
+svg text { font: 13px var(--font); fill: var(--ink); } svg text.dim { fill: var(--dim); }
+svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
+.grid { stroke: var(--line); stroke-width: 1; } .base { stroke: var(--line); }
+.stage { fill-opacity: .28; } .tick { stroke: var(--ink); stroke-width: 1.6; }
+.tick.wrong { stroke: var(--critical); stroke-width: 3; }
+.visit { fill: var(--series-1); fill-opacity: .45; } .asks { fill: var(--minor); }
+.yes { fill: var(--ink); stroke: var(--paper); stroke-width: 1.2; }
+.late { fill: var(--paper); stroke: var(--ink); stroke-width: 2; }
+.no { stroke: var(--ink); stroke-width: 2.4; fill: none; }
+.halt { fill: var(--critical); fill-opacity: .13; }
+.fault.critical { fill: var(--critical); } .fault.minor { fill: var(--minor); }
+.mend { stroke-width: 3; } .mend.critical { stroke: var(--critical); }
+.mend.minor { stroke: var(--minor); } .mend.stays { stroke-dasharray: 3 5; }
+.before { fill: var(--paper); stroke: var(--dim); stroke-width: 1.6; }
+.after { fill: var(--series-1); stroke: var(--series-1); stroke-width: 2.6; }
+.key { display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; font-size: .85rem; color: var(--dim);
+  margin: .3rem 0; } .key span { white-space: nowrap; } .key svg { display: inline-block;
+  width: 20px; height: 16px; vertical-align: -3px; margin-right: .3rem; }
+.timeline { min-width: 46rem; } .drawn { overflow-x: auto; }
+@media print { .timeline { min-width: 0; } .care, .moves li, .fault-told { break-inside: avoid; } }
+""" + "".join(
+    f".s{n} {{ fill: var(--series-{n}); }}\n" for n in range(1, SERIES + 1)
+)  # the stages' inks
+
+KEY = (
+    ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', "Tangy is with them"),
+    ('<rect class="asks" x="1" y="6" width="18" height="4"/>', "asks for help"),
+    ('<circle class="yes" cx="10" cy="8" r="5"/>', "complied"),
+    ('<circle class="late" cx="10" cy="8" r="4.4"/>', "followed late"),
+    ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', "did not follow"),
+    ('<line class="tick" x1="6" x2="6" y1="4" y2="12"/>'
+     '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),
+    ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', "fault"),
+    ('<g class="fault critical"><path d="M10 0L18 8L10 16L2 8Z"/></g>', "critical fault"),
+    ('<rect class="halt" x="1" y="0" width="18" height="16"/>', "Tangy stood still"),
+)  # fmt: skip
+"""The marks of the timeline, and what they mean."""
+
+
+def session_page(session: Session) -> str:
+    """Return the page of a session."""
+    games = session.games
+    title = f"{session.title}: session of {day_and_time(games[0].at)}"
+    parts = [*_head(session), *_care(session), *_timelines(session), *_people(session)]
+    parts += [*_faults(session), *_tables(session), *_notes(session)]
+    return document(title, _sum(session), parts, STYLE)
+
+
+def _sum(session: Session) -> str:
+    games, faults = len(session.games), len(session.faults)
+    steps = sum(game.steps for game in session.games)
+    words = [
+        f"{games} game" + "s" * (games != 1),
+        f"{steps} behaviour" + "s" * (steps != 1),
+        f"{faults} fault" + "s" * (faults != 1),
+    ]
+    return " · ".join(words)
+
+
+def _head(session: Session) -> Iterator[str]:
+    games = session.games
+    people = [person.name for person in session.people]
+    policies = dict.fromkeys(game.policy for game in games)
+    facts = [
+        ("When", f"{day_and_time(games[0].at)} to {_until(session)}"),
+        ("Who took part", ", ".join(people) or "nobody is named in the log"),
+        ("Policy", ", ".join(policies)),
+        ("How long", _how_long(session)),
+    ]
+    if len(games) == 1:
+        facts.append(("How it ended", _sentence(games[0].ending)))
+    else:
+        facts.append(("How they ended", _endings(session)))
+    rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
+    yield f"<dl>{rows}</dl>"
+
+
+def _until(session: Session) -> str:
+    ended = session.games[-1].ended
+    return day_and_time(ended) if ended is not None else "no end in the log"
+
+
+def _how_long(session: Session) -> str:
+    if not session.timed:
+        return "not known: an older Tangy kept no times within a game"
+    return f"{length(session.seconds)} of playing, in the time of the room"
+
+
+def _endings(session: Session) -> str:
+    endings = [game.ending for game in session.games]
+    counts = {words: endings.count(words) for words in dict.fromkeys(endings)}
+    return " ".join(f"{count} of {len(endings)}: {words}." for words, count in counts.items())
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:] + ("" if words.endswith((".", "!", "?")) else ".")
+
+
+def _care(session: Session) -> Iterator[str]:
+    yield heading("What to look after")
+    if not session.look_after:
+        yield '<p class="fine">Nothing is left to do: every fault is over.</p>'
+    numbers = _numbers(session)
+    told: set[tuple[str, str]] = set()
+    for fault in session.look_after:
+        if (fault.name, fault.console) in told:
+            continue  # once is enough, however often it came
+        told.add((fault.name, fault.console))
+        steps = "".join(f"<li>{escape(step)}</li>" for step in fault.advice)
+        number = f"{numbers[fault.id]}. " if fault.id in numbers else ""
+        yield (
+            f'<div class="care{" critical" if fault.critical else ""}">'
+            f"<h3>{escape(number + fault.name)} ({STATUS[fault.status]})</h3>"
+            f"<p>{escape(fault.console)}</p><ul>{steps}</ul></div>"
+        )
+
+
+def _timelines(session: Session) -> Iterator[str]:
+    yield heading("What happened when")
+    numbers = _numbers(session)
+    drawn = session.replays[-MOST_DRAWN:]
+    if len(drawn) < len(session.replays):
+        yield paragraph(f"The last {MOST_DRAWN} of {len(session.replays)} games are drawn.")
+    yield _key()
+    for replay in drawn:
+        if len(session.replays) > 1:
+            game = replay.game
+            yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
+            yield paragraph(_sentence(game.ending))
+        yield f'<div class="drawn">{_timeline(replay, numbers, session)}</div>'
+
+
+def _timeline(replay: Replay, numbers: dict[str, int], session: Session) -> str:
+    return figure(
+        timeline(replay, numbers, session.names),
+        f"Game {replay.game.number}: " + ("minutes in the game." if replay.timed else "its steps.")
+        + f" Stages: {', '.join(stages_of([replay])) or 'none'}.",
+    )  # fmt: skip
+
+
+def _key() -> str:
+    marks = "".join(
+        f'<span><svg viewBox="0 0 20 16" aria-hidden="true">{mark}</svg>{words}</span>'
+        for mark, words in KEY
+    )
+    return f'<p class="key">{marks}</p>'
+
+
+def _people(session: Session) -> Iterator[str]:
+    yield heading("How people responded")
+    asked = [person for person in session.people if person.interactions]
+    if not asked:
+        yield paragraph("Nobody was asked for anything.")
+        return
+    yield paragraph(
+        "Drawn is how likely each person is to comply with each strategy that was used: before "
+        "the session (ring) and after it (dot), with the interval in which the truth lies with "
+        "a probability of 90%."
+    )
+    yield '<div class="both">'
+    for person in asked:
+        yield f"<div><h3>{escape(person.name)}</h3>"
+        yield figure(belief_drawing(person), _person_words(person)) + "</div>"
+    yield "</div>"
+    quiet = [person.name for person in session.people if not person.interactions]
+    if quiet:
+        yield paragraph(f"Not asked for anything: {', '.join(quiet)}.")
+    columns = ("person", "strategy", "used", "complied", "late", "not", "before", "after")
+    yield table(columns, _people_rows(asked))
+
+
+def _person_words(person: Progress) -> str:
+    parts = [
+        f"{person.total(what)} {words}"
+        for what, words in (
+            ("complied", "complied"),
+            ("late", "followed late"),
+            ("refused", "not followed"),
+            ("void", "void"),
+            ("awaited", "without an answer"),
+        )
+        if person.total(what)
+    ]
+    times = f"{person.interactions} time" + "s" * (person.interactions != 1)
+    return f"Asked {times}: {', '.join(parts)}."
+
+
+def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
+    for person in people:
+        for strategy, one in person.strategies.items():
+            if not one.used:
+                continue
+            beliefs = []
+            for belief in (one.before, one.after):
+                low, high = interval(belief.alpha, belief.beta)
+                beliefs.append(f"{belief.mean:.0%} ({low:.0%} to {high:.0%})")
+            yield (
+                person.name, strategy, one.used, one.complied, one.late, one.refused, *beliefs,
+            )  # fmt: skip
+
+
+def _faults(session: Session) -> Iterator[str]:
+    yield heading("Faults, and what was done about them")
+    if not session.faults:
+        yield paragraph("There were no faults.")
+    numbers = _numbers(session)
+    for replay in session.replays:
+        for fault in replay.real_faults:
+            yield _fault(fault, numbers[fault.id], replay, len(session.replays) > 1)
+    if session.questions:
+        yield heading("Where Tangy did not know what to do")
+        yield table(
+            ("game", "step", "what came of it"),
+            [
+                (replay.game.number, fault.step, _last_words(fault))
+                for replay in session.replays
+                for fault in replay.faults
+                if fault.asks_only
+            ],
+        )
+
+
+def _last_words(fault: Fault) -> str:
+    told = [move_words(move) for move in fault.moves]
+    return told[-1] if told else STATUS[fault.status]
+
+
+def _fault(fault: Fault, number: int, replay: Replay, many: bool) -> str:
+    kind = "critical" if fault.critical else "minor"
+    where = f"Game {replay.game.number}, step" if many else "Step"
+    facts = f"{where} {fault.step}; first recovery: {RECOVERY_WORDS[fault.recovery]}."
+    if fault.behaviour:
+        facts += f" Noticed after: {fault.behaviour}."
+    ats = _times(replay, fault)
+    moves = "".join(
+        f'<li><span class="when">{clock(seconds)} · {at}</span><span>{words}</span></li>'
+        for seconds, at, words in ats
+    )
+    return (
+        f'<div class="fault-told"><h3>{number}. {escape(fault.name)} '
+        f'<span class="tag {kind}">{"critical" if fault.critical else "not critical"}</span> '
+        f'<span class="dim">{STATUS[fault.status]}</span></h3>'
+        f"<p>{escape(fault.console)}</p>"
+        f'<p class="dim">{escape(facts)} Evidence: {escape(fault.why)}.</p>'
+        f'<ul class="moves">{moves}</ul></div>'
+    )
+
+
+def _times(replay: Replay, fault: Fault) -> Iterator[tuple[float, str, str]]:
+    """Yield the moments of a fault: time in the game (s), on the clock, and what was done."""
+    moves = iter(fault.moves)
+    for moment in replay.moments:
+        if getattr(moment.what, "fault", None) is fault:
+            at = time_of_day(moment.at)
+            if type(moment.what).__name__ == "Moved":
+                move = next(moves)
+                words = move_words(move)
+                said = f' \N{EN DASH} "{move.speech}"' if move.speech else ""
+                yield move.seconds, at, escape(words + said)
+            else:
+                yield fault.seconds, at, "was diagnosed"
+
+
+def _tables(session: Session) -> Iterator[str]:
+    yield heading("What Tangy did where")
+    yield table(
+        ("stage", "request", "user state", "behaviour", "success", "instances"),
+        (
+            (*row.situation, row.behaviour, f"{row.success:.0%}", row.instances)
+            for row in session.rows
+        ),
+    )
+    yield heading("Faults by criticality and recovery")
+    yield table(
+        ("criticality", "recovery", "success", "instances"),
+        (
+            (row["criticality"], row["recovery"], _share(row["success"]), row["instances"])
+            for row in fault_rows(session.faults)
+        ),
+    )
+
+
+def _share(success: float | None) -> str:
+    return "\N{EN DASH}" if success is None else f"{success:.0%}"
+
+
+def _notes(session: Session) -> Iterator[str]:
+    for note in session.notes:
+        yield f'<p class="dim">{escape(note)}</p>'
+
+
+def _numbers(session: Session) -> dict[str, int]:
+    """Number the faults of a session, as they stand on the drawing and in the lists."""
+    faults: Sequence[Fault] = session.faults
+    return {fault.id: number for number, fault in enumerate(faults, 1)}

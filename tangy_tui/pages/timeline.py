@@ -1,0 +1,293 @@
+"""The timeline of a game as a drawing: stages, what was said to all, visits, responses, faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from html import escape
+from itertools import groupby
+from typing import NamedTuple
+
+from tangy_tui.monitoring.fault import BORNE, ENDINGS, OVER, Fault, Moved
+from tangy_tui.monitoring.replay import Answered, Done, Replay
+
+WIDTH, LEFT, RIGHT = 1000, 118, 18
+"""Of the drawing, in its own units; the lanes' names stand left of the lanes."""
+AXIS, BAND, TICKS, LANE, MARKS = 26, 26, 24, 26, 28
+"""Heights: the axis, the stages, what is said to all, one person, one row of faults."""
+STEPS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 240, 480)
+MOST_TICKS = 11
+SERIES = 6
+LETTER = 7.2
+"""About how wide a letter is."""
+
+
+class Span(NamedTuple):
+    """A stretch of the game, by time (s) or, where no times are known, by steps."""
+
+    begun: float
+    over: float
+
+
+class Scale:
+    """Places what happened on the drawing: by time, or by steps where the log has no times."""
+
+    def __init__(self, replay: Replay) -> None:
+        self.timed = replay.timed
+        self.begun: dict[int, float] = {0: 0.0}
+        for done in replay.done:
+            self.begun[done.number] = done.over if self.timed else float(done.number)
+        end = replay.seconds if self.timed else float(len(replay.done))
+        self.end = max(end, 1.0)
+
+    def at(self, seconds: float, step: int) -> float:
+        """Return where a moment is."""
+        return seconds if self.timed else float(step)
+
+    def x(self, where: float) -> float:
+        """Return the place on the drawing."""
+        return LEFT + (WIDTH - LEFT - RIGHT) * min(max(where, 0.0), self.end) / self.end
+
+    def ticks(self) -> Iterator[tuple[float, str]]:
+        """Yield where the axis is marked, and with what."""
+        unit = 60 if self.timed else 1
+        whole = self.end / unit
+        step = next((s for s in STEPS if whole / s < MOST_TICKS), max(1, round(whole / 10)))
+        for tick in range(0, int(whole) + 1, step):
+            words = f"{tick} min" if self.timed else f"step {tick}" if tick else "begin"
+            yield float(tick * unit), words
+
+
+def timeline(replay: Replay, numbers: Mapping[str, int], names: Mapping[str, str]) -> str:
+    """Draw the timeline of a game as an SVG element.
+
+    Args:
+        numbers: what stands on each fault's mark, by its id.
+        names: of the people, by id.
+    """
+    scale = Scale(replay)
+    people = list(replay.game.people)
+    spans = [(fault, *_fault_span(replay, fault, scale)) for fault in replay.real_faults]
+    rows = _stacked([(scale.x(begun), scale.x(over)) for _, begun, over in spans])
+    fault_rows = max(rows, default=-1) + 1
+    top_band = AXIS
+    top_ticks = top_band + BAND + 6
+    top_people = top_ticks + TICKS
+    top_faults = top_people + LANE * len(people) + 4
+    height = top_faults + MARKS * max(fault_rows, 1) + 8
+    parts = [
+        *_axis(scale, height),
+        *_halts(replay, scale, height),
+        _label("stage", top_band + BAND / 2),
+        *_stages(replay, scale, top_band),
+        _label("to everybody", top_ticks + TICKS / 2),
+        *_to_all(replay, scale, top_ticks),
+    ]
+    for place, person in enumerate(people):
+        top = top_people + LANE * place
+        parts.append(_label(names.get(person, person), top + LANE / 2))
+        parts += _person(replay, person, scale, top)
+    parts.append(_label("faults", top_faults + MARKS / 2))
+    if not spans:
+        parts.append(_text(LEFT, top_faults + MARKS / 2, "none", "dim"))
+    for (fault, begun, over), row in zip(spans, rows, strict=True):
+        y = top_faults + MARKS * row + MARKS / 2
+        parts += _fault(fault, numbers.get(fault.id, 0), scale.x(begun), scale.x(over), y)
+    return (
+        f'<svg role="img" viewBox="0 0 {WIDTH} {height:g}" class="timeline">'
+        + "".join(parts)
+        + "</svg>"
+    )
+
+
+def stages_of(replays: Sequence[Replay]) -> list[str]:
+    """Return the stages that came about, in the order in which they first did."""
+    return list(dict.fromkeys(done.state.stage for replay in replays for done in replay.done))
+
+
+def _axis(scale: Scale, height: float) -> Iterator[str]:
+    for where, words in scale.ticks():
+        x = scale.x(where)
+        yield f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{AXIS - 6}" y2="{height:g}"/>'
+        last = x + LETTER * len(words) > WIDTH - 4
+        anchor = "end" if last else "start" if not where else "middle"
+        yield _text(x, 10, words, "dim", anchor)
+
+
+def _halts(replay: Replay, scale: Scale, height: float) -> Iterator[str]:
+    """Shade the time in which the robot stood still because of a critical fault."""
+    begun: float | None = None
+    for moment in replay.moments:
+        kind = moment.what.move.kind if isinstance(moment.what, Moved) else ""
+        if kind == "halted":
+            begun = scale.at(moment.seconds, moment.step)
+        elif kind in ("cleared", "given up") and begun is not None:
+            yield _halt(scale, Span(begun, scale.at(moment.seconds, moment.step)), height)
+            begun = None
+    if begun is not None:
+        yield _halt(scale, Span(begun, scale.end), height)
+
+
+def _halt(scale: Scale, span: Span, height: float) -> str:
+    x = scale.x(span.begun)
+    wide = max(3.0, scale.x(span.over) - x)
+    return (
+        f'<rect class="halt" x="{x:.1f}" y="{AXIS - 4}" width="{wide:.1f}" '
+        f'height="{height - AXIS:g}"><title>Tangy stood still</title></rect>'
+    )
+
+
+def _stages(replay: Replay, scale: Scale, top: float) -> Iterator[str]:
+    order = stages_of([replay])
+    for stage, steps in groupby(replay.done, key=lambda done: done.state.stage):
+        some = list(steps)
+        begun = some[0].begun if scale.timed else some[0].number - 1.0
+        over = some[-1].over if scale.timed else float(some[-1].number)
+        x, end = scale.x(begun), scale.x(over)
+        ink = order.index(stage) % SERIES + 1
+        yield (
+            f'<rect class="stage s{ink}" x="{x:.1f}" y="{top}" '
+            f'width="{max(1.0, end - x - 0.8):.1f}" height="{BAND}" rx="2">'
+            f"<title>{escape(stage)}</title></rect>"
+        )
+        if end - x > LETTER * len(stage) + 8:
+            yield _text((x + end) / 2, top + BAND / 2, stage, "ink", "middle")
+
+
+def _to_all(replay: Replay, scale: Scale, top: float) -> Iterator[str]:
+    """Mark what was done for everybody: a tick for each call, a taller one for all else."""
+    for done in replay.done:
+        if done.target is not None or done.after.place in replay.game.people:
+            continue
+        x = scale.x(done.begun if scale.timed else done.number)
+        rise = 5 if done.draws else 10
+        middle = top + TICKS / 2
+        yield (
+            f'<line class="tick{"" if done.right else " wrong"}" x1="{x:.1f}" x2="{x:.1f}" '
+            f'y1="{middle - rise:g}" y2="{middle + rise:g}">'
+            f"<title>{escape(done.behaviour)}</title></line>"
+        )
+
+
+def _person(replay: Replay, person: str, scale: Scale, top: float) -> Iterator[str]:
+    middle = top + LANE / 2
+    yield f'<line class="base" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{middle}" y2="{middle}"/>'
+    asking = _spans(replay, scale, lambda done: _asks(done, person))
+    for span in asking:
+        x, end = scale.x(span.begun), scale.x(span.over)
+        yield (
+            f'<rect class="asks" x="{x:.1f}" y="{middle - 2}" width="{max(2.0, end - x):.1f}" '
+            f'height="4"><title>asks for help</title></rect>'
+        )
+    for span in _spans(replay, scale, lambda done: done.after.place == person):
+        x, end = scale.x(span.begun), scale.x(span.over)
+        yield (
+            f'<rect class="visit" x="{x:.1f}" y="{middle - 8}" width="{max(3.0, end - x):.1f}" '
+            f'height="16" rx="3"><title>Tangy is here</title></rect>'
+        )
+    for moment, answer in replay.answers:
+        if answer.person == person:
+            yield _answer(scale.x(scale.at(moment.seconds, moment.step)), middle, answer)
+
+
+def _asks(done: Done, person: str) -> bool:
+    return any(user.id == person and user.request == "AR" for user in done.after.users)
+
+
+def _spans(replay: Replay, scale: Scale, holds: Callable[[Done], bool]) -> Iterator[Span]:
+    """Yield the stretches from the end of one behaviour to the next in which something holds."""
+    begun: float | None = None
+    for done in replay.done:
+        here = scale.begun[done.number]
+        if holds(done) and begun is None:
+            begun = here
+        elif not holds(done) and begun is not None:
+            yield Span(begun, here)
+            begun = None
+    if begun is not None:
+        yield Span(begun, scale.end)
+
+
+def _answer(x: float, y: float, answer: Answered) -> str:
+    """Mark what a person did: a full dot, a ring where it came late, a cross where it never did."""
+    if answer.complied:
+        return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>complied</title></circle>'
+    if answer.followed or answer.complied is None:
+        words = "followed late" if answer.followed else "no answer yet"
+        return f'<circle class="late" cx="{x:.1f}" cy="{y}" r="4.4"><title>{words}</title></circle>'
+    arm = 4.2
+    return (
+        f'<path class="no" d="M{x - arm:.1f} {y - arm:.1f}L{x + arm:.1f} {y + arm:.1f}'
+        f'M{x - arm:.1f} {y + arm:.1f}L{x + arm:.1f} {y - arm:.1f}">'
+        "<title>did not follow</title></path>"
+    )
+
+
+def _fault_span(replay: Replay, fault: Fault, scale: Scale) -> tuple[float, float]:
+    """Return from where to where a fault was dealt with; to the end where it stayed."""
+    begun, over = None, scale.end
+    for moment in replay.moments:
+        if getattr(moment.what, "fault", None) is not fault:
+            continue
+        where = scale.at(moment.seconds, moment.step)
+        begun = where if begun is None else begun
+        if isinstance(moment.what, Moved) and moment.what.move.kind in ENDINGS:
+            over = where
+    begun = 0.0 if begun is None else begun
+    return begun, over if fault.status != OVER else max(over, begun)
+
+
+def _stacked(spans: Sequence[tuple[float, float]]) -> list[int]:
+    """Give every mark the first row in which it does not lie on another."""
+    ends: list[float] = []
+    rows: list[int] = []
+    for begun, over in spans:
+        left, right = begun - 12, max(over, begun) + 14
+        row = next((n for n, end in enumerate(ends) if end <= left), len(ends))
+        if row == len(ends):
+            ends.append(0.0)
+        ends[row] = right
+        rows.append(row)
+    return rows
+
+
+def _fault(fault: Fault, number: int, x: float, end: float, y: float) -> Iterator[str]:
+    kind = "critical" if fault.critical else "minor"
+    stays = fault.status != OVER
+    if end - x > 2:
+        yield (
+            f'<line class="mend {kind}{" stays" if stays else ""}" x1="{x:.1f}" x2="{end:.1f}" '
+            f'y1="{y}" y2="{y}"/>'
+        )
+    if not stays and end - x > 12:
+        yield (
+            f'<line class="mend {kind}" x1="{end:.1f}" x2="{end:.1f}" y1="{y - 6}" y2="{y + 6}"/>'
+        )
+    words = f"{number}. {fault.name} ({_status(fault)})"
+    shape = (
+        f'<path d="M{x:.1f} {y - 13}L{x + 13:.1f} {y}L{x:.1f} {y + 13}L{x - 13:.1f} {y}Z"/>'
+        if fault.critical
+        else f'<circle cx="{x:.1f}" cy="{y}" r="10"/>'
+    )
+    yield (
+        f'<g class="fault {kind}"><title>{escape(words)}</title>{shape}'
+        f"{_text(x, y, str(number), 'on', 'middle')}</g>"
+    )
+
+
+def _status(fault: Fault) -> str:
+    if fault.status == OVER:
+        return "over"
+    return "went on with it" if fault.status == BORNE else "left open"
+
+
+def _label(words: str, y: float) -> str:
+    most = int((LEFT - 10) / LETTER)
+    short = words if len(words) <= most else words[: most - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    return _text(LEFT - 10, y, short, "ink", "end")
+
+
+def _text(x: float, y: float, words: str, kind: str, anchor: str = "start") -> str:
+    return (
+        f'<text class="{kind}" x="{x:.1f}" y="{y + 4.5:.1f}" text-anchor="{anchor}">'
+        f"{escape(words)}</text>"
+    )

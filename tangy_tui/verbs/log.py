@@ -1,0 +1,161 @@
+"""`tangy log`: the games that were played, step by step, and the report of a session."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, Json, print_json, print_line, say_notices
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.store import Store
+    from tangy_tui.monitoring.games import Game
+    from tangy_tui.monitoring.replay import Moment, Replay
+
+app = typer.Typer(
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    help="The games that were played: which there were, step by step, and as a report.",
+)
+
+Which = Annotated[
+    str,
+    typer.Argument(metavar="GAME", help="A number of `tangy log list`, an id, or 'last'."),
+]
+Session = Annotated[
+    str,
+    typer.Argument(
+        metavar="GAME", help="A number, an id, 'last'; or together: 'all', a day (2026-11-21)."
+    ),
+]
+Of = Annotated[
+    str, typer.Option("--activity", help="The activity's TOML file, if it does not ship.")
+]
+
+
+@app.command("list")
+def log_list(data: Data = None, as_json: Json = False) -> None:
+    """List the games, the newest last."""
+    from tangy_tui.monitoring.games import read_games
+
+    with _open(data) as (store, _):
+        games = read_games(store)
+    if as_json:
+        print_json([game.to_json() for game in games])
+        return
+    from tangy_tui.ui.log_report import print_games
+
+    print_games(games)
+
+
+@app.command("show")
+def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = False) -> None:
+    """Tell one game step by step: what was seen, done and said, responses, faults."""
+    from tangy_tui.log_lines import replay_lines
+    from tangy_tui.monitoring.games import find_game, read_games
+    from tangy_tui.monitoring.replay import read_replays
+
+    with _open(data) as (store, names):
+        found = find_game(read_games(store), game)
+        known = _activities([found], activity)
+        (replay,) = read_replays(store, [found], known, names)
+    if as_json:
+        print_json(_document(replay))
+        return
+    _say_unknown([found], known)
+    for line in replay_lines(replay, known.get(found.activity), lambda id: names.get(id, id)):
+        print_line(plain(line))
+
+
+@app.command("report")
+def log_report(
+    game: Session = "last",
+    html: Annotated[
+        Path | None, typer.Option("--html", help="Write the report as one page to this file.")
+    ] = None,
+    activity: Of = "",
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Report on a session: what happened, faults and recoveries, people, what to look after."""
+    from tangy_tui.log_lines import session_lines
+    from tangy_tui.monitoring.games import find_games, read_games
+    from tangy_tui.monitoring.session import read_session
+    from tangy_tui.pages import page
+
+    if html is not None:
+        page.check_place(html, "--html")
+    with _open(data) as (store, names):
+        found = find_games(read_games(store), game)
+        known = _activities(found, activity)
+        session = read_session(store, found, known, names)
+    if html is not None:
+        from tangy_tui.pages.session import session_page
+
+        page.write(html, session_page(session), "--html")
+    if as_json:
+        print_json(session.to_json())
+    elif html is not None:
+        print(plain(f"The report is in {html}."))
+    else:
+        for line in session_lines(session):
+            print_line(plain(line))
+
+
+@contextmanager
+def _open(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
+    """Open the log for reading, with the names of the people."""
+    from tangy_profiles.person import MOST_PEOPLE, load_people
+    from tangy_profiles.store import Store
+    from tangy_tui.house import data_folder
+
+    with Store.open(data_folder(data), write=False) as store:
+        say_notices(store.notices)
+        names = {person.id: person.name for person in load_people(MOST_PEOPLE)}
+        yield store, names | store.names()
+
+
+def _activities(games: Sequence[Game], file: str) -> dict[str, Activity]:
+    """Load the activities of games, as far as they are to be had.
+
+    Raises:
+        TangyError: the file that was named has a mistake, or none of the games is of it.
+    """
+    from tangy_profiles.activity import load_activity, shipped_activities
+
+    wanted = {game.activity for game in games}
+    known = {name: load_activity(name) for name in sorted(wanted & shipped_activities().keys())}
+    if file:
+        own = load_activity(file)
+        if own.name not in wanted:
+            played = ", ".join(sorted(wanted))
+            raise TangyError(plain(f"--activity {file}: is {own.name!r}; played was {played}."))
+        known[own.name] = own
+    return known
+
+
+def _say_unknown(games: Sequence[Game], known: dict[str, Activity]) -> None:
+    from tangy_tui.monitoring.session import unknown_words
+
+    say_notices([unknown_words(name) for name in sorted({g.activity for g in games} - set(known))])
+
+
+def _document(replay: Replay) -> dict[str, Any]:
+    return {
+        **replay.game.to_json(),
+        "seconds": replay.seconds if replay.timed else None,
+        "moments": [_moment(moment, replay.timed) for moment in replay.moments],
+        "fault_list": [fault.document() for fault in replay.faults],
+    }
+
+
+def _moment(moment: Moment, timed: bool) -> dict[str, Any]:
+    when = {"seconds": moment.seconds if timed else None, "step": moment.step, "at": moment.at}
+    return {**moment.to_json(), **when}
