@@ -31,6 +31,7 @@ from tangy_tui.monitoring.drill_rounds import (
     QUIET,
     QUIET_KINDS,
     Round,
+    RoundKind,
     Tabletop,
     draw_rounds,
     round_kinds,
@@ -121,12 +122,10 @@ def test_different_seeds_draw_different_drills() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
-def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: object) -> None:
-    assert kind in KINDS
-    wanted = next(one for one in KINDS if one == kind)
-    shown = table.play(3, wanted, Random(1))
-    rule = BOOK.rule(wanted.code)
-    assert (shown.number, shown.kind, shown.rule) == (3, wanted, rule)
+def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) -> None:
+    shown = table.play(3, kind, Random(1))
+    rule = BOOK.rule(kind.code)
+    assert (shown.number, shown.kind, shown.rule) == (3, kind, rule)
     assert shown.fault is not None
     assert (shown.fault.code, shown.fault.recovery) == (rule.code, shown.recovery)
     assert shown.noticed == shown.fault.why
@@ -194,8 +193,8 @@ def test_what_cannot_come_about_is_replaced_by_something_of_its_class(
     wanted = next(kind for kind in KINDS if BOOK.rule(kind.code).recovery[0] == "user")
     real = Tabletop._try
 
-    def hardly(self: Tabletop, number: int, kind: object, seed: int) -> Round | None:
-        return None if kind == wanted else real(self, number, kind, seed)  # type: ignore[arg-type]
+    def hardly(self: Tabletop, number: int, kind: RoundKind, seed: int) -> Round | None:
+        return None if kind == wanted else real(self, number, kind, seed)
 
     monkeypatch.setattr(Tabletop, "_try", hardly)
     shown = table.play(1, wanted, Random(1))
