@@ -142,7 +142,9 @@ class FaultyWorld(SimulatedWorld):
         if behaviour.effect in ("go to user", "go to front"):
             return True
         if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
-            return tracker.allows(behaviour)
+            # With nothing left to mend it would look like a request that stays open.
+            left = behaviour.closes != "always" or tracker.seen != self._settled
+            return tracker.allows(behaviour) and left
         stage = tracker.state().stage
         return any(
             r.stage == stage

@@ -237,10 +237,10 @@ class Facilitation:
         (state, decision), self.question = (self.question.state, self.question.decision), None
         with self._store.transaction():
             done = self._act(state, decision, behaviour, target, teacher)
-            acted = done[0]
-            shown = Step(
-                behaviour.name, target, state, acted.after, completed=acted.outcome.completed
-            )
+            acted, response, _ = done
+            # What follows where a person did not do it is no effect to be expected from now on.
+            did = acted.outcome.completed and (response is None or response.followed)
+            shown = Step(behaviour.name, target, state, acted.after, completed=did)
             lesson = self._answers.learn(
                 self.policy, shown, teacher=teacher, seed=self._seed, people=self.world.people
             )

@@ -255,11 +255,14 @@ class Supervision:
         if question is None:
             return []
         events = self.game.answer(behaviour, target, teacher)
+        taught = any(isinstance(event, Taught) for event in events)
         told: list[Event] = []
-        if any(isinstance(event, Taught) for event in events):
-            self._detector.effects = self._effects_of(self.policy)
+        if taught:
             told += self._answered(question, Move("taught", self.seconds, by=teacher))
-        return self._after(events) + told
+        found = self._after(events)  # by what was expected before the answer was learnt
+        if taught:
+            self._detector.effects = self._effects_of(self.policy)
+        return found + told
 
     def accept(self, by: str) -> list[Event]:
         """Let a teacher say that what happened is all right; it is expected from now on."""

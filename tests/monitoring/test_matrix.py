@@ -1,0 +1,57 @@
+"""Every kind of fault with every behaviour: noticed at once, of the right class, of the right cause.
+
+`tests/bench/faults.py` measures the same over many more seeds.
+"""
+
+from __future__ import annotations
+
+from tangy_profiles.faults import load_faults
+from tangy_profiles.robot import load_robot
+from tangy_sim.injection import KINDS
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.monitoring.diagnosis import diagnose
+from tangy_tui.monitoring.scripted_people import answer_by_script
+from tests.monitoring.conftest import Supervise, world_of
+
+WITH_MARKS = ("incorrectly marked", "missing numbers")
+
+
+def test_a_robot_that_was_carried_off_has_not_lost_sight_of_a_card() -> None:
+    found = {
+        "localisation.fit": 0.55,
+        "localisation.spread": 1.6,
+        "mismatch.card": "lost from view",
+        "mismatch.request": "open",
+        "behaviour.effect": "clear wrong marks",
+    }
+    (told,) = diagnose(load_faults(load_robot()), found)
+    assert told.rule.code == "carried-off"
+
+
+def test_what_comes_to_nothing_with_nothing_left_to_mend_is_a_request_that_stays_open(
+    supervise: Supervise,
+) -> None:
+    game = supervise(seed=3)
+    world, person = world_of(game), game.world.people[0]
+    closing = next(b for b in world.activity.behaviours.values() if b.closes == "always")
+    world.tracker.ask(person)
+    world.tracker.arrive(person)
+    world.tracker.seen = world.activity.card_states[-1].name
+    action = world.activity.action(closing, person, None)
+    assert world.can_show(KINDS["request-stuck"], action)
+    assert not world.can_show(KINDS["no-effect"], action)
+
+
+def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
+    supervise: Supervise,
+) -> None:
+    game = supervise(seed=3)
+    game.begin()
+    while game.world.observe().situation.user_state not in WITH_MARKS:
+        _ = game.begin() if game.over else game.step()
+    world_of(game).inject("never-complies")
+    game.game.ask("Something is wrong here.", "Say what to do.", "")
+    acted = next(e for e in answer_by_script(game) if isinstance(e, Acted))
+    assert acted.outcome.response is not None and not acted.outcome.response.followed
+    known = game._effects_of(game.policy).values[acted.action.behaviour.name]
+    assert known["what was asked about"] == {"settled"}
