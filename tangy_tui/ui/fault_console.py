@@ -179,17 +179,15 @@ class FaultConsole:
     async def _attend(self) -> None:
         """Put what halts the robot, one fault after the other, until all is cleared or given up."""
         supervision, app = self.supervision, self._screen.app
-        try:
-            while (fault := supervision.halted) is not None and not supervision.over:
-                app.clear_notifications()  # they would lie over it
-                dialog = self._dialog = CriticalDialog(self, fault, supervision.robot)
-                dialog.show(self._screen.query_one(StatusLine).status)
-                await app.push_screen_wait(dialog)
-                while dialog.is_attached:  # noqa: ASYNC110 - there is no event for it
-                    await asyncio.sleep(0)
-        finally:
-            self._dialog = None
-            self._free.set()
+        while (fault := supervision.halted) is not None and not supervision.over:
+            app.clear_notifications()  # they would lie over it
+            dialog = self._dialog = CriticalDialog(self, fault, supervision.robot)
+            dialog.show(self._screen.query_one(StatusLine).status)
+            await app.push_screen_wait(dialog)
+            while dialog.is_attached:  # noqa: ASYNC110 - there is no event for it
+                await asyncio.sleep(0)
+        self._dialog = None
+        self._free.set()
 
     def acknowledge(self, fault: Fault | None = None) -> None:
         """Say that a fault (default: the one that halts the robot) was seen."""

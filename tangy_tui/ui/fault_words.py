@@ -99,7 +99,9 @@ def _tries(fault: Fault, move: Move, book: FaultBook) -> str:
 
 def banner_words(fault: Fault, doing: str) -> str:
     """Write the banner of a fault: symbol, criticality, name, and what is done about it."""
-    return f"{mark_of(fault)} FAULT {kind_words(fault)}: {clean(fault.name)} -> {clean(doing)}"
+    return (
+        f"{mark_of(fault).strip()} FAULT {kind_words(fault)}: {clean(fault.name)} -> {clean(doing)}"
+    )
 
 
 def state_words(fault: Fault) -> str:

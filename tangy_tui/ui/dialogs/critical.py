@@ -57,9 +57,10 @@ class CriticalDialog(Dialog[None]):
 
     DEFAULT_CSS = """
     CriticalDialog > .box {
-        width: 76; padding: 0 1; margin-top: 1; border: heavy $error; border-title-color: $error;
+        width: 76; height: 1fr; max-height: 32; padding: 0 1;
+        border: heavy $error; border-title-color: $error;
     }
-    CriticalDialog Page { height: auto; max-height: 1fr; }
+    CriticalDialog Page { height: 1fr; }
     CriticalDialog .said { height: auto; color: $warning; text-style: bold; }
     CriticalDialog KeyLine { padding: 0; }
     """
@@ -134,6 +135,7 @@ class CriticalDialog(Dialog[None]):
 
     def on_stop(self, message: Stop) -> None:
         """Stay: the robot stands still, and the fault is still there."""
+        message.prevent_default()  # to a dialog of another kind STOP is a no
         self.say(STOPPED)
 
     def on_key(self, event: events.Key) -> None:
@@ -199,7 +201,7 @@ class CriticalDialog(Dialog[None]):
         lines += paragraph(still, width)
         lines += heading("What to do, and whom to call")
         lines += advice_lines(fault.advice, width)
-        lines += paragraph("Who to call: the expert for the robot (e).", width)
+        lines += paragraph("Call the expert for the robot with e.", width)
         pieces = evidence_of(fault, book, robot)
         pieces += ages_of(fault, book, robot, supervision.world.health())
         if pieces:

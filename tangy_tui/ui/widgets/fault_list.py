@@ -86,10 +86,9 @@ class FaultList(ChoiceList):
         self._typing, self.filter = False, ""
         self._write_all()
 
-    async def _on_key(self, event: events.Key) -> None:
+    def on_key(self, event: events.Key) -> None:
         """While words are typed, letters are letters and no keys."""
         if not self._typing:
-            await super()._on_key(event)
             return
         if event.key == "enter":
             self._typing = False
@@ -100,7 +99,6 @@ class FaultList(ChoiceList):
         elif event.is_printable and event.character and len(self.filter) < LONGEST:
             self.filter += event.character
         else:
-            await super()._on_key(event)
             return
         event.stop()
         event.prevent_default()
