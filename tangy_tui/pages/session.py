@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
-from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import Replay
 from tangy_tui.monitoring.session import Progress, Session
@@ -13,7 +13,7 @@ from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
-from tangy_tui.pages.timeline import SERIES, stages_of, timeline
+from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 
 MOST_DRAWN = 24
 """Games that are drawn on one page; of more, the last ones."""
@@ -57,13 +57,11 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 .before { fill: var(--paper); stroke: var(--dim); stroke-width: 1.6; }
 .after { fill: var(--series-1); stroke: var(--series-1); stroke-width: 2.6; }
 .key { display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; font-size: .85rem; color: var(--dim);
-  margin: .3rem 0; } .key span { white-space: nowrap; } .key svg { display: inline-block;
+  margin: .3rem 0; break-after: avoid; } .key span { white-space: nowrap; } .key svg { display: inline-block;
   width: 20px; height: 16px; vertical-align: -3px; margin-right: .3rem; }
 .timeline { min-width: 46rem; } .drawn { overflow-x: auto; }
 @media print { .timeline { min-width: 0; } .care, .moves li, .fault-told { break-inside: avoid; } }
-""" + "".join(
-    f".s{n} {{ fill: var(--series-{n}); }}\n" for n in range(1, SERIES + 1)
-)  # the stages' inks
+""" + "".join(f".s{n} {{ fill: var(--series-{n}); }}\n" for n in INKS)  # the stages' inks
 
 KEY = (
     ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', "Tangy is with them"),
@@ -114,13 +112,27 @@ def _head(session: Session) -> Iterator[str]:
         facts.append(("How it ended", _sentence(games[0].ending)))
     else:
         facts.append(("How they ended", _endings(session)))
+    facts.append(("Faults", _fault_sum(session)))
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
     yield f"<dl>{rows}</dl>"
 
 
+def _fault_sum(session: Session) -> str:
+    faults = session.faults
+    if not faults:
+        return "none"
+    there = sum(fault.status != OVER for fault in faults)
+    words = f"{len(faults)}, of which {sum(fault.critical for fault in faults)} critical"
+    return f"{words}; {there or 'none'} not over at the end"
+
+
 def _until(session: Session) -> str:
     ended = session.games[-1].ended
-    return day_and_time(ended) if ended is not None else "no end in the log"
+    if ended is None:
+        return "no end in the log"
+    begun = session.games[0].at.astimezone().date()
+    same = ended.astimezone().date() == begun
+    return f"{ended.astimezone():%H:%M}" if same else day_and_time(ended)
 
 
 def _how_long(session: Session) -> str:
@@ -164,27 +176,32 @@ def _timelines(session: Session) -> Iterator[str]:
     drawn = session.replays[-MOST_DRAWN:]
     if len(drawn) < len(session.replays):
         yield paragraph(f"The last {MOST_DRAWN} of {len(session.replays)} games are drawn.")
-    yield _key()
+    stages = stages_of(session.replays)
+    yield _key(stages)
     for replay in drawn:
         if len(session.replays) > 1:
             game = replay.game
             yield f"<h3>Game {game.number}, {escape(day_and_time(game.at))}</h3>"
             yield paragraph(_sentence(game.ending))
-        yield f'<div class="drawn">{_timeline(replay, numbers, session)}</div>'
+        yield f'<div class="drawn">{_timeline(replay, numbers, session, stages)}</div>'
 
 
-def _timeline(replay: Replay, numbers: dict[str, int], session: Session) -> str:
-    return figure(
-        timeline(replay, numbers, session.names),
-        f"Game {replay.game.number}: " + ("minutes in the game." if replay.timed else "its steps.")
-        + f" Stages: {', '.join(stages_of([replay])) or 'none'}.",
-    )  # fmt: skip
+def _timeline(
+    replay: Replay, numbers: dict[str, int], session: Session, stages: Sequence[str]
+) -> str:
+    axis = "by minutes in the game" if replay.timed else "step by step"
+    drawing = timeline(replay, numbers, session.names, stages)
+    return figure(drawing, f"Game {replay.game.number}, {axis}.")
 
 
-def _key() -> str:
+def _key(stages: Sequence[str]) -> str:
+    bands = [
+        (f'<rect class="stage {ink(stage, stages)}" x="1" width="18" height="16"/>', stage)
+        for stage in stages
+    ]
     marks = "".join(
-        f'<span><svg viewBox="0 0 20 16" aria-hidden="true">{mark}</svg>{words}</span>'
-        for mark, words in KEY
+        f'<span><svg viewBox="0 0 20 16" aria-hidden="true">{mark}</svg>{escape(words)}</span>'
+        for mark, words in (*bands, *KEY)
     )
     return f'<p class="key">{marks}</p>'
 
@@ -236,7 +253,8 @@ def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
             beliefs = []
             for belief in (one.before, one.after):
                 low, high = interval(belief.alpha, belief.beta)
-                beliefs.append(f"{belief.mean:.0%} ({low:.0%} to {high:.0%})")
+                words = f"{belief.mean:.0%} ({low:.0%} to {high:.0%})"
+                beliefs.append(words.replace(" ", "\N{NO-BREAK SPACE}"))
             yield (
                 person.name, strategy, one.used, one.complied, one.late, one.refused, *beliefs,
             )  # fmt: skip
@@ -295,7 +313,7 @@ def _times(replay: Replay, fault: Fault) -> Iterator[tuple[float, str, str]]:
     for moment in replay.moments:
         if getattr(moment.what, "fault", None) is fault:
             at = time_of_day(moment.at)
-            if type(moment.what).__name__ == "Moved":
+            if isinstance(moment.what, Moved):
                 move = next(moves)
                 words = move_words(move)
                 said = f' \N{EN DASH} "{move.speech}"' if move.speech else ""

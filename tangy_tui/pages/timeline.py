@@ -16,7 +16,8 @@ AXIS, BAND, TICKS, LANE, MARKS = 26, 26, 24, 26, 28
 """Heights: the axis, the stages, what is said to all, one person, one row of faults."""
 STEPS = (1, 2, 5, 10, 15, 20, 30, 60, 120, 240, 480)
 MOST_TICKS = 11
-SERIES = 6
+INKS = (1, 3, 4, 6, 5, 2)
+"""The page's inks for stages, in order; the one that looks like a fault's comes last."""
 LETTER = 7.2
 """About how wide a letter is."""
 
@@ -57,12 +58,15 @@ class Scale:
             yield float(tick * unit), words
 
 
-def timeline(replay: Replay, numbers: Mapping[str, int], names: Mapping[str, str]) -> str:
+def timeline(
+    replay: Replay, numbers: Mapping[str, int], names: Mapping[str, str], stages: Sequence[str]
+) -> str:
     """Draw the timeline of a game as an SVG element.
 
     Args:
         numbers: what stands on each fault's mark, by its id.
         names: of the people, by id.
+        stages: those of the session, in the order in which they get their inks.
     """
     scale = Scale(replay)
     people = list(replay.game.people)
@@ -78,7 +82,7 @@ def timeline(replay: Replay, numbers: Mapping[str, int], names: Mapping[str, str
         *_axis(scale, height),
         *_halts(replay, scale, height),
         _label("stage", top_band + BAND / 2),
-        *_stages(replay, scale, top_band),
+        *_stages(replay, scale, top_band, stages),
         _label("to everybody", top_ticks + TICKS / 2),
         *_to_all(replay, scale, top_ticks),
     ]
@@ -136,16 +140,19 @@ def _halt(scale: Scale, span: Span, height: float) -> str:
     )
 
 
-def _stages(replay: Replay, scale: Scale, top: float) -> Iterator[str]:
-    order = stages_of([replay])
+def ink(stage: str, stages: Sequence[str]) -> str:
+    """Return the class of a stage's band."""
+    return f"s{INKS[stages.index(stage) % len(INKS)]}"
+
+
+def _stages(replay: Replay, scale: Scale, top: float, stages: Sequence[str]) -> Iterator[str]:
     for stage, steps in groupby(replay.done, key=lambda done: done.state.stage):
         some = list(steps)
         begun = some[0].begun if scale.timed else some[0].number - 1.0
         over = some[-1].over if scale.timed else float(some[-1].number)
         x, end = scale.x(begun), scale.x(over)
-        ink = order.index(stage) % SERIES + 1
         yield (
-            f'<rect class="stage s{ink}" x="{x:.1f}" y="{top}" '
+            f'<rect class="stage {ink(stage, stages)}" x="{x:.1f}" y="{top}" '
             f'width="{max(1.0, end - x - 0.8):.1f}" height="{BAND}" rx="2">'
             f"<title>{escape(stage)}</title></rect>"
         )

@@ -13,35 +13,48 @@ from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
 from tangy_tui.ui.local_time import local_time
 
+SHORT = 8
+"""Characters of an id that are printed."""
+COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "ended")
+
 
 def print_games(games: Sequence[Game]) -> None:
-    """Print the games of a log, the newest last."""
+    """Print the games of a log, the newest last, and below it why some stopped early."""
     console = Console(highlight=False)
     if not games:
         console.print(NONE_YET)
         return
-    table = Table(title=Text("Games"), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
-    for column in ("", "id", "when", "activity", "policy", "steps", "faults", "how it ended"):
-        right = column in ("", "steps")
-        table.add_column(column, overflow="fold", justify="right" if right else "left")
+    table = Table(
+        title=Text("Games"), box=box.SIMPLE_HEAD, title_justify="left", padding=(0, 1, 0, 0)
+    )
+    for column in COLUMNS:
+        table.add_column(column, overflow="fold", no_wrap=column not in ("activity", "policy"))
     for game in games:
-        bad = game.ended is None or game.stopped is not None
         table.add_row(
             str(game.number),
-            game.id,
+            game.id[:SHORT],
             local_time(game.at.isoformat()),
             Text(plain(game.activity)),
             Text(plain(game.policy)),
             str(game.steps),
             _faults(game),
-            Text(plain(game.ending), style="yellow" if bad else ""),
+            _ended(game),
         )
     console.print(table)
+    for game in games:
+        if game.ended is None or game.stopped is not None:
+            console.print(Text(plain(f"Game {game.number}: {game.ending}")))
     console.print(Text("tangy log show 1: a game step by step. tangy log report 1: its report."))
+
+
+def _ended(game: Game) -> Text:
+    if game.ended is None:
+        return Text("no end", style="yellow")
+    return Text("to its end") if game.stopped is None else Text("stopped", style="yellow")
 
 
 def _faults(game: Game) -> Text:
     words = Text(str(game.critical + game.other))
     if game.critical:
-        words.append(f" ({game.critical} critical)", style="bold red")
+        words.append(f", {game.critical} critical", style="bold red")
     return words
