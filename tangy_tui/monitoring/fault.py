@@ -8,12 +8,17 @@ from typing import Any, TypeAlias
 
 from tangy_profiles.faults import FaultRule
 from tangy_profiles.health import Fact
+from tangy_profiles.person import MOST_PEOPLE, load_people
 from tangy_profiles.store import Event, Store
 from tangy_tui.learning.effects import Mismatch
 
 FAULT = "fault"
 RECOVERY = "recovery"
 ACCEPTED = "effect accepted"
+
+NAME = "{name}"
+"""What stands for a person's name in the log, from which names can be forgotten."""
+SOMEBODY = "somebody"
 
 OPEN, BORNE, OVER = "open", "borne", "over"
 """What a fault can be: still to be dealt with; there, but Tangy goes on without; over."""
@@ -57,9 +62,13 @@ class Move:
     remedy: str = ""
 
     def to_json(self) -> dict[str, Any]:
-        """Return the move as the log keeps it; what is empty is left out."""
+        """Return the move as `--json` prints it; what is empty is left out."""
         body = {name: getattr(self, name) for name in self.__slots__}
         return {name: value for name, value in body.items() if value or name == "seconds"}
+
+    def called(self, name: str) -> Move:
+        """Return the move with the person's name where the log only has a slot for it."""
+        return replace(self, speech=_named(self.speech, name), image=_named(self.image, name))
 
     @classmethod
     def from_json(cls, body: Mapping[str, Any]) -> Move:
@@ -73,24 +82,24 @@ class Fault:
 
     `seconds` is the time in the game at which it was diagnosed, `step` the last step before that,
     and `behaviour` what had been executed, if it was noticed by that. `why` is its evidence in
-    words, `console` what staff are told.
+    words. `texts` are the name of the fault, what staff are told, and their steps; {name} stands
+    in them for the person, who is `called` something: the log never holds a name.
     """
 
     id: str
     game: str
     code: str
-    name: str
     critical: bool
     recovery: str
     step: int
     seconds: float
     behaviour: str
     person: str | None
-    console: str
+    called: str
+    texts: tuple[str, ...]
     why: str
     evidence: Mapping[str, Fact]
     mismatches: tuple[Mismatch, ...]
-    advice: tuple[str, ...]
     moves: list[Move] = field(default_factory=list)
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
@@ -104,6 +113,26 @@ class Fault:
             self.status = OVER
         elif move.kind == "went on":
             self.status = BORNE
+
+    @property
+    def name(self) -> str:
+        """What the fault is called."""
+        return _named(self.texts[0], self.called)
+
+    @property
+    def console(self) -> str:
+        """What staff are told."""
+        return _named(self.texts[1], self.called)
+
+    @property
+    def advice(self) -> tuple[str, ...]:
+        """What staff should do, step by step."""
+        return tuple(_named(text, self.called) for text in self.texts[2:])
+
+    @property
+    def unnamed(self) -> str:
+        """The fault and what staff are told, in words that the log may keep."""
+        return _named(f"{self.texts[0]}: {self.texts[1]}", SOMEBODY)
 
     @property
     def asks_only(self) -> bool:
@@ -131,13 +160,13 @@ class Fault:
             "game": self.game,
             "fault": self.id,
             "code": self.code,
-            "name": self.name,
+            "name": self.texts[0],
             "criticality": "critical" if self.critical else "non-critical",
             "recovery": self.recovery,
             "step": self.step,
             "seconds": self.seconds,
             "behaviour": self.behaviour,
-            "console": self.console,
+            "console": self.texts[1],
             "why": self.why,
             "evidence": dict(self.evidence),
             "mismatches": [
@@ -149,13 +178,16 @@ class Fault:
                 }
                 for m in self.mismatches
             ],
-            "advice": list(self.advice),
+            "advice": list(self.texts[2:]),
         }
 
     def document(self) -> dict[str, Any]:
         """Return the fault with what was done about it, as `--json` prints it."""
         return {
             **self.to_json(),
+            "name": self.name,
+            "console": self.console,
+            "advice": list(self.advice),
             "person": self.person,
             "status": self.status,
             "ladder": list(self.ladder),
@@ -185,14 +217,18 @@ FaultEvent: TypeAlias = Diagnosed | Moved
 def read_faults(store: Store, game: str | None = None) -> list[Fault]:
     """Read the faults of a game (of all games) with their moves from the log, in order."""
     return fold_faults(
-        event
-        for event in store.events(FAULT, RECOVERY)
-        if game is None or event.body["game"] == game
+        (
+            event
+            for event in store.events(FAULT, RECOVERY)
+            if game is None or event.body["game"] == game
+        ),
+        store.names(),
     )
 
 
-def fold_faults(events: Iterable[Event]) -> list[Fault]:
-    """Put faults and their moves together from their events."""
+def fold_faults(events: Iterable[Event], names: Mapping[str, str]) -> list[Fault]:
+    """Put faults and their moves together from their events; `names` are what people are called."""
+    known = {**{person.id: person.name for person in load_people(MOST_PEOPLE)}, **names}
     found: dict[str, Fault] = {}
     for event in events:
         body = event.body
@@ -201,36 +237,35 @@ def fold_faults(events: Iterable[Event]) -> list[Fault]:
                 id=body["fault"],
                 game=body["game"],
                 code=body["code"],
-                name=body["name"],
                 critical=body["criticality"] == "critical",
                 recovery=body["recovery"],
                 step=int(body["step"]),
                 seconds=float(body["seconds"]),
                 behaviour=body["behaviour"],
                 person=event.person,
-                console=body["console"],
+                called=known.get(event.person, event.person) if event.person else SOMEBODY,
+                texts=(body["name"], body["console"], *body["advice"]),
                 why=body["why"],
                 evidence=body["evidence"],
                 mismatches=tuple(
                     replace(Mismatch(**one), expected=tuple(one["expected"]))
                     for one in body["mismatches"]
                 ),
-                advice=tuple(body["advice"]),
                 at=event.at,
             )
         elif body["fault"] in found:
-            found[body["fault"]].add(Move.from_json(body))
+            fault = found[body["fault"]]
+            fault.add(Move.from_json(body).called(fault.called))
     return list(found.values())
 
 
-def rule_texts(rule: FaultRule, name: str, object: str, why: str) -> dict[str, Any]:
-    """Return the texts of a rule with person, object and evidence filled in."""
+def rule_texts(rule: FaultRule, object: str, why: str) -> tuple[str, ...]:
+    """Return the texts of a rule with object and evidence filled in, but not the person."""
+    return tuple(
+        rule.fill(text, name=NAME, object=object, why=why)
+        for text in (rule.name, rule.console, *rule.advice)
+    )
 
-    def fill(text: str) -> str:
-        return rule.fill(text, name=name, object=object, why=why)
 
-    return {
-        "name": fill(rule.name),
-        "console": fill(rule.console),
-        "advice": tuple(fill(step) for step in rule.advice),
-    }
+def _named(text: str, name: str) -> str:
+    return text.replace(NAME, name)

@@ -169,7 +169,8 @@ def _events(store: Store, games: Sequence[Game]) -> Iterator[Event]:
 def _replay(
     game: Game, events: Sequence[Event], activity: Activity | None, names: Mapping[str, str]
 ) -> Replay:
-    replay = Replay(game, faults=fold_faults(e for e in events if e.kind in (FAULT, RECOVERY)))
+    told = (event for event in events if event.kind in (FAULT, RECOVERY))
+    replay = Replay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = dict.fromkeys(faults, 0)
     step = 0

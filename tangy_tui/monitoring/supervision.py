@@ -36,9 +36,11 @@ from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 from tangy_tui.monitoring.fault import (
     BORNE,
     FAULT,
+    NAME,
     OPEN,
     OVER,
     RECOVERY,
+    SOMEBODY,
     Diagnosed,
     Fault,
     FaultEvent,
@@ -293,7 +295,9 @@ class Supervision:
         if fault is not None:
             told += self._move(fault, Move("given up", self.seconds))
         if halted is not None:
-            return told + self._stop(f"Tangy was halted. {halted.name}: {halted.console}")
+            return told + self._stop(f"Tangy was halted. {halted.unnamed}")
+        if fault is not None and question is not None and question.fault:
+            return told + self._stop(f"{fault.unnamed} {question.remedy}")
         return told + self._leave_open() + list(self.game.give_up())
 
     def leave(self) -> list[Event]:
@@ -361,7 +365,6 @@ class Supervision:
     def _keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
         rule = diagnosis.rule
         why = evidence_words(diagnosis.evidence, diagnosis.mismatches, self.robot)
-        name = self._name(person) if person is not None else "Somebody"
         fault = Fault(
             id=uuid4().hex[:12],
             game=self.game.game,
@@ -373,10 +376,11 @@ class Supervision:
             behaviour=acted.action.behaviour.name if acted is not None else "",
             person=person,
             why=why,
+            called=self._name(person) if person is not None else SOMEBODY,
+            texts=rule_texts(rule, self.world.activity.object, why),
             evidence=diagnosis.evidence,
             mismatches=diagnosis.mismatches,
             at=self._store.now().isoformat(),
-            **rule_texts(rule, name, self.world.activity.object, why),
         )
         self._times[fault.code, fault.person, fault.behaviour] += 1
         times = self._times[fault.code, fault.person, fault.behaviour]
@@ -419,10 +423,9 @@ class Supervision:
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         self._tried[fault.id] += 1
         attempt = self._tried[fault.id]
-        told = self._move(
-            fault, Move("asked", self.seconds, attempt=attempt, speech=speech, image=image)
-        )
-        self._remedy(fault, "ask", speech, image)
+        move = Move("asked", self.seconds, attempt=attempt, speech=speech, image=image)
+        told = self._move(fault, move)
+        self._remedy(fault, "ask", move.called(fault.called))
         return told + self._judge(fault, rule, attempt)
 
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
@@ -443,7 +446,7 @@ class Supervision:
             image=image,
         )
         told = self._move(fault, move)
-        self._remedy(fault, rule.remedy, speech, image)
+        self._remedy(fault, rule.remedy, move.called(fault.called))
         if rule.remedy == "set aside":
             self._detector.forgive(fault.person)
         return told + self._judge(fault, rule, attempt)
@@ -492,15 +495,14 @@ class Supervision:
             return closed or user.activity != self.world.activity.unread
         return closed
 
-    def _remedy(self, fault: Fault, kind: str, speech: str = "", image: str = "") -> None:
-        rule = self._rules[fault.id]
-        remedy = Remedy(kind, fault.code, rule.device, fault.person, speech, image)
-        self.seconds += self.world.recover(remedy)
+    def _remedy(self, fault: Fault, kind: str, move: Move | None = None) -> None:
+        device = self._rules[fault.id].device
+        said = ("", "") if move is None else (move.speech, move.image)
+        self.seconds += self.world.recover(Remedy(kind, fault.code, device, fault.person, *said))
 
     def _text(self, fault: Fault, text: str) -> str:
-        name = self._name(fault.person) if fault.person is not None else ""
-        rule = self._rules[fault.id]
-        return rule.fill(text, name=name, object=self.world.activity.object, why=fault.why)
+        rule, object = self._rules[fault.id], self.world.activity.object
+        return rule.fill(text, name=NAME, object=object, why=fault.why)
 
     def _asked_about(self, question: Unsure | None) -> Fault | None:
         """Return the fault about which Tangy asks a teacher."""
@@ -528,7 +530,8 @@ class Supervision:
     def _move(self, fault: Fault, move: Move) -> list[Event]:
         body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
         self._store.append(RECOVERY, body, person=fault.person)
-        fault.add(move)
+        told = move.called(fault.called)
+        fault.add(told)
         if fault.status == OVER:
             self._there.remove(fault)
-        return [Moved(fault, move)]
+        return [Moved(fault, told)]

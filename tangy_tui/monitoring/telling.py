@@ -10,7 +10,12 @@ from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.fault import MOVES, Move
 
-_STATES = {"STALE": "nothing comes from it", "ERROR": "it reports an error", "WARN": "it warns"}
+_STATES = {
+    "OK": "all is well",
+    "STALE": "nothing comes from it",
+    "ERROR": "it reports an error",
+    "WARN": "it warns",
+}
 
 
 def evidence_words(evidence: Evidence, mismatches: Sequence[Mismatch], robot: Robot) -> str:

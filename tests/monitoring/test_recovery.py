@@ -336,3 +336,23 @@ def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House)
         assert ended(events).stopped is None or "halted" in str(ended(events).stopped)
     assert faults >= 60
     check_log(house.store)
+
+
+def test_no_name_of_a_person_gets_into_the_log(
+    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    for person in house.people:
+        house.rename(person, f"Zoe{person.id[-1]}")
+    kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
+    game = supervise(*kinds, seed=2, asks=False)
+    game._name = lambda person: f"Zoe{person[-1]}"
+    told: list[str] = []
+    for expert in (True, False):
+        play(game, expert=expert)
+        told += [f.console + "".join(m.speech for m in f.moves) for f in game.faults]
+    assert any("Zoe" in words for words in told)
+    logged = "".join(str(event.body) for event in house.store.events())
+    assert "Zoe" not in logged
+    read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(house.store)]
+    assert read == told
