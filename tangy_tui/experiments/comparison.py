@@ -13,6 +13,9 @@ from typing import Any
 SURE = 2.0
 """Standard errors beyond which a difference is not put down to chance."""
 
+TO_ITS_END = "to its end"
+"""How a game ended that was not stopped."""
+
 ENOUGH = 20
 """From so many on a share is also written as a percentage."""
 
@@ -30,8 +33,8 @@ class Row:
 
 
 def compare(document: Document) -> list[Row]:
-    """Return the rows for the document of either scenario."""
-    return _learning(document) if document["experiment"] == 1 else _persuasion(document)
+    """Return the rows for the document of a scenario."""
+    return {1: _learning, 2: _persuasion, 3: _recovery}[document["experiment"]](document)
 
 
 def number(value: float | None, digits: int = 2) -> str:
@@ -215,3 +218,68 @@ def _persuasion(document: Document) -> list[Row]:
             "altogether, so the share comes near to 100% and does not stay there.",
         ),
     ]
+
+
+RECOVERIES = {
+    "expert": "Critical: an expert is asked",
+    "continue": "Non-critical: Tangy goes on",
+    "user": "Non-critical: a user is asked",
+    "teacher": "Non-critical: a teacher is asked",
+}
+
+
+def _recovery(document: Document) -> list[Row]:
+    paper, games = document["paper"], document["games"]
+    scale = games / paper["games"]
+    rows = [
+        Row(
+            RECOVERIES[here["recovery"]],
+            f"{there['instances']} in {paper['games']} games, success {percent(there['success'])}",
+            f"{here['instances']} in {games}, success {percent(here['success'])}",
+            _recovered(here, there["instances"] * scale),
+        )
+        for there, here in zip(paper["faults"], document["faults"], strict=True)
+    ]
+    behaviours = sum(row["instances"] for row in paper["rows"]) / paper["games"]
+    mean = document["behaviours_per_game"]
+    alarms, missed = document["false_alarms"], document["missed"]
+    return [
+        *rows,
+        Row(
+            "Faults that were missed, and false alarms",
+            "not said",
+            f"{missed} of {document['induced']} missed; {many(alarms, 'false alarm')}",
+            "What devices report is simulated: this tests the rules and what follows from them, "
+            "and no sensor.",
+        ),
+        Row(
+            "Behaviours in a game",
+            number(behaviours),
+            number(mean),
+            f"{abs(mean / behaviours - 1):.0%} {'more' if mean > behaviours else 'fewer'}. "
+            "Repairs take time in which people ask for help, and what a fault made come to "
+            "nothing is done again.",
+        ),
+        Row(
+            "Games played to their end",
+            f"{paper['games']} of {paper['games']}",
+            of_all(document["ended"].get(TO_ITS_END, 0) / games, games),
+            "Here every expert mends what was diagnosed; the others are told of below."
+            if document["ended"].get(TO_ITS_END, 0) < games
+            else "Here every expert mends what was diagnosed.",
+        ),
+    ]
+
+
+def _recovered(row: Mapping[str, Any], asked: float) -> str:
+    """Say how many were induced, and how instances and these differ."""
+    words = [f"{many(row['induced'], 'fault')} induced"]
+    if row["again"]:
+        words.append(f"{row['again']} of them diagnosed once more")
+    if row["missed"]:
+        words.append(f"{row['missed']} missed")
+    if round(asked) != row["induced"]:
+        words.append(f"the paper's share would be {asked:.0f}")
+    if row["escalated"]:
+        words.append(f"{row['escalated']} needed more than the first recovery")
+    return "; ".join(words) + "."

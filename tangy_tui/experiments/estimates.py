@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import sqrt
-from statistics import fmean, stdev
+from math import ceil, sqrt
+from statistics import fmean, median, stdev
 from typing import Any
 
 
@@ -26,3 +26,12 @@ def share_interval(share: float, n: int) -> tuple[float, float]:
     middle = (share + z * z / (2 * n)) / (1 + z * z / n)
     half = z * sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
     return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
+
+
+def spread(values: Sequence[float]) -> dict[str, Any]:
+    """Return n, the median, and what 95 of 100 do not exceed (None of nothing)."""
+    ordered = sorted(values)
+    if not ordered:
+        return {"n": 0, "median": None, "p95": None}
+    at = ceil(0.95 * len(ordered)) - 1
+    return {"n": len(ordered), "median": median(ordered), "p95": ordered[at]}

@@ -210,3 +210,68 @@ def regrets(
     )
     figure.legend(columns=3)
     return figure.svg()
+
+
+MARKERS = {"expert": "X", "continue": "o", "user": "^", "teacher": "s"}
+"""The marker of each class of recovery; its colour is the series' of the same place."""
+
+
+def faults_by_game(games: Sequence[Mapping[str, Any]], names: Mapping[str, str]) -> str:
+    """Draw a line for each game, with a mark where a fault was diagnosed.
+
+    Args:
+        names: what each recovery is called.
+    """
+    figure = Figure("faults", height=1.2 + 0.2 * len(games))
+    (axes,) = figure.axes
+    for game in games:
+        axes.plot([0, game["steps"]], [game["number"]] * 2, color=LINE, linewidth=1.2, zorder=1)
+    for place, (recovery, marker) in enumerate(MARKERS.items()):
+        some = [
+            (fault["step"], game["number"])
+            for game in games
+            for fault in game["faults"]
+            if fault["recovery"] == recovery
+        ]
+        axes.plot(
+            [step for step, _ in some],
+            [number for _, number in some],
+            marker,
+            color=SERIES[place],
+            markersize=6,
+            label=names[recovery],
+        )
+    missed = [(o["step"], game["number"]) for game in games for o in game["induced"] if o["missed"]]
+    if missed:
+        axes.plot(*zip(*missed, strict=True), "|", color=INK, markersize=11, label="missed")
+    axes.invert_yaxis()
+    axes.set_yticks([game["number"] for game in games])
+    axes.grid(visible=False)
+    _named(axes, "Faults that were diagnosed", "behaviours", "game")
+    figure.legend(columns=5)
+    return figure.svg()
+
+
+def times_to_recover(games: Sequence[Mapping[str, Any]], names: Mapping[str, str]) -> str:
+    """Draw how long each recovery took, a line of marks for each class."""
+    figure = Figure("times", height=2.4)
+    (axes,) = figure.axes
+    for place, (recovery, marker) in enumerate(MARKERS.items()):
+        seconds = sorted(
+            fault["seconds"]
+            for game in games
+            for fault in game["faults"]
+            if fault["called_for"] == recovery and fault["seconds"] is not None
+        )
+        # Beside each other where they took the same time, so that each can be seen.
+        beside = [0.6 * (at + 1) / (len(seconds) + 1) - 0.3 for at in range(len(seconds))]
+        axes.plot(seconds, [place + up for up in beside], marker, color=SERIES[place], markersize=4)
+    axes.set_yticks(range(len(MARKERS)), [names[recovery] for recovery in MARKERS])
+    axes.invert_yaxis()
+    axes.set_xscale("symlog", linthresh=1)
+    axes.set_xlim(left=-0.2)
+    axes.set_xticks([0, 1, 5, 10, 25, 60, 300], ["0", "1", "5", "10", "25", "60", "300"])
+    axes.minorticks_off()
+    axes.grid(axis="x", color=LINE, linewidth=0.8)
+    _named(axes, "From the diagnosis until it was recovered from", "s in the simulated world", "")
+    return figure.svg()

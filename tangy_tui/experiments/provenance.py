@@ -16,11 +16,18 @@ ROOMS = (
     ("tangy_sim", ""),
     ("tangy_tui", "learning"),
     ("tangy_tui", "interaction"),
+    ("tangy_tui", "monitoring"),
     ("tangy_tui", "experiments"),
 )
 """The packages, and the folders in them, whose change may change a result."""
 
-ONLY_SHOWN = ("report.py", "figures.py", "page.py", "comparison.py", "published.py")
+ONLY_SHOWN = (
+    "report.py",
+    "recovery_report.py",
+    "figures.py",
+    "comparison.py",
+    "published.py",
+)
 """Files of these rooms that only show results."""
 
 PACKAGES = ("tangy", "numpy", "scikit-learn", "joblib", "matplotlib", "distributed")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
+from importlib.resources import files
 from types import MappingProxyType
+from typing import Any
 
 SCENARIO_ONE: Mapping[str, float] = MappingProxyType(
     {
@@ -28,3 +31,13 @@ SCENARIO_TWO: Mapping[str, float] = MappingProxyType(
 
 USERS = 4
 """How many people took part in every scenario of the paper."""
+
+SCENARIO_THREE: Mapping[str, Any] = MappingProxyType(
+    tomllib.loads(
+        files("tangy_tui.experiments").joinpath("table_two.toml").read_text(encoding="utf-8")
+    )
+)
+"""Table II, results of Scenario 3: rows of behaviours, and faults by the recovery they called for.
+
+It is read from a file, because it holds words of an activity.
+"""

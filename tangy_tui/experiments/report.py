@@ -7,6 +7,7 @@ from typing import Any
 
 from tangy_tui.experiments import figures
 from tangy_tui.experiments.comparison import compare, many, number, percent
+from tangy_tui.experiments.recovery_report import recovery
 from tangy_tui.pages.page import document as page
 from tangy_tui.pages.page import figure, heading, paragraph, table
 
@@ -15,6 +16,7 @@ Document = Mapping[str, Any]
 TITLES = {
     1: "Learning an activity from demonstrations",
     2: "Learning how to persuade",
+    3: "Noticing faults, and recovering from them",
 }
 METHOD_WORDS = {
     "thompson": "Thompson sampling (the paper's)",
@@ -29,7 +31,7 @@ METHOD_WORDS = {
 def report(document: Document) -> str:
     """Return the page for the document of a scenario; it is made from nothing else."""
     which = document["experiment"]
-    parts = _learning(document) if which == 1 else _persuasion(document)
+    parts = {1: _learning, 2: _persuasion, 3: recovery}[which](document)
     subtitle = (
         f"Scenario {which} of the paper, run again in simulation by Tangy "
         f"{document['versions']['tangy']}."

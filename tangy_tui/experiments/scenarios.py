@@ -1,4 +1,4 @@
-"""The two scenarios as whole documents: what came out, what the paper printed, and from what."""
+"""The three scenarios as whole documents: what came out, what the paper printed, and from what."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from tangy_sim import faulty
 from tangy_tui.experiments import (
     algorithms,
     incremental,
     mistakes,
     persuading,
     published,
+    recovering,
+    supervised,
     teachers,
     typing,
 )
@@ -53,6 +56,16 @@ class Persuading:
     activity: str
     users: int
     people: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Recovering:
+    """What Scenario 3 is asked for: people, games, and the seed of games and faults."""
+
+    activity: str
+    users: int
+    games: int
     seed: int
 
 
@@ -110,6 +123,31 @@ def persuasion(asked: Persuading, where: Where) -> dict[str, Any]:
             "convergence": f"{persuading.CONVERGED} optimal strategies in a row",
             "share kept by forgetting": algorithms.KEEP,
             "earlier people": f"{algorithms.EARLIER}, met {algorithms.MET} times each",
+        },
+        **_provenance(),
+    }
+
+
+def recovery(asked: Recovering, where: Where) -> dict[str, Any]:
+    """Run Scenario 3 in simulation and return its document (times are in the world's s)."""
+    played = recovering.run(asked.activity, asked.users, asked.games, asked.seed, where)
+    return {
+        "experiment": 3,
+        "simulated": True,
+        **played,
+        "paper": dict(published.SCENARIO_THREE),
+        "settings": {
+            "activity": activity_of(asked.activity).title,
+            "seed": asked.seed,
+            "games": asked.games,
+            "people": asked.users,
+            "demonstrations": f"{supervised.DEMONSTRATIONS}, guided",
+            "games with the same people": recovering.GAMES_A_PIECE,
+            "P(people at the table help)": faulty.HELPS,
+            "P(one turn finds the place)": faulty.FINDS_ITSELF,
+            "P(a restart helps)": faulty.STARTS_AGAIN,
+            "experts": "come in 5 minutes and mend what was diagnosed",
+            "teachers": "scripted: say what the activity expects",
         },
         **_provenance(),
     }

@@ -79,6 +79,33 @@ def second(
     _run(lambda where: persuasion(asked, where), data, jobs, dask, fresh, report, as_json)
 
 
+@app.command("3")
+def third(
+    games: Annotated[int, typer.Option(min=1, max=10_000, help="Games in all.")] = 20,
+    users: Annotated[int, typer.Option(min=1, max=8, help="People in a game.")] = 4,
+    simulated: Annotated[
+        bool, typer.Option("--simulated", help="With simulated devices and people.")
+    ] = False,
+    report: Report = None,
+    activity: ActivityName = "bingo",
+    jobs: Jobs = -1,
+    dask: Dask = None,
+    fresh: Fresh = False,
+    seed: Seed = 0,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Recover: games in which faults are induced, what was diagnosed, and what was done."""
+    from tangy_tui.experiments.scenarios import Recovering, recovery
+
+    if not simulated:
+        raise TangyError(
+            "The bench with devices is not there yet: run Scenario 3 with --simulated."
+        )
+    asked = Recovering(activity, users, games, seed)
+    _run(lambda where: recovery(asked, where), data, jobs, dask, fresh, report, as_json)
+
+
 def _run(
     scenario: Callable[[Where], dict[str, Any]],
     data: Path | None,

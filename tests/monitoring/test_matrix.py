@@ -1,4 +1,4 @@
-"""Every kind of fault with every behaviour: noticed at once, of the right class, of the right cause.
+"""Every kind of fault with every behaviour: noticed at once, with the right class and cause.
 
 `tests/bench/faults.py` measures the same over many more seeds.
 """

@@ -1,0 +1,185 @@
+"""Faults that are induced in games: how many of which class, which kinds, in which game and when.
+
+Chance draws the plan from a seed. A planned fault comes at its step, or with the first behaviour
+after it in which it can show. One that could not for long gives way to another of its class, and
+one that could not in its game comes in the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from random import Random
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action
+from tangy_profiles.faults import FaultBook, Remedy
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_sim.compliance import Preferences
+from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import AT_ONCE, KINDS, WAITING, Kind
+
+LATEST = 30
+"""Steps among which the one is drawn from which a fault may come; few games have fewer."""
+
+LONG = 20
+"""Steps that a planned fault waits to show before another kind of its class may come instead."""
+
+NOT_BOTH = (("voice-dead", "screen-dead"), ("requests-silent", "request-withdrawn"))
+"""Kinds of which a game has one: both together are a third fault, or the first hides the other."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A fault that is to come from some step of a game on; `others` are kinds of its class."""
+
+    kind: Kind
+    step: int
+    others: tuple[str, ...] = ()
+
+
+@dataclass
+class Induced:
+    """A fault that came about, from its step to the one at which it was lifted (None: never)."""
+
+    kind: Kind
+    step: int
+    seconds: float
+    lifted: int | None = None
+
+    @property
+    def could_show(self) -> bool:
+        """Whether there was something to be noticed of it."""
+        return self.kind.shows != WAITING or self.lifted is not None
+
+
+def recovery_of(kind: Kind, book: FaultBook) -> str:
+    """Return the recovery that is right for a kind: the first one of the rule for its code."""
+    return book.rule(kind.code).recovery[0]
+
+
+def kinds_by_recovery(book: FaultBook) -> dict[str, list[str]]:
+    """Return the names of the kinds for each class of recovery."""
+    found: dict[str, list[str]] = {}
+    for name, kind in KINDS.items():
+        found.setdefault(recovery_of(kind, book), []).append(name)
+    return found
+
+
+def in_proportion(mix: Mapping[str, int], of: int, games: int) -> dict[str, int]:
+    """Scale how many faults of each class `of` games have to another number of games.
+
+    The total is rounded, and the largest remainders get what is left (Hamilton's method).
+    """
+    exact = {name: count * games / of for name, count in mix.items()}
+    scaled = {name: int(value) for name, value in exact.items()}
+    left = int(sum(exact.values()) + 0.5) - sum(scaled.values())
+    for name in sorted(exact, key=lambda name: scaled[name] - exact[name])[: max(0, left)]:
+        scaled[name] += 1
+    return scaled
+
+
+def draw_plan(
+    counts: Mapping[str, int], games: int, seed: int, book: FaultBook
+) -> list[list[Planned]]:
+    """Spread faults over games: of each class as evenly as can be, at most one of a kind in each.
+
+    Args:
+        counts: how many faults there are of each class of recovery.
+    """
+    rng = Random(f"{seed}/plan")
+    kinds = kinds_by_recovery(book)
+    plan: list[list[Planned]] = [[] for _ in range(games)]
+    for recovery, count in counts.items():
+        order = list(range(games))
+        rng.shuffle(order)
+        for place, game in enumerate(order):
+            for _ in range(count // games + (place < count % games)):
+                had = [planned.kind.name for planned in plan[game]]
+                free = [KINDS[name] for name in kinds[recovery] if fits(name, had)]
+                if game == games - 1:  # what could not show in this game would come in none
+                    free = [kind for kind in free if kind.shows == AT_ONCE] or free
+                if free:
+                    kind = rng.choice(free)
+                    others = [name for name in kinds[recovery] if name != kind.name]
+                    rng.shuffle(others)
+                    plan[game].append(Planned(kind, rng.randint(1, LATEST), tuple(others)))
+    for game_plan in plan:
+        game_plan.sort(key=lambda planned: planned.step)
+    return plan
+
+
+def fits(name: str, had: Sequence[str]) -> bool:
+    """Say whether a kind may come in a game that has had others."""
+    return name not in had and not any(
+        name in pair and not set(pair).isdisjoint(had) for pair in NOT_BOTH
+    )
+
+
+class InducingWorld(FaultyWorld):
+    """A world in which planned faults come, one after the other: none while another is new.
+
+    A fault is new until something was done about it. None comes with a behaviour that ends the
+    game, and none while `held`, as when a teacher is asked.
+    """
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        *,
+        seed: int,
+        plan: Sequence[Sequence[Planned]] = (),
+        preferences: Preferences | None = None,
+    ) -> None:
+        self.held = False
+        self._plan = plan
+        self._begun = -2  # a world begins when it is made, too
+        self.due: list[Planned] = []
+        """What is to come in this game, also of what could not in those before."""
+        super().__init__(activity, people, seed=seed, preferences=preferences)
+
+    def begin(self) -> ActivityState:
+        """Begin the next game of the plan."""
+        self._begun += 1
+        self.induced: list[Induced] = []
+        """What came about in this game."""
+        self._treated: set[str] = set()
+        if 0 <= self._begun < len(self._plan):
+            self.due = [*self.due, *self._plan[self._begun]]
+        return super().begin()
+
+    def execute(self, action: Action) -> Outcome:
+        """Let a planned fault come that can show now, and carry out the action."""
+        if self.due and not self.held and not self.over:
+            self._induce(action)
+        return super().execute(action)
+
+    def _induce(self, action: Action) -> None:
+        step = self.tracker.step + 1
+        new = any(fault.kind.code not in self._treated for fault in self.present.values())
+        if new or action.behaviour.effect == "finish":
+            return
+        had = [fault.kind.name for fault in self.induced]
+        for planned in self.due:
+            if planned.step > step:
+                continue
+            waited = step - planned.step >= LONG
+            for name in (planned.kind.name, *(planned.others if waited else ())):
+                if fits(name, had) and self.can_show(KINDS[name], action):
+                    self.due.remove(planned)
+                    self.induced.append(Induced(KINDS[name], step, self.seconds))
+                    self.inject(name)
+                    return
+
+    def lift(self, kind: str) -> None:
+        """Put a fault right, and note when."""
+        for fault in self.induced:
+            if fault.kind.name == kind and fault.lifted is None and kind in self.present:
+                fault.lifted = self.tracker.step
+        super().lift(kind)
+
+    def recover(self, remedy: Remedy) -> float:
+        """Note that something is done about a fault, and do it."""
+        self._treated.add(remedy.fault)
+        return super().recover(remedy)

@@ -1,0 +1,81 @@
+"""Diagnoses held against what was induced: right, wrong, again, missed, or of nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from tangy_tui.experiments.induced import Induced
+from tangy_tui.monitoring.fault import ENDINGS, Fault
+
+RIGHT, AGAIN, WRONG, NOTHING = "right", "again", "wrong cause", "no cause"
+"""What a diagnosis can be: of what was induced; of the same once more; of another; of nothing."""
+
+
+@dataclass(frozen=True)
+class Match:
+    """A diagnosis, what it is, and the induced fault that it is about."""
+
+    fault: Fault
+    verdict: str
+    induced: Induced | None
+
+
+@dataclass
+class Matches:
+    """All diagnoses of a game, and the induced faults that were never recognised."""
+
+    matches: list[Match] = field(default_factory=list)
+    missed: list[Induced] = field(default_factory=list)
+    asked: int = 0
+    """How often Tangy only asked what to do where nobody had shown it."""
+
+    def of(self, induced: Induced) -> list[Match]:
+        """Return the diagnoses of one induced fault."""
+        return [match for match in self.matches if match.induced is induced]
+
+    @property
+    def false_alarms(self) -> int:
+        """How many diagnoses had no cause."""
+        return sum(match.verdict == NOTHING for match in self.matches)
+
+
+def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> Matches:
+    """Attribute each diagnosis of a game to an induced fault that was there at that step.
+
+    An induced fault is there until it is lifted or the game ends, and is recognised by the code of
+    its kind. Another diagnosis while one is not recognised yet is about that one, and wrong.
+    """
+    found = Matches()
+    known: list[Induced] = []
+    for fault in faults:
+        if fault.asks_only:
+            found.asked += 1
+            continue
+        there = [
+            one
+            for one in induced
+            if one.step <= fault.step and (one.lifted is None or fault.step <= one.lifted)
+        ]
+        unknown = [one for one in there if one not in known]
+        new = [one for one in unknown if one.kind.code == fault.code]
+        same = [one for one in there if one.kind.code == fault.code]
+        if new:
+            known.append(new[0])
+            found.matches.append(Match(fault, RIGHT, new[0]))
+        elif same:
+            found.matches.append(Match(fault, AGAIN, same[-1]))
+        elif unknown:
+            found.matches.append(Match(fault, WRONG, unknown[-1]))
+        else:
+            found.matches.append(Match(fault, NOTHING, None))
+    found.missed = [one for one in induced if one not in known and one.could_show]
+    return found
+
+
+def seconds_to_recover(fault: Fault) -> float | None:
+    """Return the s from the diagnosis until a fault was over or Tangy went on with it, or None."""
+    for move in fault.moves:
+        if move.kind in ENDINGS or move.kind == "went on":
+            return move.seconds - fault.seconds
+    return None

@@ -1,0 +1,134 @@
+"""A house for experiments on monitoring: demonstrations, their policy, and games under supervision.
+
+All is on a scratch folder: what teachers answer in games is learnt there as it is in the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.faults import FaultBook, load_faults
+from tangy_profiles.person import Person, load_people
+from tangy_profiles.robot import Robot, load_robot
+from tangy_profiles.store import Store
+from tangy_sim.faulty import FaultyWorld
+from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.learning.asking import Answers
+from tangy_tui.learning.library import BEGUN, FINISHED, STEP
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.accepted import expected_effects
+from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+DEMONSTRATIONS = 3
+"""Demonstrations that a policy is learnt from, as the paper's was."""
+
+ENDLESS = 20_000
+"""Moves after which a game is taken to go round in circles."""
+
+
+@dataclass(frozen=True)
+class Supervised:
+    """Demonstrations in a scratch log, what was learnt from them, and the fault rules."""
+
+    activity: str
+    people: tuple[Person, ...]
+    policy: Policy
+    store: Store
+    robot: Robot
+    book: FaultBook
+
+    def games(self, world: FaultyWorld, seed: int) -> Supervision:
+        """Return a run of games in a world, with a teacher who can be asked; nobody is known."""
+        people = tuple(person.id for person in self.people)
+        names = {person.id: person.name for person in self.people}
+        strategies = tuple(world.activity.strategies)
+        game = Facilitation(
+            world,
+            self.policy,
+            Persuasion(people, strategies, Random(f"{seed}/persuasion")),
+            self.store,
+            names=names,
+            seed=seed,
+            answers=Answers(self.store, world.activity),
+        )
+        return Supervision(
+            game,
+            self.book,
+            self.robot,
+            self.store,
+            lambda policy: expected_effects(self.store, world.activity, policy),
+            lambda person: names.get(person, person),
+        )
+
+
+@cache
+def lessons(course: Course) -> tuple[tuple[Demonstration, ...], Policy]:
+    """Return the first demonstrations of a course, and the policy that is learnt from them."""
+    games = taught(course)
+    shown = tuple(next(games) for _ in range(DEMONSTRATIONS))
+    return shown, learnt(activity_of(course.activity), shown)
+
+
+@contextmanager
+def supervised(course: Course) -> Iterator[Supervised]:
+    """Open a house in which the demonstrations of a course were given and learnt from.
+
+    Nothing in it outlives it, so all is one transaction.
+    """
+    shown, policy = lessons(course)
+    robot = load_robot()
+    with (
+        TemporaryDirectory(prefix="tangy-supervised-") as scratch,
+        Store.open(Path(scratch)) as store,
+        store.transaction(),
+    ):
+        for one in shown:
+            _keep(store, one)
+        people = tuple(load_people(course.users))
+        yield Supervised(course.activity, people, policy, store, robot, load_faults(robot))
+
+
+def _keep(store: Store, shown: Demonstration) -> None:
+    name = {"demonstration": shown.id}
+    about = {
+        "activity": shown.activity,
+        "teacher": shown.teacher,
+        "seed": shown.seed,
+        "people": list(shown.people),
+        "guided": shown.guided,
+    }
+    store.append(BEGUN, {**name, **about})
+    for step in shown.steps:
+        store.append(STEP, {**name, **replace(step, id=0).to_json()})
+    store.append(FINISHED, name)
+
+
+def play(
+    game: Supervision, *, until: Callable[[Supervision], bool] = lambda _: False
+) -> list[Event]:
+    """Play one game with scripted people to its end, or until something is so.
+
+    Raises:
+        RuntimeError: it goes round in circles.
+    """
+    events = game.begin()
+    for _ in range(ENDLESS):
+        if game.over or until(game):
+            return events
+        events += go_on_by_script(game, expert=True)
+    raise RuntimeError(f"A game did not end within {ENDLESS} moves.")
+
+
+def people_of(one: Supervised) -> Sequence[str]:
+    """Return the ids of those who take part."""
+    return [person.id for person in one.people]
