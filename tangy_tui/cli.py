@@ -16,6 +16,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui import __version__
 from tangy_tui.verbs import (
+    activity,
     demonstrations,
     drill,
     experiment,
@@ -75,6 +76,7 @@ for verb in VERBS:
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
 app.add_typer(experiment.app, name="experiment")
+app.add_typer(activity.app, name="activity")
 app.add_typer(log.app, name="log")
 
 

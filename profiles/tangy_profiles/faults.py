@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.health import Fact
-from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import VARIABLES
 
@@ -116,6 +116,14 @@ class Condition(NamedTuple):
             return self.value > other.value or (self.value == other.value and not strict)
         return self.test == other.test == "below" and self.value <= other.value
 
+    @property
+    def limit(self) -> str:
+        """The limit that a number passed, in words; "" where there is none."""
+        if self.test not in ("above", "below", "at_least"):
+            return ""
+        words = {"above": "more than", "below": "less than"}.get(self.test, "not less than")
+        return f"{words} {self.value:g}" if not isinstance(self.value, str) else ""
+
     def __str__(self) -> str:
         words = {"is": "is", "not": "is not", "at_least": "at least"}.get(self.test, self.test)
         return f"{self.key} {words} {self.value}"
@@ -207,22 +215,45 @@ def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
+    book, mistakes = check_faults(robot, path)
+    if book is None:
+        raise ProfileError(mistakes[0])
+    return book
+
+
+def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | None, list[str]]:
+    """Read fault rules as `load_faults` does, and return what is wrong, a line for each entry.
+
+    Without mistakes there is a book; with any there is none.
+    """
     path = path or Path(str(files("tangy_profiles"))) / "faults.toml"
-    top = read_toml(path)
     known = evidence_keys(robot)
     rules: list[FaultRule] = []
-    for entry in top.tables("faults"):
-        rule = _read_rule(entry, robot, known)
-        _check_order(entry, rule, rules)
-        rules.append(rule)
-        entry.close()
-    top.close()
-    if not rules or not rules[-1].fallback:
-        raise ProfileError(
-            f"{path.name}: the last of the faults must have `fallback = true`: it is what is "
-            "diagnosed when no other rule explains what was seen."
+    mistakes: list[str] = []
+    read = True
+    try:
+        top = read_toml(path)
+        for entry in top.tables("faults"):
+            read = False
+            try:
+                rule = _read_rule(entry, robot, known)
+                _check_order(entry, rule, rules)
+                entry.close()
+            except ProfileError as error:
+                mistakes.append(str(error))
+            else:
+                rules.append(rule)
+                read = True
+        top.close()
+    except ProfileError as error:
+        mistakes.append(str(error))
+        return None, mistakes
+    if read and not (rules and rules[-1].fallback):
+        mistakes.append(
+            f"{plain(path.name)}: the last of the faults must have `fallback = true`: it is what "
+            "is diagnosed when no other rule explains what was seen."
         )
-    return FaultBook(tuple(rules), path.name)
+    return (None if mistakes else FaultBook(tuple(rules), path.name)), mistakes
 
 
 def evidence_keys(robot: Robot) -> dict[str, str]:
@@ -231,7 +262,8 @@ def evidence_keys(robot: Robot) -> dict[str, str]:
     for device in robot.devices.values():
         keys[f"{device.name}.state"] = f"{device.label}: OK, WARN, STALE or ERROR"
         keys[f"{device.name}.age"] = f"{device.label}: s since the newest data"
-        keys |= {f"{device.name}.{fact}": f"{device.label}: {fact}" for fact in device.facts}
+        for fact, words in device.facts.items():
+            keys[f"{device.name}.{fact}"] = f"{device.label}: {words}"
     return keys
 
 

@@ -57,7 +57,8 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 .before { fill: var(--paper); stroke: var(--dim); stroke-width: 1.6; }
 .after { fill: var(--series-1); stroke: var(--series-1); stroke-width: 2.6; }
 .key { display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; font-size: .85rem; color: var(--dim);
-  margin: .3rem 0; break-after: avoid; } .key span { white-space: nowrap; } .key svg { display: inline-block;
+  margin: .3rem 0; break-after: avoid; }
+.key span { white-space: nowrap; } .key svg { display: inline-block;
   width: 20px; height: 16px; vertical-align: -3px; margin-right: .3rem; }
 .timeline { min-width: 46rem; } .drawn { overflow-x: auto; }
 @media print { .timeline { min-width: 0; } .care, .moves li, .fault-told { break-inside: avoid; } }

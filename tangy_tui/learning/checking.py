@@ -1,0 +1,100 @@
+"""An activity looked over: what loads, and yet cannot be reached or asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.person import Person
+from tangy_profiles.reading import plain
+from tangy_profiles.robot import Robot
+from tangy_tui.learning.commands import Phrasebook
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A file that was looked over: its mistakes, and what is worth a second look, a line each."""
+
+    file: str
+    mistakes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> Checked:
+    """Look over an activity that could be read."""
+    mistakes: list[str] = []
+    try:
+        robot.check(activity)
+    except ProfileError as error:
+        mistakes.append(str(error))
+    warnings = [*_stages(activity), *_phrases(activity, people)]
+    return Checked(activity.source, tuple(mistakes), tuple(map(plain, warnings)))
+
+
+def _stages(activity: Activity) -> Iterator[str]:
+    """Tell of each stage none of whose rules can ever be the first that holds."""
+    reasons: dict[str, list[str | None]] = {}
+    for place, rule in enumerate(activity.stage_rules):
+        reason = _never(rule, activity.stage_rules[:place], activity)
+        reasons.setdefault(rule.stage, []).append(reason)
+    for stage, found in reasons.items():
+        if None not in found:
+            yield f"{activity.source}: stages[{stage}]: can never be reached: {found[0]}."
+
+
+def _never(rule: StageRule, earlier: Sequence[StageRule], activity: Activity) -> str | None:
+    """Say why a rule can never be the first that holds, or None."""
+    for other in earlier:
+        if other.condition == "otherwise":
+            return f"{other.stage!r} stands before it with when = 'otherwise'"
+        if other.condition == "after" and any(
+            one.condition == "before" and one.behaviour == other.behaviour for one in earlier
+        ):
+            return f"it is always before or after {other.behaviour!r}, which comes first"
+        if _covers(other, rule):
+            return f"{other.stage!r} always holds first"
+    if rule.condition == "after" and activity.behaviours[rule.behaviour].effect == "finish":
+        return f"after {rule.behaviour!r} the activity is over"
+    return None
+
+
+def _covers(other: StageRule, rule: StageRule) -> bool:
+    """Say whether an earlier rule holds whenever this one does."""
+    if (other.condition, rule.condition) == ("requested or away", "beside requester"):
+        return True
+    return (
+        (other.condition, other.behaviour, other.since)
+        == (rule.condition, rule.behaviour, rule.since)
+        and other.at_least <= rule.at_least
+    )  # fmt: skip
+
+
+def _phrases(activity: Activity, people: Sequence[Person]) -> Iterator[str]:
+    """Tell of phrases that are understood as another behaviour than the one they stand with."""
+    phrasebook = Phrasebook(activity, people)
+    for behaviour in activity.behaviours.values():
+        heard = {phrase: _heard(phrasebook, phrase) for phrase in _ways(behaviour)}
+        lost = {phrase: as_ for phrase, as_ in heard.items() if as_ != behaviour.name}
+        where = f"{activity.source}: behaviours[{behaviour.name}].phrases"
+        if len(lost) == len(heard):
+            yield f"{where}: nobody can ask for it: " + "; ".join(map(_as, lost.items())) + "."
+        else:
+            yield from (f"{where} = {phrase!r}: {_as((phrase, as_))}."
+                        for phrase, as_ in lost.items())  # fmt: skip
+
+
+def _ways(behaviour: Behaviour) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*behaviour.phrases, behaviour.name)))
+
+
+def _heard(phrasebook: Phrasebook, phrase: str) -> str | None:
+    command = phrasebook.understand(phrase)
+    return None if command is None else command.behaviour
+
+
+def _as(lost: tuple[str, str | None]) -> str:
+    phrase, heard = lost
+    return f"{phrase!r} is " + ("not understood" if heard is None else f"heard as {heard!r}")

@@ -1,0 +1,91 @@
+"""The fault rules looked over: what each looks at, and what none of them does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule, check_faults
+from tangy_profiles.robot import Robot
+from tangy_sim.injection import KINDS
+from tangy_tui.monitoring.telling import RECOVERY_WORDS
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """Fault rules that were looked over.
+
+    `unseen` is the evidence of the robot's devices that no rule looks at; `unruled` the kinds of
+    fault of the simulator whose right diagnosis is no rule; `untried` the rules that no kind of
+    the simulator brings about.
+    """
+
+    file: str
+    mistakes: tuple[str, ...]
+    rules: tuple[FaultRule, ...] = ()
+    unseen: tuple[str, ...] = ()
+    unruled: tuple[str, ...] = ()
+    untried: tuple[str, ...] = ()
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what `--json` prints."""
+        return {
+            "file": self.file,
+            "kind": "faults",
+            "mistakes": list(self.mistakes),
+            "rules": [
+                {
+                    "code": rule.code,
+                    "name": rule.name,
+                    "criticality": rule.criticality,
+                    "recovery": list(rule.recovery),
+                    "looks_at": list(looks_at(rule)),
+                }
+                for rule in self.rules
+            ],
+            "evidence_without_rule": list(self.unseen),
+            "kinds_without_rule": list(self.unruled),
+            "rules_without_kind": list(self.untried),
+        }
+
+
+def check_rules(robot: Robot, path: Path | None = None) -> Rules:
+    """Look over fault rules: those that ship, or a file of the same form."""
+    book, mistakes = check_faults(robot, path)
+    if book is None:
+        return Rules(path.name if path is not None else "faults.toml", tuple(mistakes))
+    codes = {rule.code for rule in book.rules}
+    brought_about = {kind.code for kind in KINDS.values()}
+    return Rules(
+        book.source,
+        (),
+        book.rules,
+        _unseen(book, robot),
+        tuple(name for name, kind in KINDS.items() if kind.code not in codes),
+        tuple(rule.code for rule in book.rules if rule.code not in brought_about),
+    )
+
+
+def looks_at(rule: FaultRule) -> tuple[str, ...]:
+    """Return the evidence by which a rule is recognised, in the order of the file."""
+    keys = (condition.key for conditions in rule.when for condition in conditions)
+    return tuple(dict.fromkeys(key for key in keys if key not in CONTEXT))
+
+
+def recovery_words(rule: FaultRule) -> str:
+    """Say how a fault is recovered from, rung by rung."""
+    tries = f" (up to {rule.tries} times)" if rule.tries > 1 else ""
+    first, *rest = (RECOVERY_WORDS[word] for word in rule.recovery)
+    return "; else ".join([first + tries, *rest])
+
+
+def _unseen(book: FaultBook, robot: Robot) -> tuple[str, ...]:
+    """Return the devices' evidence that is in no rule; how old it is, the state says as well."""
+    seen = {key for rule in book.rules for key in looks_at(rule)}
+    keys = [
+        f"{device.name}.{fact}"
+        for device in robot.devices.values()
+        for fact in ("state", *device.facts)
+    ]
+    return tuple(key for key in keys if key not in seen)

@@ -1,0 +1,90 @@
+"""Activities and fault rules that were looked over, as tables on the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.reading import plain
+from tangy_tui.learning.checking import Checked
+from tangy_tui.monitoring.rules import Rules, looks_at, recovery_words
+from tangy_tui.wording import counted
+
+
+def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
+    """Print the activities that ship, by the name that is given on the command line."""
+    table = _table(
+        "Activities", "name", "title", "stages", "situations", "behaviours", "strategies"
+    )
+    for name, activity in activities:
+        table.add_row(
+            Text(plain(name)),
+            Text(plain(activity.title)),
+            str(len(activity.stages)),
+            str(len(activity.situations)),
+            str(len(activity.behaviours)),
+            Text(plain(", ".join(activity.strategies))),
+        )
+    Console(highlight=False).print(table)
+
+
+def print_checked(checked: Checked, activity: Activity | None) -> None:
+    """Print what there is to say of an activity's file."""
+    console = Console(highlight=False, soft_wrap=True)
+    if activity is not None and not checked.mistakes:
+        words = ", ".join(
+            counted(number, noun)
+            for number, noun in (
+                (len(activity.stages), "stage"),
+                (len(activity.situations), "situation"),
+                (len(activity.behaviours), "behaviour"),
+            )
+        )
+        console.print(_verdict(checked.file, not checked.warnings, words))
+    for line in checked.warnings:
+        console.print(Text(f"  look at: {line}", style="yellow"))
+
+
+def print_rules(rules: Rules) -> None:
+    """Print fault rules that have no mistake, and what none of them looks at."""
+    if rules.mistakes:
+        return
+    console = Console(highlight=False)
+    table = _table(
+        f"{rules.file}: {counted(len(rules.rules), 'fault rule')}, the first that matches counts",
+        "", "fault", "recovery", "looks at",
+    )  # fmt: skip
+    for number, rule in enumerate(rules.rules, 1):
+        name = Text(rule.code, style="bold red" if rule.critical else "")
+        if rule.critical:
+            name.append(" critical", style="red")
+        keys = ", ".join(looks_at(rule)) or "what no other rule explains"
+        table.add_row(str(number), name, Text(recovery_words(rule)), Text(keys))
+    console.print(table)
+    _print_left(console, "Evidence of devices that no rule looks at", rules.unseen)
+    _print_left(console, "Faults of the simulator that no rule is for", rules.unruled)
+    _print_left(console, "Rules that the simulator cannot bring about", rules.untried)
+    console.print(_verdict(rules.file, not rules.unruled, "no mistake"))
+
+
+def _print_left(console: Console, what: str, words: Sequence[str]) -> None:
+    console.print(Text(f"{what}: {plain(', '.join(words)) or 'none'}."))
+
+
+def _verdict(file: str, well: bool, words: str) -> Text:
+    mark = Text("ok       " if well else "look at  ", style="green" if well else "yellow")
+    return mark.append(plain(f"{file}: {words}"), style="")
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = Table(
+        title=Text(plain(title)), box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False
+    )
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    return table

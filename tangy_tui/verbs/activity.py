@@ -1,0 +1,136 @@
+"""`tangy activity`: which activities there are, and whether their files have mistakes."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Json, print_json
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.robot import Robot
+    from tangy_tui.learning.checking import Checked
+
+app = typer.Typer(
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    help="Which activities there are, and whether their files and the fault rules are well.",
+)
+
+SHOWN = 4  # people with whom phrases are tried: most behaviours can be asked for by a name
+
+
+@app.command("list")
+def activity_list(as_json: Json = False) -> None:
+    """List the activities that come with Tangy."""
+    from tangy_profiles.activity import load_activity, shipped_activities
+
+    found = [(name, load_activity(name)) for name in shipped_activities()]
+    if as_json:
+        print_json([_activity_document(name, activity) for name, activity in found])
+        return
+    from tangy_tui.ui.check_report import print_activities
+
+    print_activities(found)
+
+
+@app.command("check")
+def activity_check(
+    files: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[FILE_OR_NAME...]", help="Default: all that ships."),
+    ] = None,
+    faults: Annotated[
+        list[Path] | None, typer.Option("--faults", metavar="FILE", help="A file of fault rules.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Check activities and fault rules: every mistake is one line, with the nearest valid word.
+
+    A file that holds `faults` is read as fault rules. The exit status is 2 if there is a mistake.
+    """
+    from tangy_profiles.activity import shipped_activities
+    from tangy_profiles.robot import load_robot
+    from tangy_tui.monitoring.rules import check_rules
+
+    robot = load_robot()
+    names, books = [], list[Path | None](faults or [])
+    for file in files or []:
+        path = Path(file)
+        if _holds_faults(file):
+            books.append(path)
+        else:
+            names.append(file)
+    if not names and not books:
+        names, books = list(shipped_activities()), [None]
+    checked = [_check(name, robot) for name in names]
+    rules = [check_rules(robot, path) for path in books]
+    mistakes = [line for one, _ in checked for line in one.mistakes]
+    mistakes += [line for one in rules for line in one.mistakes]
+    if as_json:
+        told: list[dict[str, Any]] = [_checked_document(one, a) for one, a in checked]
+        print_json({"ok": not mistakes, "files": told + [one.to_json() for one in rules]})
+    else:
+        from tangy_tui.ui import check_report
+
+        for one, activity in checked:
+            check_report.print_checked(one, activity)
+        for book in rules:
+            check_report.print_rules(book)
+        for line in mistakes:
+            print(plain(line), file=sys.stderr)
+    if mistakes:
+        raise typer.Exit(2)
+
+
+def _holds_faults(file: str) -> bool:
+    """Say whether a file is one of fault rules; one that cannot be read is told of later."""
+    from tangy_profiles.reading import read_toml
+
+    if not file.endswith(".toml"):
+        return False
+    try:
+        return "faults" in read_toml(Path(file))
+    except ProfileError:
+        return False
+
+
+def _check(name: str, robot: Robot) -> tuple[Checked, Activity | None]:
+    from tangy_profiles.activity import load_activity
+    from tangy_profiles.person import load_people
+    from tangy_tui.learning.checking import Checked, check_activity
+
+    try:
+        activity = load_activity(name)
+    except ProfileError as error:
+        return Checked(plain(Path(name).name), (str(error),)), None
+    return check_activity(activity, robot, load_people(SHOWN)), activity
+
+
+def _activity_document(name: str, activity: Activity) -> dict[str, Any]:
+    return {
+        "name": name,
+        "title": activity.title,
+        "file": activity.source,
+        "stages": list(activity.stages),
+        "situations": [list(situation) for situation in activity.situations],
+        "behaviours": list(activity.behaviours),
+        "strategies": list(activity.strategies),
+    }
+
+
+def _checked_document(checked: Checked, activity: Activity | None) -> dict[str, Any]:
+    told = {} if activity is None else _activity_document(activity.name, activity)
+    return {
+        **told,
+        "file": checked.file,
+        "kind": "activity",
+        "mistakes": list(checked.mistakes),
+        "warnings": list(checked.warnings),
+    }
