@@ -25,12 +25,15 @@ class Limb:
 
 @dataclass(frozen=True)
 class Device:
-    """A device of the robot: its data is stale after so many s; `facts` are what it measures."""
+    """A device of the robot: its data is stale after so many s; `facts` are what it measures.
+
+    Of each fact the profile says in words of the staff what it is.
+    """
 
     name: str
     label: str
     stale_after: float
-    facts: tuple[str, ...]
+    facts: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -112,11 +115,13 @@ def _devices(top: Table) -> dict[str, Device]:
         name = entry.text("name")
         if name in devices:
             raise entry.wrong("name", "was used before: every device has its own.")
+        facts = entry.table("facts", optional=True)
         devices[name] = Device(
             name,
             entry.text("label"),
             entry.number("stale_after", 0.05, 60),
-            entry.words("facts", default=()),
+            MappingProxyType({fact: facts.text(fact) for fact in facts}),
         )
+        facts.close()
         entry.close()
     return devices

@@ -35,10 +35,11 @@ def diagnose(
     def take(rule: FaultRule, keys: set[str]) -> None:
         mine = rule.symptoms.union(keys) - explained
         explained.update(mine)
+        ages = {f"{key.removesuffix('state')}age" for key in keys if key.endswith(".state")}
         found.append(
             Diagnosis(
                 rule,
-                {key: evidence[key] for key in evidence if key in keys},
+                {key: evidence[key] for key in evidence if key in keys or key in ages},
                 tuple(m for m in mismatches if f"mismatch.{m.variable}" in mine),
             )
         )

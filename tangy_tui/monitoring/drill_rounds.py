@@ -302,9 +302,9 @@ class Tabletop:
         else:
             game.acknowledge(who)
         now = self._detector.watch(game.world.health())
-        seen = evidence_words(
-            {key: now[key] for key in fault.evidence if key in now}, (), self.robot
-        )
+        conditions = [c for those in self.book.rule(fault.code).when for c in those if c.holds(now)]
+        evidence = {key: now[key] for key in fault.evidence if key in now}
+        seen = evidence_words(evidence, (), self.robot, conditions)
         game.clear(who)
         return Release(seen, game.halted is not fault)
 

@@ -364,7 +364,8 @@ class Supervision:
 
     def _keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
         rule = diagnosis.rule
-        why = evidence_words(diagnosis.evidence, diagnosis.mismatches, self.robot)
+        conditions = rule.matched(diagnosis.evidence) or ()
+        why = evidence_words(diagnosis.evidence, diagnosis.mismatches, self.robot, conditions)
         fault = Fault(
             id=uuid4().hex[:12],
             game=self.game.game,

@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from tangy_profiles.faults import CONTEXT, SYMPTOMS, Evidence
-from tangy_profiles.health import Fact
+from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
+from tangy_profiles.health import STALE, Fact
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.fault import MOVES, Move
 
 _STATES = {
     "OK": "all is well",
-    "STALE": "nothing comes from it",
+    "STALE": "nothing came from it",
     "ERROR": "it reports an error",
     "WARN": "it warns",
 }
 
 
-def evidence_words(evidence: Evidence, mismatches: Sequence[Mismatch], robot: Robot) -> str:
-    """Write evidence as one line: what was measured, and what was expected and seen."""
+def evidence_words(
+    evidence: Evidence,
+    mismatches: Sequence[Mismatch],
+    robot: Robot,
+    conditions: Iterable[Condition] = (),
+) -> str:
+    """Write evidence as one line: what was measured, and what was expected and seen.
+
+    Args:
+        conditions: by which the evidence was recognised; their limits are said beside it.
+    """
+    limits = {condition.key: condition.limit for condition in conditions}
     parts: list[str] = []
     for key, value in evidence.items():
         if key in CONTEXT or key.startswith("mismatch."):
@@ -29,9 +39,15 @@ def evidence_words(evidence: Evidence, mismatches: Sequence[Mismatch], robot: Ro
         if device is None:
             parts.append(f"{SYMPTOMS.get(key, key)}: {_number(value)}")
         elif fact == "state":
-            parts.append(f"{device.label}: {_STATES.get(str(value), str(value))}")
+            age = evidence.get(f"{head}.age")
+            since = f" for {age:.2g} s" if value == STALE and isinstance(age, float) else ""
+            parts.append(f"{device.label}: {_STATES.get(str(value), str(value))}{since}")
+        elif fact == "age" and f"{head}.state" in evidence:
+            continue  # it was said with the state
         else:
-            parts.append(f"{device.label}: {fact.replace('_', ' ')} {_number(value)}")
+            limit = f" ({words})" if (words := limits.get(key, "")) else ""
+            measured = device.facts.get(fact, fact.replace("_", " "))
+            parts.append(f"{device.label}: {measured}: {_number(value)}{limit}")
     return "; ".join([*parts, *map(str, mismatches)])
 
 
