@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from tangy_profiles.faults import load_faults
+from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import KINDS
 from tangy_tui.interaction.facilitation import Acted
@@ -17,7 +18,7 @@ WITH_MARKS = ("incorrectly marked", "missing numbers")
 
 
 def test_a_robot_that_was_carried_off_has_not_lost_sight_of_a_card() -> None:
-    found = {
+    found: dict[str, Fact] = {
         "localisation.fit": 0.55,
         "localisation.spread": 1.6,
         "mismatch.card": "lost from view",
@@ -55,3 +56,27 @@ def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
     assert acted.outcome.response is not None and not acted.outcome.response.followed
     known = game._effects_of(game.policy).values[acted.action.behaviour.name]
     assert known["what was asked about"] == {"settled"}
+
+
+def test_a_stuck_request_is_told_although_a_critical_fault_came_at_once() -> None:
+    found: dict[str, Fact] = {
+        "stop_button.latched": True,
+        "mismatch.request": "open with nothing left",
+        "mismatch.what was asked about": "unchanged",
+    }
+    told = diagnose(load_faults(load_robot()), found)
+    assert [diagnosis.rule.code for diagnosis in told] == ["emergency-stop", "request-stuck"]
+
+
+def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
+    supervise: Supervise,
+) -> None:
+    game = supervise("request-stuck", seed=3)
+    game.begin()
+    world = world_of(game)
+    while "request-stuck" not in world.present:
+        _ = game.begin() if game.over else game.game.step()  # nobody looks
+    game.game.ask("Something is wrong here.", "Say what to do.", "")
+    answer_by_script(game)
+    known = game._effects_of(game.policy).values
+    assert not any("open with nothing left" in one.get("request", ()) for one in known.values())
