@@ -34,8 +34,9 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 
-LOOK_SECONDS = 0.1
-"""How often the devices are looked at between behaviours, also while the game stands still."""
+LOOK_SECONDS = 0.04
+"""How often the devices are looked at between behaviours, also while the game stands still: so
+that, with the time that drawing takes, what is wrong is seen within 0.1 s."""
 
 NOT_SIMULATED = "Faults can be brought about in the simulated room only."
 NO_GAME = "No game is going on: press g to play one first."
@@ -47,7 +48,7 @@ _TAKES_TIME = ("asked", "remedied")
 
 
 class FaultConsole:
-    """Looks for faults at 10 Hz, shows them on a screen's panels, and puts the critical ones."""
+    """Looks for faults all the time, shows them on a screen's panels, and puts the critical ones."""
 
     def __init__(
         self,
@@ -139,9 +140,9 @@ class FaultConsole:
             screen.query_one(FaultBanner).show(
                 banner_words(fault, doing), critical=fault.critical, seen=fault.acknowledged
             )
-        screen.query_one(FaultList).fill(supervision.faults)
-        there = any(not fault.asks_only for fault in supervision.faults)
-        screen.set_class(there, "-faulty")
+        faults = screen.query_one(FaultList)
+        faults.fill(supervision.faults)
+        faults.set_class(any(not fault.asks_only for fault in supervision.faults), "-there")
         if supervision.halted is not None and not supervision.over and self._free.is_set():
             self._free.clear()
             screen.run_worker(self._attend(), name="fault", group="fault")

@@ -56,6 +56,7 @@ class CriticalDialog(Dialog[None]):
     """Stands until its fault is cleared or the game was given up; esc does not just hide it."""
 
     DEFAULT_CSS = """
+    CriticalDialog { background: $background; }  /* a dimmed game would take long to draw */
     CriticalDialog > .box {
         width: 76; height: 1fr; max-height: 32; padding: 0 1;
         border: heavy $error; border-title-color: $error;
@@ -110,7 +111,8 @@ class CriticalDialog(Dialog[None]):
 
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
-        self.query_one(Page).focus()
+        for page in self.query(Page):  # it may come up while the program is being left
+            page.focus()
         self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 
     def show(self, status: Status) -> None:

@@ -1,0 +1,137 @@
+"""From a fault to its diagnosis on the screen: how long it takes while games are watched.
+
+Run by hand: `python tests/bench/fault_latency.py [--rounds N]`. A game is paused in a program
+without a terminal; each kind of fault that a device shows at once is brought about at a random
+moment, and the time is taken until its name is drawn: in the banner, or in the dialog of what
+halts the robot. Then it is lifted, and the next game begins. Last comes what looking costs.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from random import Random
+from statistics import median, quantiles
+from tempfile import TemporaryDirectory
+from time import perf_counter, process_time
+
+from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import AT_ONCE, KINDS
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.story import learn
+from tangy_tui.ui.dialogs.critical import CriticalDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.fault_banner import FaultBanner
+
+SIZES = ((80, 24), (120, 40), (160, 45))
+MOST_SECONDS = 0.1
+"""What 95 of 100 diagnoses may take until they are seen."""
+
+IDLE_SECONDS = 5.0
+
+
+def drawn(program: Program) -> str:
+    """Return what is drawn."""
+    strips = program.screen._compositor.render_strips()
+    return "\n".join("".join(segment.text for segment in strip) for strip in strips)
+
+
+def told(program: Program, fault: Fault) -> bool:
+    """Say whether a fault is seen, a critical one in its dialog."""
+    if fault.critical and not isinstance(program.screen, CriticalDialog):
+        return False
+    if not fault.critical and not program.screen.query_one(FaultBanner).words:
+        return False  # reading the whole screen takes longer than all the rest
+    return fault.name in drawn(program)
+
+
+def teach(house: House) -> Policy:
+    """Learn a policy from three scripted demonstrations."""
+    teaching = house.teaching(SCRIPTED, 1)
+    teacher = ScriptedTeacher(teaching)
+    teaching.begin()
+    for number in range(3):
+        if number:
+            teaching.apply(teacher.command())
+        for _ in teacher.demonstrate():
+            pass
+    return learn(house)
+
+
+async def one(
+    house: House, policy: Policy, size: tuple[int, int], kind: str, chance: Random
+) -> float:
+    """Bring about a fault in a paused game; return the seconds until its name is drawn."""
+
+    async def start(program: Program) -> None:
+        supervision = house.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(house, supervision, speed=1))
+
+    program = Program(house, start)
+    async with program.run_test(size=size) as pilot:
+        await pilot.pause()
+        await pilot.press("p")
+        screen = program.screen
+        assert isinstance(screen, PlayScreen)
+        game = screen._supervision
+        assert isinstance(game.world, FaultyWorld)
+        await asyncio.sleep(0.5 + chance.random() * 0.2)
+        begun = perf_counter()
+        game.world.inject(kind)
+        while not game.faults or not told(program, game.faults[0]):  # noqa: ASYNC110 - measured
+            await asyncio.sleep(0.001)
+        return perf_counter() - begun
+
+
+async def idle(house: House, policy: Policy) -> float:
+    """Return the share of a core that a paused game takes."""
+
+    async def start(program: Program) -> None:
+        supervision = house.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(house, supervision, speed=1))
+
+    program = Program(house, start)
+    async with program.run_test(size=(120, 40)) as pilot:
+        await pilot.press("p")
+        await asyncio.sleep(0.5)
+        begun = process_time()
+        await asyncio.sleep(IDLE_SECONDS)
+        return (process_time() - begun) / IDLE_SECONDS
+
+
+def main() -> int:
+    """Print the table; the exit status is 1 if the limit is not kept."""
+    rounds = int(sys.argv[sys.argv.index("--rounds") + 1]) if "--rounds" in sys.argv else 3
+    kinds = [kind.name for kind in KINDS.values() if kind.shows == AT_ONCE]
+    chance = Random(1)
+    kept = True
+    with TemporaryDirectory() as folder:
+        house = House(Path(folder))
+        policy = teach(house)
+        print(f"{'window':>9} {'faults':>6} {'median ms':>10} {'p95 ms':>7} {'most ms':>8}")
+        for columns, lines in SIZES:
+            taken = [
+                asyncio.run(one(house, policy, (columns, lines), kind, chance))
+                for _ in range(rounds)
+                for kind in kinds
+            ]
+            p95 = quantiles(taken, n=20)[-1]
+            kept = kept and p95 < MOST_SECONDS
+            print(
+                f"{columns:>4} x {lines:<2} {len(taken):>6} {1000 * median(taken):>10.0f} "
+                f"{1000 * p95:>7.0f} {1000 * max(taken):>8.0f}",
+                flush=True,
+            )
+        print(f"looking, while nothing happens: {asyncio.run(idle(house, policy)):.2%} of a core")
+        house.close()
+    print(f"limit: p95 under {1000 * MOST_SECONDS:.0f} ms:", "kept" if kept else "NOT KEPT")
+    return 0 if kept else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
