@@ -100,7 +100,7 @@ class Moment:
                     "took": answer.took,
                 }
             case Diagnosed(fault):
-                return {"kind": "fault", "fault": fault.id, **fault.to_json()}
+                return {"kind": "fault", **fault.document()}
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": move.to_json()}
 

@@ -1,0 +1,268 @@
+"""A session is told from the log alone: games, Table II, people, faults, what to look after."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
+from tangy_tui.monitoring.fault_table import ROWS, fault_rows
+from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
+from tangy_tui.monitoring.replay import Answered, Done, read_replays
+from tangy_tui.monitoring.session import Session, read_session
+from tangy_tui.pages.session import session_page
+from tests.monitoring.conftest import Supervise, acts, play
+
+FAULTS = ("laser-disconnected@6", "path-blocked", "voice-dead@9", "request-stuck", "no-effect@20")
+
+
+def told(house: House, wanted: str = "all") -> Session:
+    games = find_games(read_games(house.store), wanted)
+    activities = {house.activity.name: house.activity}
+    return read_session(house.store, games, activities, house.names)
+
+
+def without(body: Mapping[str, Any], *keys: str) -> dict[str, Any]:
+    return {key: value for key, value in body.items() if key not in keys}
+
+
+def test_a_game_is_read_back_as_it_was_played(house: House, supervise: Supervise) -> None:
+    game = supervise(*FAULTS)
+    events = play(game)
+    (replay,) = read_replays(
+        house.store, read_games(house.store), {house.activity.name: house.activity}, house.names
+    )
+    assert [done.behaviour for done in replay.done] == [
+        act.action.behaviour.name for act in acts(events)
+    ]
+    assert [done.right for done in replay.done] == [act.right for act in acts(events)]
+    assert [done.said for done in replay.done if done.said] == [
+        act.speech for act, done in zip(acts(events), replay.done, strict=True) if done.said
+    ]
+    assert replay.timed
+    assert [m.seconds for m in replay.moments] == sorted(m.seconds for m in replay.moments)
+    faults = [m for m in replay.moments if isinstance(m.what, Diagnosed)]
+    assert [m.seconds for m in faults] == [
+        pytest.approx(m.what.fault.seconds) for m in faults if isinstance(m.what, Diagnosed)
+    ]
+    assert len(faults) == len(replay.faults) == len(read_faults(house.store))
+    assert sum(isinstance(m.what, Moved) for m in replay.moments) == sum(
+        len(fault.moves) for fault in replay.faults
+    )
+
+
+def test_the_rows_of_table_two_are_those_that_playing_counts(
+    house: House, supervise: Supervise
+) -> None:
+    tally = Tally()
+    game = supervise("path-blocked")
+    for _ in range(2):
+        tally.add(play(game))
+    session = told(house)
+    assert list(session.rows) == tally.rows(house.activity.situations)
+    document = session.to_json()
+    assert document["rows"] == tally.to_json(house.activity.situations, {})["rows"]
+    assert [game["number"] for game in document["games"]] == [1, 2]
+
+
+def test_the_four_rows_of_faults_are_there_in_the_papers_order(
+    house: House, supervise: Supervise
+) -> None:
+    assert [(row["criticality"], row["recovery"]) for row in fault_rows([])] == list(ROWS)
+    assert all(row["success"] is None and row["instances"] == 0 for row in fault_rows([]))
+    play(supervise(*FAULTS))
+    session = told(house)
+    rows = session.to_json()["faults"]
+    assert [(row["criticality"], row["recovery"]) for row in rows] == list(ROWS)
+    assert sum(row["instances"] for row in rows) == len(session.faults)
+    assert rows[0] == {
+        "criticality": "critical", "recovery": "expert", "instances": 1, "success": 1.0,
+    }  # fmt: skip
+
+
+def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise("base-failed@6", asks=False), expert=False)
+    session = told(house)
+    (row, *_) = fault_rows(session.faults)
+    assert (row["instances"], row["success"]) == (1, 0.0)
+    (fault,) = session.look_after
+    assert session.to_json()["look_after"][0]["advice"] == list(fault.advice)
+    assert session.games[0].stopped is not None
+    assert fault.console in session_page(session)
+
+
+def test_what_is_over_needs_no_care_and_what_is_borne_does(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise("path-blocked", "arm-failed@5"))
+    session = told(house)
+    assert {fault.code: fault.status for fault in session.faults} == {
+        "path-blocked": "over", "arm-failed": "borne",
+    }  # fmt: skip
+    assert [fault.code for fault in session.look_after] == ["arm-failed"]
+
+
+def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
+    house: House, supervise: Supervise
+) -> None:
+    game = supervise()
+    for _ in range(3):
+        play(game)
+    first, second = told(house, "1"), told(house, "2")
+    for one, two, person in zip(first.people, second.people, house.people, strict=True):
+        known = house.memory().recall(person.id).beliefs
+        whole = next(p for p in told(house).people if p.id == person.id)
+        for strategy in house.activity.strategies:
+            assert (one.strategies[strategy].before.trials) == 0
+            assert one.strategies[strategy].after == two.strategies[strategy].before
+            assert whole.strategies[strategy].after == known[strategy]
+            assert whole.strategies[strategy].used == known[strategy].trials
+    asked = sum(person.interactions for person in told(house).people)
+    assert asked == sum(house.store.responses()[key][0] + house.store.responses()[key][1]
+                        for key in house.store.responses())  # fmt: skip
+
+
+def test_a_void_response_counts_in_no_belief_and_is_told(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise())
+    before = told(house)
+    person = next(p for p in before.people if p.interactions)
+    feedback = house.memory().feedback
+    entry = next(entry for entry in feedback.history(person.id) if entry.counts)
+    feedback.void(person.id, entry.seq, "it was somebody else")
+    after = next(p for p in told(house).people if p.id == person.id)
+    assert after.total("void") == 1
+    assert after.interactions == person.interactions
+    assert after.strategies[entry.strategy].after.trials == (
+        person.strategies[entry.strategy].after.trials - 1
+    )
+    feedback.give(person.id, entry.strategy, True, of=entry.seq)
+    again = next(p for p in told(house).people if p.id == person.id)
+    assert again.total("void") == 0
+    assert again.interactions == person.interactions, "an answer that was mended counts once"
+
+
+def test_games_of_an_older_tangy_are_told_too(house: House, supervise: Supervise) -> None:
+    play(supervise())
+    with Store.open(house.store.folder.parent / "old") as old:
+        for event in house.store.events():
+            body = dict(event.body)
+            if event.kind == "game step":
+                body = without(body, "seconds", "share", "draws", "teacher", "completed")
+                body["state"] = without(body["state"], "closed")
+                body["after"] = without(body["after"], "closed")
+            old.append(
+                event.kind, body, person=event.person, strategy=event.strategy,
+                complied=event.complied,
+            )  # fmt: skip
+        games = read_games(old)
+        session = read_session(old, games, {house.activity.name: house.activity}, {})
+        assert not session.timed
+        assert session.to_json()["seconds"] is None
+        assert [(r.behaviour, r.instances) for r in session.rows] == [
+            (r.behaviour, r.instances) for r in told(house).rows
+        ]
+        page = session_page(session)
+        assert "An older Tangy kept no times" in page
+        ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+
+
+def test_a_game_whose_activity_is_gone_is_told_with_less(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise())
+    session = read_session(house.store, read_games(house.store), {}, house.names)
+    assert "There is no activity" in session.notes[0]
+    assert session.games[0].steps == sum(row.instances for row in session.rows)
+    assert [p.interactions for p in session.people] == [p.interactions for p in told(house).people]
+    assert session_page(session)
+
+
+def test_a_game_that_was_broken_off_says_so(house: House, supervise: Supervise) -> None:
+    game = supervise()
+    game.begin()
+    for _ in range(5):
+        game.step()
+    (found,) = read_games(house.store)
+    assert (found.steps, found.ended, found.ending) == (5, None, BROKEN_OFF)
+    assert BROKEN_OFF[1:] in session_page(told(house))
+    play(supervise(seed=2))
+    assert [g.ended is None for g in read_games(house.store)] == [True, False]
+    assert told(house).games[0].steps == 5
+
+
+def test_a_game_is_found_by_number_id_day_and_last(house: House, supervise: Supervise) -> None:
+    with pytest.raises(TangyError, match="No game was played yet"):
+        find_games(read_games(house.store), "last")
+    game = supervise()
+    for _ in range(3):
+        play(game)
+    games = read_games(house.store)
+    day = games[0].at.astimezone().date()
+    assert find_game(games, "2") is games[1]
+    assert find_game(games, " LAST ") is games[2]
+    assert find_game(games, games[1].id) is games[1]
+    assert find_games(games, "all") == games
+    assert find_games(games, str(day)) == [
+        g for g in games if g.at.astimezone().date() == day
+    ]  # fmt: skip
+    with pytest.raises(TangyError, match="the nearest day with one is"):
+        find_games(games, "1999-01-01")
+    for wrong in ("0", "4", "", games[0].id[:3] + "?", "99999999999999999999", "2026-13-45"):
+        with pytest.raises(TangyError, match="There is no game"):
+            find_games(games, wrong)
+    with pytest.raises(TangyError, match="means 3 games"):
+        find_game(games, "all")
+
+
+def test_a_page_stands_by_itself_and_tells_every_fault_and_move(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise(*FAULTS))
+    session = told(house)
+    page = session_page(session)
+    root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+    assert not [word for word in ("http:", "https:", "src=", "@import", "<link", "<script")
+                if word in page]  # fmt: skip
+    marks = [g for g in root.iter("g") if g.get("class", "").startswith("fault ")]
+    on_drawing = [g for g in marks if g.find("text") is not None]
+    assert len(on_drawing) == len(session.faults) >= 4
+    items = [li for li in root.iter("li") if li.find("span") is not None]
+    assert len(items) == sum(1 + len(fault.moves) for fault in session.faults)
+    for drawing in (svg for svg in root.iter("svg") if svg.get("class") == "timeline"):
+        width = float(drawing.get("viewBox", "").split()[2])
+        for mark in drawing.iter():
+            places = [float(mark.get(key, 0)) for key in ("x", "x1", "x2", "cx")]
+            assert all(0 <= place <= width for place in places)
+
+
+def test_names_on_a_page_are_text_and_nothing_else(house: House, supervise: Supervise) -> None:
+    house.store.rename(house.people[0].id, "<b>&'\"Rosa")
+    names = {**house.names, house.people[0].id: "<b>&'\"Rosa"}
+    play(supervise())
+    session = read_session(
+        house.store, read_games(house.store), {house.activity.name: house.activity}, names
+    )
+    page = session_page(session)
+    assert "<b>" not in page
+    ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+
+
+def test_everybody_who_was_asked_is_in_the_moments(house: House, supervise: Supervise) -> None:
+    play(supervise())
+    (replay,) = told(house).replays
+    kinds = {type(moment.what) for moment in replay.moments}
+    assert {Done, Answered} <= kinds
+    assert all(datetime.fromisoformat(moment.at).tzinfo for moment in replay.moments)
+    assert [moment.to_json()["kind"] for moment in replay.moments].count("step") == len(replay.done)

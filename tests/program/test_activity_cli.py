@@ -1,0 +1,155 @@
+"""`tangy activity`: what ships is well, and what is wrong with a file is told line by line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.activity import read_activity, shipped_activities
+from tangy_profiles.person import load_people
+from tangy_profiles.robot import load_robot
+from tangy_sim.injection import KINDS
+from tangy_tui.learning.checking import check_activity
+from tangy_tui.monitoring.rules import check_rules
+
+Tangy = Callable[..., CompletedProcess[str]]
+SHIPPED = shipped_activities()["bingo"].read_text(encoding="utf-8")
+LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
+RULES = """
+[[faults]]
+code = "unexplained"
+name = "Something unexpected"
+criticality = "non-critical"
+recovery = ["teacher"]
+fallback = true
+console = "Why: {why}"
+advice = ["Look."]
+"""
+
+
+def warnings(folder: Path, text: str) -> list[str]:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    checked = check_activity(read_activity(path), load_robot(), load_people(4))
+    assert not checked.mistakes
+    return list(checked.warnings)
+
+
+def test_everything_that_ships_is_well(tangy: Tangy) -> None:
+    done = tangy("activity", "check")
+    assert (done.returncode, done.stderr) == (0, "")
+    document = json.loads(tangy("activity", "check", "--json").stdout)
+    assert document["ok"]
+    assert [file["kind"] for file in document["files"]] == ["activity", "faults"]
+    assert not any(file.get("warnings") for file in document["files"])
+    rules = document["files"][-1]
+    assert not rules["kinds_without_rule"]
+    assert not rules["evidence_without_rule"]
+
+
+def test_the_list_names_what_can_be_played(tangy: Tangy) -> None:
+    (bingo,) = json.loads(tangy("activity", "list", "--json").stdout)
+    assert (bingo["name"], len(bingo["behaviours"]), len(bingo["situations"])) == ("bingo", 11, 11)
+    assert "Bingo" in tangy("activity", "list").stdout
+
+
+def test_an_activity_of_ones_own_is_checked_by_its_path(tangy: Tangy) -> None:
+    done = tangy("activity", "check", LANTERNS)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "lanterns.toml" in done.stdout
+
+
+def test_mistakes_are_a_line_each_and_the_status_says_so(tangy: Tangy, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text(SHIPPED.replace('posture = "', 'posture = "xx', 1), encoding="utf-8")
+    rules = tmp_path / "rules.toml"
+    wrong = RULES.replace('"teacher"', '"teecher"').replace("unexplained", "other")
+    rules.write_text(wrong + RULES.replace("{why}", "{whi}"), encoding="utf-8")
+    done = tangy("activity", "check", "bingo", "bingoo", bad, rules)
+    assert done.returncode == 2
+    lines = done.stderr.splitlines()
+    assert len(lines) == 4
+    assert "did you mean 'bingo'?" in lines[0]
+    assert lines[1].startswith("bad.toml: behaviours[")
+    assert "did you mean 'teacher'?" in lines[2]
+    assert "did you mean 'why'?" in lines[3]
+    document = json.loads(tangy("activity", "check", bad, rules, "--json").stdout)
+    assert not document["ok"]
+    assert [len(file["mistakes"]) for file in document["files"]] == [1, 2]
+
+
+def test_a_file_that_cannot_be_read_is_one_line(tangy: Tangy, tmp_path: Path) -> None:
+    (tmp_path / "x.toml").write_bytes(b"\xff\xfe")
+    for given in (["none.toml"], [tmp_path / "x.toml"], [tmp_path], ["--faults", "none.toml"]):
+        done = tangy("activity", "check", *given)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+@pytest.mark.parametrize(
+    ("put", "reason"),
+    [
+        ('name = "nap"\nwhen = "otherwise"', None),
+        ('name = "nap"\nwhen = "before"\nbehaviour = "greeting"', "always holds first"),
+        ('name = "nap"\nwhen = "beside requester"', "always holds first"),
+        ('name = "nap"\nwhen = "after"\nbehaviour = "valediction"', "the activity is over"),
+        ('name = "nap"\nwhen = "after"\nbehaviour = "joke"', None),
+        (
+            'name = "nap"\nwhen = "count"\nbehaviour = "call number"\nsince = "joke"\nevery = 40',
+            "always holds first",
+        ),
+    ],
+)
+def test_a_stage_that_can_never_be_reached_is_told(
+    tmp_path: Path, put: str, reason: str | None
+) -> None:
+    *first, last = SHIPPED.split("[[stages]]")
+    text = "[[stages]]".join([*first, f" \n{put}\n\n", last])
+    found = [line for line in warnings(tmp_path, text) if "stages[nap]" in line]
+    assert [reason in line for line in found if reason] == ([True] if reason else [])
+
+
+def test_what_stands_after_otherwise_is_never_reached(tmp_path: Path) -> None:
+    *first, last = SHIPPED.split("[[stages]]")
+    put = '\nname = "nap"\nwhen = "otherwise"\n\n'
+    found = warnings(tmp_path, "[[stages]]".join([*first, put, last]))
+    assert [line for line in found if "'nap' stands before it" in line] == found
+    assert len(found) == 1
+
+
+def colliding() -> str:
+    """Return an activity in which a behaviour takes another's name and phrase."""
+    first = '"greet everyone", '
+    assert SHIPPED.index(first) < SHIPPED.index('"tell a joke"')
+    text = SHIPPED.replace(first, first + '"joke", ', 1)
+    begun = text.index("question = ")
+    return text[:begun] + 'question = "say two"' + text[text.index("\n", begun) :]
+
+
+def test_a_phrase_that_means_something_else_is_told(tmp_path: Path) -> None:
+    text = colliding().replace('"tell a joke", ', '"tell a joke", "say two", ', 1)
+    found = warnings(tmp_path, text)
+    assert len(found) == 2
+    assert all("behaviours[joke].phrases" in line for line in found)
+    assert all("is heard as 'greeting'" in line for line in found)
+    assert not warnings(tmp_path, SHIPPED)
+
+
+def test_a_behaviour_that_nobody_can_ask_for_is_told(tmp_path: Path) -> None:
+    text = colliding()
+    begun = text.rindex("phrases", 0, text.index('"tell us a joke"'))
+    text = text[:begun] + 'phrases = ["say two"]' + text[text.index("]", begun) + 1 :]
+    (found,) = warnings(tmp_path, text)
+    assert "behaviours[joke].phrases: nobody can ask for it" in found
+
+
+def test_rules_say_what_none_of_them_is_for(tmp_path: Path) -> None:
+    path = tmp_path / "rules.toml"
+    path.write_text(RULES, encoding="utf-8")
+    rules = check_rules(load_robot(), path)
+    assert "laser.state" in rules.unseen
+    right = {name for name, kind in KINDS.items() if kind.code == "unexplained"}
+    assert set(rules.unruled) == set(KINDS) - right

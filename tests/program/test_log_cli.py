@@ -1,0 +1,149 @@
+"""`tangy log`: the games that were played, on the command line."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.store import Store
+from tangy_tui.monitoring.fault_table import ROWS
+
+Tangy = Callable[..., CompletedProcess[str]]
+FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
+
+
+@pytest.fixture(scope="module")
+def _played(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from tangy_tui.house import House
+    from tangy_tui.learning.policies import load_policy
+    from tests.monitoring.conftest import play
+
+    folder = Path(shutil.copytree(_taught, tmp_path_factory.mktemp("played") / "data"))
+    house = House(folder)
+    learnt, _ = load_policy(house.store, house.activity)
+    with house.store.transaction():
+        play(house.supervision(learnt, 1, asks=True))
+        play(house.supervision(learnt, 2, asks=True, injections=FAULTS))
+        play(house.supervision(learnt, 3, injections=("base-failed@5",)), expert=False)
+    house.close()
+    return folder
+
+
+@pytest.fixture
+def played(_played: Path, tmp_path: Path) -> Path:
+    """A data folder in which three games were played: a smooth, a bumpy, and a stopped one."""
+    return Path(shutil.copytree(_played, tmp_path / "played"))
+
+
+def test_the_list_has_every_game_in_order(tangy: Tangy, played: Path) -> None:
+    done = tangy("log", "list", "--json", "--data", played)
+    games = json.loads(done.stdout)
+    assert (done.returncode, [game["number"] for game in games]) == (0, [1, 2, 3])
+    assert [game["faults"] for game in games] == [
+        {"critical": 0, "other": 0}, {"critical": 1, "other": 2}, {"critical": 1, "other": 0},
+    ]  # fmt: skip
+    assert [game["stopped"] is None for game in games] == [True, True, False]
+    shown = tangy("log", "list", "--data", played).stdout
+    for game in games:
+        assert game["id"][:8] in shown
+    assert all(len(line) <= 80 for line in shown.splitlines())
+
+
+def test_an_empty_folder_has_no_games(tangy: Tangy, tmp_path: Path) -> None:
+    done = tangy("log", "list", "--data", tmp_path / "none")
+    assert (done.returncode, "tangy play" in done.stdout) == (0, True)
+    assert json.loads(tangy("log", "list", "--json", "--data", tmp_path / "none").stdout) == []
+    assert not (tmp_path / "none").exists(), "who only reads makes nothing"
+    for verb in ("show", "report"):
+        done = tangy("log", verb, "last", "--data", tmp_path / "none")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.count("\n") == 1
+
+
+def test_a_game_is_told_step_by_step_with_its_faults_in_place(tangy: Tangy, played: Path) -> None:
+    document = json.loads(tangy("log", "show", 2, "--json", "--data", played).stdout)
+    kinds = [moment["kind"] for moment in document["moments"]]
+    assert kinds.count("step") == document["steps"]
+    assert kinds.count("fault") == len(document["fault_list"]) == 3
+    lines = tangy("log", "show", 2, "--data", played).stdout.splitlines()
+    halted = next(n for n, line in enumerate(lines) if "Laser scanner silent: halted" in line)
+    numbers = [line.split("  ")[-1].split(".")[0] for line in lines[:halted] if " -> " in line]
+    assert numbers[-1] == "6", "the fault stands after the step after which it came"
+    assert any("Tangy says: " in line for line in lines)
+    assert any("complied" in line or "followed" in line for line in lines)
+
+
+def test_a_report_in_json_has_all_of_its_parts(tangy: Tangy, played: Path) -> None:
+    for game in ("2", "last", "all"):
+        document = json.loads(tangy("log", "report", game, "--json", "--data", played).stdout)
+        assert {"games", "rows", "faults", "fault_list", "people", "look_after"} <= set(document)
+        assert [(row["criticality"], row["recovery"]) for row in document["faults"]] == list(ROWS)
+        assert sum(row["instances"] for row in document["rows"]) == sum(
+            game["steps"] for game in document["games"]
+        )
+    assert len(document["games"]) == 3
+    assert len(document["fault_list"]) == 4
+
+
+def test_a_report_is_a_page_or_a_few_lines(tangy: Tangy, played: Path, tmp_path: Path) -> None:
+    page = tmp_path / "report.html"
+    done = tangy("log", "report", "all", "--html", page, "--data", played)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert page.read_text(encoding="utf-8").count('class="timeline"') == 3
+    lines = tangy("log", "report", "--data", played).stdout
+    assert "To look after:" in lines
+    assert "Wheels do not answer" in lines
+
+
+def test_the_id_begun_is_enough_and_a_day_is_a_session(tangy: Tangy, played: Path) -> None:
+    games = json.loads(tangy("log", "list", "--json", "--data", played).stdout)
+    short = games[1]["id"][:8]
+    found = json.loads(tangy("log", "show", short, "--json", "--data", played).stdout)
+    assert found["id"] == games[1]["id"]
+    done = tangy("log", "report", "2001-02-03", "--data", played)
+    assert (done.returncode, "the nearest day with one is" in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("wrong", ["7", "nosuch", "al", "", "\x1b[2J", "0"])
+def test_a_wrong_game_is_one_sentence(tangy: Tangy, played: Path, wrong: str) -> None:
+    for verb in ("show", "report"):
+        done = tangy("log", verb, wrong, "--data", played)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.count("\n") == 1
+        assert done.stderr.strip().isprintable()
+
+
+def test_where_no_page_can_be_is_said_before_anything_is_read(
+    tangy: Tangy, played: Path, tmp_path: Path
+) -> None:
+    for place in (tmp_path, tmp_path / "none" / "report.html"):
+        done = tangy("log", "report", "nosuch", "--html", place, "--data", played)
+        assert done.returncode == 2
+        assert done.stderr.startswith(f"tangy: --html {place}: ")
+
+
+def test_a_game_of_an_activity_that_is_gone_is_still_listed(
+    tangy: Tangy, tmp_path: Path, played: Path
+) -> None:
+    with Store.open(played) as store:
+        begun = next(store.events("game begun")).body
+        store.append("game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
+    assert "whist" in tangy("log", "list", "--data", played).stdout
+    done = tangy("log", "show", "last", "--data", played)
+    assert (done.returncode, "There is no activity 'whist' here" in done.stderr) == (0, True)
+    assert "There is no activity 'whist'" in tangy("log", "report", "--data", played).stdout
+    other = Path(__file__).parent.parent / "lanterns.toml"
+    done = tangy("log", "report", "--activity", other, "--data", played)
+    assert (done.returncode, "played was whist" in done.stderr) == (2, True)
+
+
+def test_nobody_is_told_by_a_name_that_was_changed(tangy: Tangy, played: Path) -> None:
+    tangy("people", "rename", "user1", "Rosa", "--data", played)
+    document = json.loads(tangy("log", "report", "all", "--json", "--data", played).stdout)
+    assert document["people"][0]["name"] == "Rosa"
+    assert "Took part: Rosa, " in tangy("log", "report", "--data", played).stdout
