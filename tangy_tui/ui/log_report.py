@@ -13,9 +13,9 @@ from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
 from tangy_tui.ui.local_time import local_time
 
-SHORT = 8
+SHORT = 6
 """Characters of an id that are printed."""
-COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "ended")
+COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end")
 
 
 def print_games(games: Sequence[Game]) -> None:
@@ -50,7 +50,7 @@ def print_games(games: Sequence[Game]) -> None:
 def _ended(game: Game) -> Text:
     if game.ended is None:
         return Text("no end", style="yellow")
-    return Text("to its end") if game.stopped is None else Text("stopped", style="yellow")
+    return Text("played") if game.stopped is None else Text("stopped", style="yellow")
 
 
 def _faults(game: Game) -> Text:

@@ -50,7 +50,7 @@ def test_the_list_has_every_game_in_order(tangy: Tangy, played: Path) -> None:
     assert [game["stopped"] is None for game in games] == [True, True, False]
     shown = tangy("log", "list", "--data", played).stdout
     for game in games:
-        assert game["id"][:8] in shown
+        assert game["id"][:6] in shown
     assert all(len(line) <= 80 for line in shown.splitlines())
 
 
