@@ -61,7 +61,8 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 .key span { white-space: nowrap; } .key svg { display: inline-block;
   width: 20px; height: 16px; vertical-align: -3px; margin-right: .3rem; }
 .timeline { min-width: 46rem; } .drawn { overflow-x: auto; }
-@media print { .timeline { min-width: 0; } .care, .moves li, .fault-told { break-inside: avoid; } }
+@media print { .timeline { min-width: 0; } .drawn { overflow: visible; }
+  .care, .moves li, .fault-told { break-inside: avoid; } }
 """ + "".join(f".s{n} {{ fill: var(--series-{n}); }}\n" for n in INKS)  # the stages' inks
 
 KEY = (

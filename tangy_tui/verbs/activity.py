@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangy_profiles.errors import ProfileError
+from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Json, print_json
 
@@ -19,11 +19,20 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    no_args_is_help=True,
-    help="Which activities there are, and whether their files and the fault rules are well.",
+    help="Which activities there are, and what is wrong with their files. Without a verb: list.",
 )
 
 SHOWN = 4  # people with whom phrases are tried: most behaviours can be asked for by a name
+
+
+@app.callback(invoke_without_command=True)
+def activities(context: typer.Context, as_json: Json = False) -> None:
+    """List the activities, where no verb is given."""
+    if context.invoked_subcommand is None:
+        activity_list(as_json)
+    elif as_json:
+        verb = context.invoked_subcommand
+        raise TangyError(f"Options of `tangy activity {verb}` stand after {verb}.")
 
 
 @app.command("list")

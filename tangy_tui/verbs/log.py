@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     rich_markup_mode=None,
-    no_args_is_help=True,
-    help="The games that were played: which there were, step by step, and as a report.",
+    help="The games that were played: list, step by step, report. Without a verb: list.",
 )
 
 Which = Annotated[
@@ -38,6 +37,16 @@ Session = Annotated[
 Of = Annotated[
     str, typer.Option("--activity", help="The activity's TOML file, if it does not ship.")
 ]
+
+
+@app.callback(invoke_without_command=True)
+def log(context: typer.Context, data: Data = None, as_json: Json = False) -> None:
+    """List the games, where no verb is given."""
+    if context.invoked_subcommand is None:
+        log_list(data, as_json)
+    elif (data, as_json) != (None, False):
+        verb = context.invoked_subcommand
+        raise TangyError(f"Options of `tangy log {verb}` stand after {verb}.")
 
 
 @app.command("list")

@@ -55,6 +55,7 @@ def test_the_list_names_what_can_be_played(tangy: Tangy) -> None:
     (bingo,) = json.loads(tangy("activity", "list", "--json").stdout)
     assert (bingo["name"], len(bingo["behaviours"]), len(bingo["situations"])) == ("bingo", 11, 11)
     assert "Bingo" in tangy("activity", "list").stdout
+    assert json.loads(tangy("activity", "--json").stdout) == [bingo]
 
 
 def test_an_activity_of_ones_own_is_checked_by_its_path(tangy: Tangy) -> None:
