@@ -9,12 +9,10 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import Answered, Done, Moment, Replay
-from tangy_tui.monitoring.session import Progress, Session
+from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.wording import Name, counted
-
-STATUS = {"open": "left open", "borne": "Tangy goes on with it", "over": "over"}
 
 
 def game_words(game: Game) -> str:
@@ -105,7 +103,7 @@ def session_lines(session: Session) -> Iterator[str]:
         kind = "CRITICAL, " if fault.critical else ""
         yield (
             f"  {number}. {clock(fault.seconds)}, step {fault.step}: {fault.name} "
-            f"({kind}{STATUS[fault.status]})"
+            f"({kind}{STATUS_WORDS[fault.status]})"
         )
     for row in fault_rows(session.faults):
         if row["instances"]:

@@ -16,10 +16,13 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.memory import Known, Memory, counted, replayed
 from tangy_tui.interaction.tally import Row
-from tangy_tui.monitoring.fault import BORNE, OPEN, Fault
+from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
 from tangy_tui.monitoring.replay import Replay, read_replays
+
+STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
+"""What became of a fault, in words."""
 
 SET_ASIDE = "set aside"
 """The remedy after which a person is left alone: somebody should look after them."""

@@ -8,7 +8,7 @@ from html import escape
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import Replay
-from tangy_tui.monitoring.session import Progress, Session
+from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.pages.beliefs import belief_drawing, interval
@@ -17,9 +17,6 @@ from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 
 MOST_DRAWN = 24
 """Games that are drawn on one page; of more, the last ones."""
-
-STATUS = {"open": "left open", "borne": "Tangy goes on with it", "over": "over"}
-"""What became of a fault, in words."""
 
 STYLE = """
 :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
@@ -167,7 +164,7 @@ def _care(session: Session) -> Iterator[str]:
         number = f"{numbers[fault.id]}. " if fault.id in numbers else ""
         yield (
             f'<div class="care{" critical" if fault.critical else ""}">'
-            f"<h3>{escape(number + fault.name)} ({STATUS[fault.status]})</h3>"
+            f"<h3>{escape(number + fault.name)} ({STATUS_WORDS[fault.status]})</h3>"
             f"<p>{escape(fault.console)}</p><ul>{steps}</ul></div>"
         )
 
@@ -285,7 +282,7 @@ def _faults(session: Session) -> Iterator[str]:
 
 def _last_words(fault: Fault) -> str:
     told = [move_words(move) for move in fault.moves]
-    return told[-1] if told else STATUS[fault.status]
+    return told[-1] if told else STATUS_WORDS[fault.status]
 
 
 def _fault(fault: Fault, number: int, replay: Replay, many: bool) -> str:
@@ -302,7 +299,7 @@ def _fault(fault: Fault, number: int, replay: Replay, many: bool) -> str:
     return (
         f'<div class="fault-told"><h3>{number}. {escape(fault.name)} '
         f'<span class="tag {kind}">{"critical" if fault.critical else "not critical"}</span> '
-        f'<span class="dim">{STATUS[fault.status]}</span></h3>'
+        f'<span class="dim">{STATUS_WORDS[fault.status]}</span></h3>'
         f"<p>{escape(fault.console)}</p>"
         f'<p class="dim">{escape(facts)} Evidence: {escape(fault.why)}.</p>'
         f'<ul class="moves">{moves}</ul></div>'

@@ -7,8 +7,9 @@ from html import escape
 from itertools import groupby
 from typing import NamedTuple
 
-from tangy_tui.monitoring.fault import BORNE, ENDINGS, OVER, Fault, Moved
+from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
 from tangy_tui.monitoring.replay import Answered, Done, Replay
+from tangy_tui.monitoring.session import STATUS_WORDS
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
 """Of the drawing, in its own units; the lanes' names stand left of the lanes."""
@@ -269,7 +270,7 @@ def _fault(fault: Fault, number: int, x: float, end: float, y: float) -> Iterato
         yield (
             f'<line class="mend {kind}" x1="{end:.1f}" x2="{end:.1f}" y1="{y - 6}" y2="{y + 6}"/>'
         )
-    words = f"{number}. {fault.name} ({_status(fault)})"
+    words = f"{number}. {fault.name} ({STATUS_WORDS[fault.status]})"
     shape = (
         f'<path d="M{x:.1f} {y - 13}L{x + 13:.1f} {y}L{x:.1f} {y + 13}L{x - 13:.1f} {y}Z"/>'
         if fault.critical
@@ -279,12 +280,6 @@ def _fault(fault: Fault, number: int, x: float, end: float, y: float) -> Iterato
         f'<g class="fault {kind}"><title>{escape(words)}</title>{shape}'
         f"{_text(x, y, str(number), 'on', 'middle')}</g>"
     )
-
-
-def _status(fault: Fault) -> str:
-    if fault.status == OVER:
-        return "over"
-    return "went on with it" if fault.status == BORNE else "left open"
 
 
 def _label(words: str, y: float) -> str:
