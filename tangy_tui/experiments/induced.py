@@ -151,7 +151,7 @@ class InducingWorld(FaultyWorld):
 
     def execute(self, action: Action) -> Outcome:
         """Let a planned fault come that can show now, and carry out the action."""
-        if self.due and not self.held and not self.over:
+        if not self.held and not self.over:
             self._induce(action)
         return super().execute(action)
 
@@ -168,9 +168,13 @@ class InducingWorld(FaultyWorld):
             for name in (planned.kind.name, *(planned.others if waited else ())):
                 if fits(name, had) and self.can_show(KINDS[name], action):
                     self.due.remove(planned)
-                    self.induced.append(Induced(KINDS[name], step, self.seconds))
-                    self.inject(name)
+                    self.bring_about(name)
                     return
+
+    def bring_about(self, name: str) -> None:
+        """Let a fault of a kind come with the behaviour that is about to be carried out."""
+        self.induced.append(Induced(KINDS[name], self.tracker.step + 1, self.seconds))
+        self.inject(name)
 
     def lift(self, kind: str) -> None:
         """Put a fault right, and note when."""

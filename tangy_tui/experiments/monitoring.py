@@ -1,0 +1,277 @@
+"""How well faults are noticed: every kind with every behaviour, false alarms, and faults in pairs.
+
+Each function plays games and counts; `tests/bench/faults.py` shows it for many, the tests for few.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from random import Random
+from typing import Any
+
+from tangy_profiles.behaviour import Action
+from tangy_sim.compliance import Preferences
+from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
+from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of
+from tangy_tui.experiments.comparison import TO_ITS_END
+from tangy_tui.experiments.induced import InducingWorld, recovery_of
+from tangy_tui.experiments.matching import RIGHT, match_faults
+from tangy_tui.experiments.supervised import Supervised, people_of, play, supervised
+from tangy_tui.experiments.sweep import Case, Settings
+from tangy_tui.interaction.facilitation import GameEnded
+from tangy_tui.monitoring.fault import OPEN, Fault, Moved
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+REQUESTS = 20
+"""Behaviours within which a person who follows nothing was asked often enough to be told of."""
+
+DRIVES = ("go to user", "go to front")
+"""The effects of behaviours for which the robot drives."""
+
+TURNS = ("asked", "remedied", "teacher asked", "halted")
+"""The moves by which it is a fault's turn."""
+
+
+class AimingWorld(InducingWorld):
+    """A world in which kinds of faults come together, once, with a behaviour (None: any)."""
+
+    kinds: Sequence[str] = ()
+    behaviour: str | None = None
+    after = 0
+    """Steps before which nothing comes."""
+    executed = 0
+    """How often the behaviour was about to be carried out."""
+
+    def _induce(self, action: Action) -> None:
+        if self.induced or self.behaviour not in (None, action.behaviour.name):
+            return
+        self.executed += 1
+        ends = self.behaviour is None and action.behaviour.effect == "finish"
+        if self.tracker.step < self.after or ends:  # after the end there is no time to recover
+            return
+        kinds = [KINDS[name] for name in self.kinds]
+        if all(self.can_show(kind, action) for kind in kinds) and apart(kinds, action):
+            for name in self.kinds:
+                self.bring_about(name)
+
+
+def apart(kinds: Sequence[Kind], action: Action) -> bool:
+    """Say whether each of some kinds can be seen by itself if they come with the same action.
+
+    A robot that is held does not arrive, whatever else came to nothing; and while nothing at all
+    is heard, nobody can see what happens once.
+    """
+    held = any(kind.holds for kind in kinds) and action.behaviour.effect in DRIVES
+    deaf = any(kind.holds and kind.blinds for kind in kinds)
+    return not any(
+        (held and kind.shows == MOVING_ON) or (deaf and kind.shows in (MOVING_ON, WAITING))
+        for kind in kinds
+    )
+
+
+class HalfHeartedWorld(InducingWorld):
+    """A world in which people follow a request with a probability only; nothing is amiss."""
+
+    follows = 1.0
+
+    def _refuses(self) -> bool:
+        chance = self.__dict__.setdefault("_follow", Random("follow")).random
+        if self.tracker.place in self.tracker.queue and chance() >= self.follows:
+            self._refused = True
+            return True
+        return super()._refuses()
+
+
+def complying(house: Supervised, share: float | None) -> Preferences | None:
+    """Return people who comply with every strategy alike (None: with their own preferences)."""
+    if share is None:
+        return None
+    strategies = activity_of(house.activity).strategies
+    return {person: dict.fromkeys(strategies, share) for person in people_of(house)}
+
+
+# --------------------------------------------------------------------- kinds and behaviours
+
+
+def matrix(settings: Settings, case: Case) -> list[dict[str, Any]]:
+    """Bring about a kind with each behaviour in turn: a case is (kind, first seed, seeds).
+
+    Settings: `activity`, `users`, and `complies` (a probability, or None for the usual ones).
+
+    Returns:
+        A row for each behaviour: in how many games it was `executed`, the fault `came`, was
+        `detected` within its behaviour, with the right `class` and `cause`, and how often there
+        was a `false` alarm.
+    """
+    name, seed, seeds = case
+    activity = activity_of(settings["activity"])
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
+        return [
+            _cell(house, settings, name, behaviour, seed, seeds)
+            for behaviour in activity.behaviours
+        ]
+
+
+def _cell(
+    house: Supervised, settings: Settings, name: str, behaviour: str, seed: int, seeds: int
+) -> dict[str, Any]:
+    world, game = _aiming(house, settings, f"{name}/{behaviour}", seed)
+    world.kinds, world.behaviour = (name,), behaviour
+    right_class = recovery_of(KINDS[name], house.book)
+    count = Counter[str]()
+    for number in range(seeds):
+        world.after, world.executed = 3 * (number % 5), 0
+        play(game, until=lambda game: _settled(game, world))
+        count["executed"] += world.executed > 0
+        if not world.induced:
+            continue
+        (one,) = world.induced
+        matches = match_faults(world.induced, game.faults)
+        told = [match.fault for match in matches.of(one)]
+        if KINDS[name].shows != ASKING:
+            told = [fault for fault in told if fault.step == one.step]
+        if not one.could_show:
+            continue
+        count["came"] += 1
+        count["detected"] += bool(told)
+        count["class"] += any(fault.recovery == right_class for fault in told)
+        count["cause"] += any(fault.code == one.kind.code for fault in told)
+        count["false"] += matches.false_alarms
+        for fault in told:
+            if fault.code != one.kind.code:
+                count[f"told: {fault.code}"] += 1
+    return {"kind": name, "behaviour": behaviour, **count}
+
+
+def _aiming(
+    house: Supervised, settings: Settings, salt: str, seed: int
+) -> tuple[AimingWorld, Supervision]:
+    number = Random(f"{salt}/{seed}").randrange(1_000_000_000)
+    world = AimingWorld(
+        activity_of(house.activity),
+        people_of(house),
+        seed=number,
+        preferences=complying(house, settings.get("complies")),
+    )
+    return world, house.games(world, number)
+
+
+def _settled(game: Supervision, world: AimingWorld) -> bool:
+    """Say whether it is known what became of the fault that was brought about."""
+    if not world.induced:
+        return False
+    first = world.induced[0]
+    if game.question is not None or game.halted is not None:
+        return True
+    wait = REQUESTS if first.kind.shows == ASKING else 1
+    told = any(fault.code == first.kind.code for fault in game.faults)
+    waits = first.kind.name in world.present and not first.could_show
+    return not waits and (told or game.steps >= first.step + wait)
+
+
+# --------------------------------------------------------------------------- false alarms
+
+
+def alarms(settings: Settings, case: Case) -> dict[str, Any]:
+    """Play games without faults: a case is (seed of the demonstrations, first seed, games).
+
+    Settings as for `matrix`, and `follows`: the probability that a request is followed.
+
+    Returns:
+        `games`, `steps`, how often each code was diagnosed, and how often Tangy only asked.
+    """
+    lesson, seed, games = case
+    count: Counter[str] = Counter()
+    steps = asked = 0
+    with supervised(Course(settings["activity"], settings["users"], RANDOM, lesson)) as house:
+        world = HalfHeartedWorld(
+            activity_of(house.activity),
+            people_of(house),
+            seed=seed,
+            preferences=complying(house, settings.get("complies")),
+        )
+        world.follows = settings.get("follows", 1.0)
+        game = house.games(world, seed)
+        for _ in range(games):
+            play(game)
+            steps += game.steps
+            asked += sum(fault.asks_only for fault in game.faults)
+            count.update(fault.code for fault in game.faults if not fault.asks_only)
+    return {"games": games, "steps": steps, "asked": asked, "codes": dict(count)}
+
+
+# --------------------------------------------------------------------------- several at once
+
+
+def pairs(settings: Settings, case: Case) -> dict[str, Any]:
+    """Bring about a critical kind and another at once: a case is (critical, other, seed, seeds).
+
+    Returns:
+        In how many games both `came`, both were `diagnosed`, the critical one had its turn
+        `first`, and both were `ended` (over, or borne where that was planned).
+    """
+    critical, other, seed, seeds = case
+    count = Counter[str]()
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
+        world, game = _aiming(house, settings, f"{critical}/{other}", seed)
+        world.kinds = (critical, other)
+        for number in range(seeds):
+            world.after = 4 * (number % 5)
+            events = play(game)
+            if len(world.induced) < 2 or not all(one.could_show for one in world.induced):
+                continue
+            count["came"] += 1
+            told = {
+                match.induced.kind.name: match.fault
+                for match in reversed(match_faults(world.induced, game.faults).matches)
+                if match.verdict == RIGHT and match.induced is not None
+            }
+            if len(told) < 2:
+                continue
+            count["diagnosed"] += 1
+            turns = _turns(events)
+            first, second = told[critical], told[other]
+            count["first"] += first.id in turns and second.id not in turns[: turns.index(first.id)]
+            count["ended"] += first.status != OPEN and second.status != OPEN
+    return {"critical": critical, "other": other, **count}
+
+
+def _turns(events: Sequence[Event]) -> list[str]:
+    """Return whose turn it was, by the ids of the faults."""
+    return [e.fault.id for e in events if isinstance(e, Moved) and e.move.kind in TURNS]
+
+
+def crowd(settings: Settings, case: Case) -> list[dict[str, Any]]:
+    """Play games in which every kind may come at every step: a case is (seed, games, chance)."""
+    seed, games, chance = case
+    played: list[dict[str, Any]] = []
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
+        world = FaultyWorld(
+            activity_of(house.activity),
+            people_of(house),
+            seed=seed,
+            injections=[Injection(kind, chance=chance) for kind in KINDS.values()],
+        )
+        game = house.games(world, seed)
+        for _ in range(games):
+            events = play(game)
+            stopped = next(event.stopped for event in events if isinstance(event, GameEnded))
+            faults: list[Fault] = [fault for fault in game.faults if not fault.asks_only]
+            played.append(
+                {
+                    "came": len(world.came),
+                    "faults": len(faults),
+                    "critical": sum(fault.critical for fault in faults),
+                    "open": sum(fault.status == OPEN for fault in faults),
+                    "steps": game.steps,
+                    "ended": TO_ITS_END if stopped is None else stopped,
+                }
+            )
+    return played
+
+
+def added(rows: Sequence[Mapping[str, Any]], name: str) -> int:
+    """Add up one of the counts of rows."""
+    return sum(row.get(name, 0) for row in rows)
