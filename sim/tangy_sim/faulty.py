@@ -81,6 +81,11 @@ class FaultyWorld(SimulatedWorld):
         """The time in this game, in s."""
         return self._now * self.users.call_seconds
 
+    @property
+    def still_to_come(self) -> list[str]:
+        """The injections that have not come about in this game, but for those by chance."""
+        return [str(one) for one in self._to_come if one.chance is None]
+
     # ------------------------------------------------------------------- faults come and go
 
     def inject(self, kind: str) -> None:

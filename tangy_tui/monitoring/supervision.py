@@ -56,7 +56,9 @@ Event: TypeAlias = GameEvent | FaultEvent
 AGAIN = 3
 """A recovery that had to be repeated so often in a game begins with its next rung."""
 
-NOBODY = "There is no expert who could be asked."
+MOST_MOVES = 200
+"""After so many moves against faults without a behaviour in between, a game is ended."""
+
 TO_TEACH = "Say what to do here, or look at what happened at the table."
 
 
@@ -95,6 +97,7 @@ class Supervision:
         self.seconds = 0.0
         """The time in the present game, in s."""
         self._there: list[Fault] = []  # those that are not over
+        self._idle = 0
         self._store = store
         self._effects_of = effects_of
         self._name = name
@@ -160,6 +163,7 @@ class Supervision:
         self._tried.clear()
         self._times.clear()
         self._seen = self._acted = None
+        self._idle = 0
         self._detector.begin()
         return told
 
@@ -172,7 +176,11 @@ class Supervision:
             return told
         fault = self._next()
         if fault is not None:
+            self._idle += 1
+            if self._idle > MOST_MOVES:
+                return told + self._stop(f"{MOST_MOVES} moves against faults led nowhere.")
             return told + self._recover(fault)
+        self._idle = 0
         if not self.game.asks:
             told += self._foresee()
         return told + self._after(self.game.step())

@@ -146,6 +146,9 @@ def demo(
 def _play_headless(
     house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
 ) -> None:
+    from collections import Counter
+
+    from tangy_sim.faulty import FaultyWorld
     from tangy_tui.documents import lesson_document
     from tangy_tui.interaction.facilitation import Taught
     from tangy_tui.interaction.tally import Tally
@@ -156,6 +159,7 @@ def _play_headless(
     tally = Tally()
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
+    absent = Counter[str]()
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(supervision.begin())
@@ -163,6 +167,9 @@ def _play_headless(
                 events = go_on_by_script(supervision, expert=expert)
                 tally.add(events)
                 lessons += [event.lesson for event in events if isinstance(event, Taught)]
+        world = supervision.world
+        if isinstance(world, FaultyWorld):
+            absent.update(world.still_to_come)
         faults += [fault.document() for fault in supervision.faults if not fault.asks_only]
     beliefs = supervision.persuasion.beliefs
     if as_json:
@@ -172,3 +179,5 @@ def _play_headless(
         for lesson in lessons:
             print(lesson_words(house.activity, lesson))
         reports.print_tally(house, tally, beliefs)
+        for injected, times in absent.items():
+            print(f"{injected} did not come about in {times} of {games} games.")

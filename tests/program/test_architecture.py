@@ -24,11 +24,14 @@ ENGINE = [
     *sorted((ROOT / "tangy_tui" / "interaction").glob("*.py")),
     *sorted((ROOT / "tangy_tui" / "monitoring").glob("*.py")),
     *sorted((ROOT / "tangy_tui" / "experiments").glob("*.py")),
+    *sorted((ROOT / "tangy_tui" / "pages").glob("*.py")),
     ROOT / "tangy_tui" / "world.py",
     ROOT / "tangy_tui" / "wording.py",
     ROOT / "tangy_tui" / "lines.py",
     ROOT / "tangy_tui" / "game_lines.py",
     ROOT / "tangy_tui" / "fault_lines.py",
+    ROOT / "tangy_tui" / "log_lines.py",
+    ROOT / "tangy_tui" / "drill_lines.py",
     ROOT / "tangy_tui" / "drill_lines.py",
 ]
 HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}
