@@ -5,10 +5,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tangy_profiles.faults import load_faults
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import KINDS
+from tangy_tui.experiments import monitoring
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.monitoring.diagnosis import diagnose
 from tangy_tui.monitoring.scripted_people import answer_by_script
@@ -80,3 +83,57 @@ def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
     answer_by_script(game)
     known = game._effects_of(game.policy).values
     assert not any("open with nothing left" in one.get("request", ()) for one in known.values())
+
+
+SETTINGS = {"activity": "bingo", "users": 4}
+
+
+def test_each_kind_is_told_with_whatever_behaviour_it_comes() -> None:
+    rows = [row for kind in KINDS for row in monitoring.matrix(SETTINGS, (kind, 3, 1))]
+    came = monitoring.added(rows, "came")
+    assert came > 120, "fewer than half of the kinds and behaviours: the test would mean little"
+    assert monitoring.added(rows, "detected") >= 0.99 * came
+    assert monitoring.added(rows, "class") == came
+    assert monitoring.added(rows, "cause") >= 0.95 * came
+    assert monitoring.added(rows, "false") == 0
+    assert {row["kind"] for row in rows if row.get("came")} == set(KINDS)
+
+
+def test_who_complies_seldom_changes_nothing_of_it() -> None:
+    for kind in ("card-out-of-sight", "never-complies", "no-effect"):
+        usual = monitoring.matrix(SETTINGS, (kind, 5, 2))
+        assert monitoring.matrix({**SETTINGS, "complies": 0.6}, (kind, 5, 2)) == usual
+
+
+@pytest.mark.parametrize("lesson", [0, 3])
+def test_games_in_which_nothing_is_wrong_have_no_alarm(lesson: int) -> None:
+    told = monitoring.alarms({**SETTINGS, "complies": 0.6}, (lesson, 40, 120))
+    assert told["steps"] > 4_000
+    assert sum(told["codes"].values()) <= 0.01 * told["games"]
+
+
+def test_who_follows_seldom_is_told_of_and_nothing_else_is() -> None:
+    told = monitoring.alarms({**SETTINGS, "follows": 0.6}, (1, 9, 60))
+    assert set(told["codes"]) == {"never-complies"}
+
+
+@pytest.mark.parametrize(
+    ("critical", "other"),
+    [
+        ("emergency-stop", "request-stuck"),
+        ("link-lost", "requests-silent"),
+        ("camera-disconnected", "card-out-of-sight"),
+        ("base-stuck", "path-detour"),
+        ("laser-disconnected", "no-effect"),
+    ],
+)
+def test_of_two_faults_the_critical_one_comes_first_and_both_end(critical: str, other: str) -> None:
+    row = monitoring.pairs(SETTINGS, (critical, other, 1, 3))
+    assert row["came"] > 0
+    assert row["came"] == row["diagnosed"] == row["first"] == row["ended"]
+
+
+def test_games_full_of_faults_come_to_an_end() -> None:
+    played = monitoring.crowd(SETTINGS, (4, 20, 0.004))
+    assert sum(game["came"] for game in played) >= 60
+    assert all(game["ended"] == "to its end" or "halted" in game["ended"] for game in played)
