@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import STALE, Fact, Health
-from tangy_profiles.robot import Robot
+from tangy_profiles.robot import Device, Robot
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, Move
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
@@ -149,12 +149,15 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
             continue
         head, _, fact = key.partition(".")
         device = robot.devices.get(head)
+        if device is not None and fact == "age":
+            pieces.append(_age(device, value))
+            continue
         if device is None:
             what = SYMPTOMS.get(key, key)
         elif fact == "state":
             what = device.label
         else:
-            what = f"{device.label}, {fact.replace('_', ' ')}"
+            what = f"{device.label}, {device.facts.get(fact, fact)}"
         pieces.append(Piece(what, _expected(key, value, rule), _observed(fact, value)))
     for one in fault.mismatches:
         wanted = " or ".join(one.expected) or "nothing known"
@@ -163,17 +166,17 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
 
 
 def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list[Piece]:
-    """Say how old the newest data of the device is that a fault is about."""
+    """Say how old the newest data of a fault's device is, unless its evidence says so."""
     device = robot.devices.get(book.rule(fault.code).device)
-    return [
-        Piece(
-            f"{device.label}, newest data",
-            f"at most {device.stale_after:g} s old",
-            f"{reading.age:.3g} s old",
-        )
-        for reading in health
-        if device is not None and reading.device == device.name
-    ]
+    if device is None or f"{device.name}.age" in fault.evidence:
+        return []
+    return [_age(device, reading.age) for reading in health if reading.device == device.name]
+
+
+def _age(device: Device, age: Fact) -> Piece:
+    old = f"{age:.3g}" if isinstance(age, float) else str(age)
+    expected = f"at most {device.stale_after:g} s old"
+    return Piece(f"{device.label}, newest data", expected, f"{old} s old")
 
 
 def _expected(key: str, value: Fact, rule: FaultRule) -> str:

@@ -541,7 +541,7 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
             "0:31 halted",
             "0:31 the expert was called, by ann",
             "5:31 was cleared, by ann",
-            "emergency stop, latched: yes",
+            "emergency stop, pressed: yes",
             "to be expected: no",
             "What should I do?",
             "2. Ask who pressed it, and why.",
@@ -652,7 +652,7 @@ async def test_how_banner_and_list_look(
         await pilot.press("p")
         for kind in ("requests-silent", "arm-failed"):
             world.inject(kind)
-            await until(pilot, lambda kind=kind: kind in [fault.code for fault in game.faults])
+            await until(pilot, lambda: len(game.faults) == len(world.present))
         while [fault.status for fault in game.faults] != [BORNE, BORNE]:
             await pilot.press("n")
             await pilot.pause()

@@ -192,7 +192,7 @@ class CriticalDialog(Dialog[None]):
 
     def _key_words(self) -> tuple[tuple[str, str], ...]:
         seen = () if self._fault.acknowledged else (("a", "seen"),)
-        return (*seen, ("e", "call the expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
+        return (*seen, ("e", "call expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
 
     def _write(self, width: int) -> list[Line]:
         fault, supervision = self._fault, self._desk.supervision

@@ -314,8 +314,8 @@ class AskingPanel(Vertical):
         """Write why Tangy asks; where answers were given, which."""
         words = self._question.reason
         if self._acceptable:
-            words = f"{words} If all is well, type: {ALL_RIGHT[0]}. Otherwise:"
-        elif not self._question.fault and self._question.decision.seen:
+            return clean(f"{words} If all is well, type: {ALL_RIGHT[0]}. If not, what to do?")
+        if not self._question.fault and self._question.decision.seen:
             situation = self._question.state.situation
             why = why_of(self._house, self._supervision.policy, situation)
             words = f"{words} {answers_words(why)}"
