@@ -22,9 +22,10 @@ LIMITS = (
     "rules, and no sensor. Simulated people at the table help with a probability of "
     "{help:g}, experts always mend what was diagnosed, and a scripted teacher answers at once and "
     "rightly: how long a real one takes is not in these times. One fault is induced at a time; "
-    "none comes with the behaviour that ends a game, or while a teacher is asked. Whoever never "
-    "complies may be diagnosed once in each visit: each is an instance, as in the paper's count "
-    "of recoveries, and no false alarm."
+    "none comes with the behaviour that ends a game, or while a teacher is asked. It takes three "
+    "requests to tell that somebody never complies, so that is not noticed at once; and it "
+    "may be diagnosed again in each visit: each is an instance, as in the paper's count of "
+    "recoveries, and no false alarm."
 )
 
 

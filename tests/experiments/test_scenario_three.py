@@ -21,6 +21,7 @@ from tangy_tui.experiments.induced import (
     LATEST,
     NOT_BOTH,
     Induced,
+    Planned,
     draw_plan,
     in_proportion,
     kinds_by_recovery,
@@ -31,6 +32,8 @@ from tangy_tui.experiments.scenarios import Recovering, recovery
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.monitoring.fault import Fault
 from tests.experiments.conftest import run
+
+pytestmark = pytest.mark.xdist_group("scenario three")  # what is played is played once
 
 BOOK = load_faults(load_robot())
 PAPER = {row["recovery"]: row["instances"] for row in published.SCENARIO_THREE["faults"]}
@@ -138,7 +141,7 @@ def test_success_is_not_what_is_hoped_for_but_what_was_diagnosed(
     monkeypatch.setattr(
         "tangy_tui.experiments.supervised.load_faults", lambda _: replace(blind, rules=rules)
     )
-    plan = [[recovering.Planned(KINDS[name], 3)] for name in ("arm-failed", "laser-disconnected")]
+    plan = [[Planned(KINDS[name], 3)] for name in ("arm-failed", "laser-disconnected")]
     monkeypatch.setattr(recovering, "plan_of", lambda games, seed: plan)
     monkeypatch.setattr(recovering, "recovery_of", lambda kind, _: BOOK.rule(kind.code).recovery[0])
     told = recovering.run("bingo", 4, 2, 1, Where(jobs=1))
