@@ -35,7 +35,7 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 
-LOOK_SECONDS = 0.04
+LOOK_SECONDS = 0.025
 """How often the devices are looked at between behaviours, also while the game stands still: so
 that, with the time that drawing takes, what is wrong is seen within 0.1 s."""
 
@@ -134,6 +134,10 @@ class FaultConsole:
     def show(self) -> None:
         """Show banner and list as they are now, and put what halts the robot."""
         screen, supervision = self._screen, self.supervision
+        if supervision.halted is not None and not supervision.over and self._free.is_set():
+            self._free.clear()
+            screen.run_worker(self._attend(), name="fault", group="fault")
+            return  # it hides the rest, which is drawn with the first key in it
         fault, doing = banner_fault(supervision), ""
         if self._during is not None and supervision.halted is None:
             fault, count = self._during
@@ -149,10 +153,7 @@ class FaultConsole:
         faults = screen.query_one(FaultList)
         faults.fill(supervision.faults)
         faults.set_class(any(not fault.asks_only for fault in supervision.faults), "-there")
-        if supervision.halted is not None and not supervision.over and self._free.is_set():
-            self._free.clear()
-            screen.run_worker(self._attend(), name="fault", group="fault")
-        elif self._dialog is not None:
+        if self._dialog is not None:
             self._dialog.show(screen.query_one(StatusLine).status)
 
     def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
