@@ -1,0 +1,233 @@
+"""Banner, list and timeline of faults, and bringing faults about; with keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_sim.injection import KINDS
+from tangy_tui.house import House
+from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.monitoring.fault import BORNE
+from tangy_tui.ui.dialogs.critical import CriticalDialog
+from tangy_tui.ui.dialogs.fault import FaultDialog
+from tangy_tui.ui.dialogs.inject import InjectDialog
+from tangy_tui.ui.fault_words import status_words
+from tangy_tui.ui.widgets.fault_banner import FaultBanner
+from tangy_tui.ui.widgets.fault_list import FaultList
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.interaction.gaps import learnt
+from tests.pilot.conftest import SMALL, Run
+from tests.pilot.test_screens_faults import (
+    MIDDLE,
+    TINY,
+    game_of,
+    halting,
+    kinds_of,
+    playing,
+    seen,
+    sentences,
+    until,
+)
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+FEW = ForestSettings(trees=5)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def policy(house: House, cover: Cover) -> Policy:
+    """A policy that knows all that comes about."""
+    return learnt(house.store, house.activity, cover("bingo", 1, 4), FEW)
+
+
+async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, speed=1000)) as pilot:
+        screen, game, world = game_of(pilot)
+        banner = screen.query_one(FaultBanner)
+        assert not banner.display
+        world.inject("arm-failed")
+        await until(pilot, lambda: game.faults and game.faults[0].status == BORNE)
+        await pilot.press("p")
+        await pilot.pause()
+        line = pilot.lines()[1]
+        assert line.strip().startswith("! FAULT non-critical: An arm does not work")
+        assert "going on without" in line
+        assert line.endswith("[a] seen")
+        assert "robot WARN: An arm does not work" in pilot.lines()[0]
+        await pilot.press("a")
+        await pilot.pause()
+        assert not banner.display
+        assert game.faults[0].acknowledged
+        assert "robot WARN" in pilot.lines()[0]
+        await pilot.press("a")
+        await pilot.pause()
+        assert screen.query_one(LogView).sentences[-1] == "No fault that nobody has seen."
+
+
+async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "camera-occluded@2")) as pilot:
+        screen, game, _ = game_of(pilot)
+        await pilot.press("p")
+        while not any("asked" in kinds_of(fault) for fault in game.faults):
+            await pilot.press("n")
+            await pilot.pause()
+        said = "Something covers my eyes. Could somebody please take it away?"
+        assert said in screen.query_one(LogView).sentences
+        assert screen.query_one(RoomView)._speech == said
+        number = screen.query_one(Transcript).count
+        assert number == len(screen._picture.grounds) == game.steps
+
+
+async def test_a_try_is_seen_before_what_came_of_it(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+        screen, game, world = game_of(pilot)
+        world.inject("camera-occluded")
+        await until(pilot, lambda: screen.query_one(FaultBanner).display)
+        await pilot.press("full_stop")  # the step's time is over
+        await until(pilot, lambda: "asked" in kinds_of(game.faults[0]))
+        assert "asking those at the table, try 1 of 2" in screen.query_one(FaultBanner).words
+        assert not any("recovered" in said for said in screen.query_one(LogView).sentences)
+        await pilot.press("e")
+        await until(pilot, lambda: game.over)
+        assert any("camera covered: recovered" in said for said in sentences(screen))
+
+
+@pytest.mark.parametrize("size", [TINY, MIDDLE], ids=["tiny", "middle"])
+async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
+    run: Run, house: House, policy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, policy, speed=1000), size=size) as pilot:
+        screen, game, world = game_of(pilot)
+        for kind in ("arm-failed", "requests-silent"):
+            world.inject(kind)
+        await until(pilot, lambda: [f.status for f in game.faults] == [BORNE, BORNE])
+        await pilot.press("p", "6")
+        await pilot.pause()
+        faults = screen.query_one(FaultList)
+        assert faults.has_focus
+        assert "An arm does" in pilot.text()
+        assert "Request sensor" in pilot.text()
+        await pilot.press("slash", *"sensor p")
+        await pilot.pause()
+        assert faults._keys == []
+        await pilot.press("backspace", "backspace", "enter")
+        await pilot.pause()
+        assert [f.id for f in game.faults if f.code == "requests-silent"] == faults._keys
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        assert "Tangy cannot see who asks" in seen(pilot)
+        await pilot.press("escape")
+        await pilot.pause()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert pilot.app.screen is screen
+        assert len(faults._keys) == 2
+
+
+async def test_the_timeline_has_times_evidence_and_steps_for_staff(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+        await halting(pilot)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: not isinstance(pilot.app.screen, CriticalDialog))
+        await pilot.press("6", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        text = seen(pilot)
+        for words in (
+            "0:31 noticed",
+            "0:31 halted",
+            "0:31 the expert was called, by ann",
+            "5:31 was cleared, by ann",
+            "emergency stop, pressed: yes",
+            "to be expected: no",
+            "What should I do?",
+            "2. Ask who pressed it, and why.",
+        ):
+            assert words in text
+
+
+def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
+    assert status_words(("STALE", "head camera")) == "STALE: nothing is heard from the head camera"
+    assert status_words(("ERROR", "head camera")) == "ERROR: the head camera reports a failure"
+    assert status_words(("OK", "")) == "OK"
+
+
+@pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
+async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
+    run: Run, house: House, policy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, policy), size=size) as pilot:
+        screen, game, world = game_of(pilot)
+        await pilot.press("p", "f")
+        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        pilot.type(*"servo")
+        await pilot.pause()
+        assert "arm-failed" in pilot.text()
+        assert "voice-dead" not in pilot.text()
+        await pilot.press("enter")
+        await until(pilot, lambda: game.faults)
+        assert list(world.present) == ["arm-failed"]
+        await pilot.press("f")
+        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        assert "there: enter lifts it" in pilot.text()
+        await pilot.press("1")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert not world.present
+        await pilot.press("f")
+        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert not world.present
+
+
+async def test_what_is_still_to_come_can_be_lifted(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen, _, world = game_of(pilot)
+        await pilot.press("p", "f")
+        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        pilot.type(*"never-complies", "enter")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert "comes as soon as it can show" in sentences(screen)[-1]
+        await pilot.press("f")
+        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        assert "to come: enter lifts it" in pilot.text()
+        await pilot.press("enter")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert not world._to_come
+
+
+async def test_all_kinds_can_be_chosen(run: Run) -> None:
+    dialog = InjectDialog((), ())
+    async with run(size=SMALL) as pilot:
+        pilot.app.push_screen(dialog)
+        await pilot.pause()
+        assert [kind.name for kind in dialog._kinds] == list(KINDS)
+
+
+async def test_no_fault_can_be_brought_about_in_the_demo(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, leave_after=1000)) as pilot:
+        screen = game_of(pilot)[0]
+        await pilot.press("f")
+        await pilot.pause()
+        assert pilot.app.screen is screen
+        assert "nothing goes wrong" in sentences(screen)[-1]

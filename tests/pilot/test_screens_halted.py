@@ -1,0 +1,289 @@
+"""While Tangy stands still or asks because of a fault: cleared, given up, accepted; with keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.house import House
+from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.monitoring.fault import OVER, read_faults
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.fault import FaultDialog
+from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.interaction.gaps import learnt
+from tests.pilot.conftest import SMALL, Run
+from tests.pilot.test_screens_faults import (
+    MIDDLE,
+    TINY,
+    asked,
+    game_of,
+    halted,
+    halting,
+    kinds_of,
+    playing,
+    seen,
+    until,
+)
+
+Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
+FEW = ForestSettings(trees=5)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def policy(house: House, cover: Cover) -> Policy:
+    """A policy that knows all that comes about."""
+    return learnt(house.store, house.activity, cover("bingo", 1, 4), FEW)
+
+
+@pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
+async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
+    run: Run, house: House, policy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, policy, speed=1000), size=size) as pilot:
+        screen, game, _ = game_of(pilot)
+        dialog = await halting(pilot)
+        fault = dialog.fault
+        count = screen.query_one(Transcript).count
+        assert "! robot HALTED: Emergency stop press" in seen(pilot)
+        assert "Somebody pressed the emergency stop." in seen(pilot)
+        await pilot.press("c")
+        await pilot.pause()
+        assert "Press a first" in seen(pilot)
+        await pilot.press("a", "c")
+        await pilot.pause()
+        assert "It is still there." in seen(pilot)
+        assert game.halted is fault
+        assert "g give up" in seen(pilot)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert kinds_of(fault) == [
+            "halted",
+            "acknowledged",
+            "still there",
+            "expert called",
+            "cleared",
+        ]
+        assert screen.query_one(Transcript).count == count
+        await pilot.press("p")
+        await until(pilot, lambda: screen.query_one(Transcript).count > count)
+        assert "robot OK" in seen(pilot)
+    kept = read_faults(house.store)
+    assert [kinds_of(fault) for fault in kept] == [kinds_of(fault)]
+    assert {move.by for move in kept[0].moves} == {"", "ann"}
+
+
+async def test_the_dialog_says_what_was_expected_and_observed_and_when(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+        await halting(pilot, "laser-disconnected")
+        text = seen(pilot)
+        assert "laser scanner: STALE: nothing comes from it" in text
+        assert "to be expected: OK" in text
+        assert "laser scanner, newest data: 2 s old" in text
+        assert "at most 0.25 s old" in text
+        assert "1. Do not push or pull the robot." in text
+        assert "Call the expert for the robot with e." in text
+        assert "0:31 halted" in text
+
+
+async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        dialog = await halting(pilot)
+        pilot.type("a", "e", "c", "g", "escape", at=0.0)
+        await pilot.pause()
+        assert kinds_of(dialog.fault) == ["halted"]
+        assert pilot.app.screen is dialog
+
+
+@pytest.mark.parametrize("key", ["g", "escape"])
+async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
+    run: Run, house: House, policy: Policy, key: str
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen, game, _ = game_of(pilot)
+        dialog = await halting(pilot)
+        await pilot.press(key)
+        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await pilot.pause()
+        assert "not mended" in pilot.text()
+        await pilot.press("escape")
+        await pilot.pause()
+        assert pilot.app.screen is dialog
+        await pilot.press(key)
+        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await pilot.press("y")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert game.over
+        assert kinds_of(dialog.fault)[-1] == "given up"
+        assert "robot HALTED" in seen(pilot)
+        ended = house.store.last("game ended")
+        assert ended is not None
+        assert "Emergency stop pressed" in str(ended.body["stopped"])
+
+
+async def test_stop_works_inside_and_leaves_the_dialog(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, speed=1000)) as pilot:
+        screen, _, world = game_of(pilot)
+        world.inject("emergency-stop")
+        dialog = await halted(pilot)
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert pilot.app.screen is dialog
+        assert "STOPPED, HALTED" in seen(pilot)
+        assert "p lets Tangy go on" in seen(pilot)
+        count = screen.query_one(Transcript).count
+        await pilot.press("g")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert pilot.app.screen is dialog
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert "STOPPED" in seen(pilot)
+        for _ in range(3):
+            await pilot.pause(0.02)
+        assert screen.query_one(Transcript).count == count
+        await pilot.press("p")
+        await until(pilot, lambda: screen.query_one(Transcript).count > count)
+
+
+async def test_two_critical_faults_are_cleared_one_after_the_other(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+        screen, game, world = game_of(pilot)
+        first = await halting(pilot)
+        world.inject("camera-disconnected")
+        await until(pilot, lambda: len(game.faults) == 2)
+        assert "Also wrong" in seen(pilot)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is not first)
+        second = await halted(pilot)
+        assert second.fault.code == "camera-disconnected"
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert game.halted is None
+        assert [fault.status for fault in game.faults] == [OVER, OVER]
+
+
+async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen, _, world = game_of(pilot)
+        await pilot.press("p", "question_mark")
+        await pilot.pause()
+        world.inject("emergency-stop")
+        await halted(pilot)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+        await pilot.press("escape")
+        await pilot.pause()
+        assert pilot.app.screen is screen
+
+
+async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesentences(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        await halting(pilot)
+        await pilot.press("ctrl+q")
+    ended = house.store.last("game ended")
+    assert ended is not None
+    assert ended.body["stopped"] == "It was left before its end."
+
+
+async def test_skipping_stops_where_tangy_stands_still(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "base-stuck")) as pilot:
+        screen = game_of(pilot)[0]
+        await pilot.press("e")
+        dialog = await halted(pilot)
+        assert dialog.fault.code == "base-stuck"
+        assert screen.query_one(RoomView).going is None
+        count = screen.query_one(Transcript).count
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert screen.query_one(Transcript).count - count <= 1
+        await pilot.press("e")
+        await until(pilot, lambda: screen._supervision.over)
+        assert "The game is over" in screen.query_one(LogView).sentences[-1]
+
+
+async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+        screen, _, world = game_of(pilot)
+        first = await asked(pilot)
+        pilot.type(*"call number", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, QuestionDialog))
+        world.inject("emergency-stop")
+        await halted(pilot)
+        await until(pilot, lambda: not screen.query(AskingPanel))
+        assert not any(isinstance(s, QuestionDialog) for s in pilot.app.screen_stack)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert await asked(pilot) is not first
+        assert "This was not to be expected" in seen(pilot)
+
+
+async def test_what_was_not_expected_is_accepted_by_word(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+        screen, game, _ = game_of(pilot)
+        await asked(pilot)
+        assert "If all is well, type: all right" in seen(pilot)
+        pilot.type(*"all right", "enter")
+        await until(pilot, lambda: kinds_of(game.faults[0])[-1] == "accepted")
+        await pilot.press("e")
+        await until(pilot, lambda: not screen.query(AskingPanel))
+    accepted = house.store.last("effect accepted")
+    assert accepted is not None
+    assert accepted.body["by"] == "ann"
+
+
+async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+        screen, game, _ = game_of(pilot)
+        await asked(pilot)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "r all right" in pilot.text()
+        await pilot.press("ctrl+x", "r")
+        await pilot.pause()
+        assert game.question is not None
+        assert "press p to go on first" in seen(pilot)
+        await pilot.press("p", "escape", "w")
+        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        assert "If all is well, say so" in seen(pilot)
+        await pilot.press("escape", "r")
+        await until(pilot, lambda: game.faults[0].status == OVER)
+        assert kinds_of(game.faults[0])[-1] == "accepted"
+        await until(pilot, lambda: not screen.query(AskingPanel))
