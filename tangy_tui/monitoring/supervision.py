@@ -14,6 +14,7 @@ from typing import TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import URGENCY, Evidence, FaultBook, FaultRule, Remedy
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import Robot
@@ -211,7 +212,8 @@ class Supervision:
         """
         if self.halted is not None:
             return "HALTED", self.halted.name
-        there = sorted(self._there, key=lambda f: (f.status == BORNE, self._rules[f.id].urgency))
+        open_now = [] if self.over else self._there
+        there = sorted(open_now, key=lambda f: (f.status == BORNE, self._rules[f.id].urgency))
         if self.question is not None:
             return "ASKS", there[0].name if there else ""
         if there:
@@ -394,9 +396,15 @@ class Supervision:
         self._times[fault.code, fault.person, fault.behaviour] += 1
         times = self._times[fault.code, fault.person, fault.behaviour]
         self._rules[fault.id] = rule
+        if rule.critical and not self.over:
+            self._remedy(fault, "halt")  # before it is written down, which can fail
+        try:
+            self._store.append(FAULT, fault.to_json(), person=person)
+        except TangyError:
+            self._seen = None  # so that the next look finds it again
+            raise
         self.faults.append(fault)
         self._there.append(fault)
-        self._store.append(FAULT, fault.to_json(), person=person)
         told: list[Event] = [Diagnosed(fault)]
         if times > AGAIN and acted is not None and rule.recovery[0] in ("user", "teacher"):
             told += self._escalate(fault)

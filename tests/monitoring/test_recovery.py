@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 from shutil import copytree
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_profiles.errors import StoreError
+from tangy_profiles.faults import Remedy
 from tangy_profiles.store import Store
 from tangy_sim import faulty
 from tangy_sim.injection import KINDS
@@ -356,3 +359,30 @@ def test_no_name_of_a_person_gets_into_the_log(
     assert "Zoe" not in logged
     read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(house.store)]
     assert read == told
+
+
+def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
+    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game = supervise(seed=3)
+    game.begin()
+    game.step()
+    done: list[str] = []
+    world = world_of(game)
+    recover = world.recover
+
+    def told(remedy: Remedy) -> float:
+        done.append(remedy.kind)
+        return recover(remedy)
+
+    monkeypatch.setattr(world, "recover", told)
+    world.inject("emergency-stop")
+    with monkeypatch.context() as full:
+        full.setattr(house.store, "append", Mock(side_effect=StoreError("The disk is full.")))
+        for _ in range(2):
+            with pytest.raises(StoreError):
+                game.step()
+        assert set(done) == {"halt"}
+        assert game.steps == 1
+    assert codes(game.look()) == ["emergency-stop"]
+    assert game.halted is not None
