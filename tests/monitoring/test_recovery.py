@@ -349,7 +349,7 @@ def test_no_name_of_a_person_gets_into_the_log(
         house.rename(person, f"Zoe{person.id[-1]}")
     kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
     game = supervise(*kinds, seed=2, asks=False)
-    game._name = lambda person: f"Zoe{person[-1]}"
+    game._recovery._name = lambda person: f"Zoe{person[-1]}"
     told: list[str] = []
     for expert in (True, False):
         play(game, expert=expert)

@@ -1,0 +1,267 @@
+"""Fault recovery (III-C): what is done about each fault, rung by rung, until it is over.
+
+A fault's rule has a ladder of recoveries: go on (by a remedy of the robot's own, or without what
+is broken), ask a user, ask a teacher, halt and ask an expert. Every rung is tried a bounded number
+of times; what does not help leads to the next one, and after the last comes the expert. So no
+recovery loops. All of it is in the log before it is told.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import TypeAlias
+from uuid import uuid4
+
+from tangy_profiles.faults import URGENCY, FaultRule, Remedy
+from tangy_profiles.health import Fact
+from tangy_profiles.robot import Robot
+from tangy_profiles.store import Store
+from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent
+from tangy_tui.monitoring.detection import Detector
+from tangy_tui.monitoring.diagnosis import Diagnosis
+from tangy_tui.monitoring.fault import (
+    BORNE,
+    FAULT,
+    NAME,
+    OPEN,
+    OVER,
+    RECOVERY,
+    SOMEBODY,
+    Diagnosed,
+    Fault,
+    FaultEvent,
+    Move,
+    Moved,
+    rule_texts,
+)
+from tangy_tui.monitoring.telling import evidence_words
+
+Event: TypeAlias = GameEvent | FaultEvent
+
+AGAIN = 3
+"""A recovery that had to be repeated so often in a game begins with its next rung."""
+
+TO_TEACH = "Say what to do here, or look at what happened at the table."
+
+
+class Recovery:
+    """The faults of the present game, and what is done about them. `begin` each game."""
+
+    def __init__(
+        self,
+        game: Facilitation,
+        detector: Detector,
+        robot: Robot,
+        store: Store,
+        name: Callable[[str], str],
+    ) -> None:
+        self.faults: list[Fault] = []
+        """All of them, in the order in which they were diagnosed."""
+        self.halted: Fault | None = None
+        """The one because of which the robot stands still."""
+        self.seconds = 0.0
+        """The time in the present game, in s."""
+        self._game = game
+        self._detector = detector
+        self._robot = robot
+        self._store = store
+        self._name = name
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget the faults of the last game."""
+        self.faults = []
+        self.halted = None
+        self.seconds = 0.0
+        self._there: list[Fault] = []  # those that are not over
+        self._rules: dict[str, FaultRule] = {}
+        self._rung: Counter[str] = Counter()
+        self._tried: Counter[str] = Counter()
+        self._times: Counter[tuple[str, str | None, str]] = Counter()
+
+    @property
+    def there(self) -> list[Fault]:
+        """The faults that are not over: those to be dealt with first, the most urgent first."""
+        return sorted(self._there, key=lambda f: (f.status == BORNE, self._rules[f.id].urgency))
+
+    @property
+    def waiting(self) -> list[Fault]:
+        """The faults that are still to be dealt with, the most urgent first."""
+        there = [fault for fault in self._there if fault.status == OPEN]
+        return sorted(there, key=lambda fault: URGENCY.index(self._rung_of(fault)))
+
+    def rule(self, fault: Fault) -> FaultRule:
+        """Return the rule by which a fault was diagnosed."""
+        return self._rules[fault.id]
+
+    def knows(self, diagnosis: Diagnosis, person: str | None) -> bool:
+        """Say whether this is a fault that is there already, and not another one."""
+        return any(
+            fault.code == diagnosis.rule.code and fault.person == person for fault in self._there
+        )
+
+    def keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
+        """Keep a new diagnosis as a fault; a critical one stops the robot before anything else."""
+        rule = diagnosis.rule
+        conditions = rule.matched(diagnosis.evidence) or ()
+        why = evidence_words(diagnosis.evidence, diagnosis.mismatches, self._robot, conditions)
+        fault = Fault(
+            id=uuid4().hex[:12],
+            game=self._game.game,
+            critical=rule.critical,
+            code=rule.code,
+            recovery=rule.recovery[0],
+            step=self._game.steps,
+            seconds=self.seconds,
+            behaviour=acted.action.behaviour.name if acted is not None else "",
+            person=person,
+            why=why,
+            called=self._name(person) if person is not None else SOMEBODY,
+            texts=rule_texts(rule, self._game.world.activity.object, why),
+            evidence=diagnosis.evidence,
+            mismatches=diagnosis.mismatches,
+            at=self._store.now().isoformat(),
+        )
+        self._times[fault.code, fault.person, fault.behaviour] += 1
+        times = self._times[fault.code, fault.person, fault.behaviour]
+        self._rules[fault.id] = rule
+        if rule.critical and not self._game.over:
+            self.remedy(fault, "halt")  # before it is written down, which can fail
+        self._store.append(FAULT, fault.to_json(), person=person)
+        self.faults.append(fault)
+        self._there.append(fault)
+        told: list[Event] = [Diagnosed(fault)]
+        if times > AGAIN and acted is not None and rule.recovery[0] in ("user", "teacher"):
+            told += self._escalate(fault)
+        return told
+
+    def _rung_of(self, fault: Fault) -> str:
+        ladder = self._rules[fault.id].recovery
+        rung = self._rung[fault.id]
+        return ladder[rung] if rung < len(ladder) else "expert"
+
+    def _next(self) -> Fault | None:
+        waiting = self.waiting
+        return waiting[0] if waiting else None
+
+    def go_further(self, fault: Fault) -> list[Event]:
+        """Make one move against a fault."""
+        rule = self._rules[fault.id]
+        if rule.device and not rule.remedy and self.solved(fault):
+            return self.move(fault, Move("ended", self.seconds))
+        match self._rung_of(fault):
+            case "user":
+                return self._ask_user(fault, rule)
+            case "teacher":
+                return self._ask_teacher(fault)
+            case "continue":
+                return self._go_on(fault, rule)
+            case _:
+                return self.halt_if_critical()
+
+    def _ask_user(self, fault: Fault, rule: FaultRule) -> list[Event]:
+        speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
+        self._tried[fault.id] += 1
+        attempt = self._tried[fault.id]
+        move = Move("asked", self.seconds, attempt=attempt, speech=speech, image=image)
+        told = self.move(fault, move)
+        self.remedy(fault, "ask", move.called(fault.called))
+        return told + self._judge(fault, rule, attempt)
+
+    def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
+        if not rule.remedy:
+            kind = "went on" if rule.bearable else "recovered"
+            return self.move(fault, Move(kind, self.seconds))
+        speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
+        if rule.recovery[0] != "continue":
+            speech = image = ""  # they are for the rung on which a user is asked
+        self._tried[fault.id] += 1
+        attempt = self._tried[fault.id]
+        move = Move(
+            "remedied",
+            self.seconds,
+            attempt=attempt,
+            remedy=rule.remedy,
+            speech=speech,
+            image=image,
+        )
+        told = self.move(fault, move)
+        self.remedy(fault, rule.remedy, move.called(fault.called))
+        if rule.remedy == "set aside":
+            self._detector.forgive(fault.person)
+        return told + self._judge(fault, rule, attempt)
+
+    def _judge(self, fault: Fault, rule: FaultRule, attempt: int) -> list[Event]:
+        """See whether a try has helped; where it has not, and was the last one, go further."""
+        if self.solved(fault):
+            return self.move(fault, Move("recovered", self.seconds))
+        if attempt < rule.tries:
+            return []
+        if rule.bearable and self._rung_of(fault) == "continue":
+            return self.move(fault, Move("went on", self.seconds))
+        return self._escalate(fault) + self.halt_if_critical()
+
+    def _ask_teacher(self, fault: Fault) -> list[Event]:
+        asked = self._game.ask(fault.console, TO_TEACH, fault.id)
+        if not asked:
+            return self._escalate(fault) + self.halt_if_critical()
+        return [*self.move(fault, Move("teacher asked", self.seconds)), *asked]
+
+    def _escalate(self, fault: Fault) -> list[Event]:
+        self._rung[fault.id] += 1
+        self._tried[fault.id] = 0
+        return self.move(fault, Move("escalated", self.seconds, to=self._rung_of(fault)))
+
+    def halt_if_critical(self) -> list[Event]:
+        """Stand still if what is most urgent needs an expert."""
+        fault = next(iter(self.waiting), None)
+        if self.halted is not None or fault is None or self._game.over:
+            return []
+        if self._rung_of(fault) != "expert":
+            return []
+        self.halted = fault
+        self.remedy(fault, "halt")
+        self._game.withdraw()
+        return self.move(fault, Move("halted", self.seconds))
+
+    def solved(self, fault: Fault) -> bool:
+        """Say whether a fault is gone, by what can be observed now."""
+        rule = self._rules[fault.id]
+        if rule.solved == "evidence gone" or fault.person is None:
+            return rule.matched(self._detector.watch(self._game.world.health())) is None
+        user = self._game.world.observe().user(fault.person)
+        closed = user.request == "ANR"
+        if rule.solved == "card in view":
+            return closed or user.activity != self._game.world.activity.unread
+        return closed
+
+    def remedy(self, fault: Fault, kind: str, move: Move | None = None) -> None:
+        device = self._rules[fault.id].device
+        said = ("", "") if move is None else (move.speech, move.image)
+        self.seconds += self._game.world.recover(
+            Remedy(kind, fault.code, device, fault.person, *said)
+        )
+
+    def _text(self, fault: Fault, text: str) -> str:
+        """Let the world do something about a fault; `move` holds what is said with it."""
+        rule, object = self._rules[fault.id], self._game.world.activity.object
+        return rule.fill(text, name=NAME, object=object, why=fault.why)
+
+    def leave_open(self) -> list[Event]:
+        """Say of the faults that nobody has dealt with that the game ended before."""
+        told: list[Event] = []
+        for fault in list(self._there):
+            if fault.status == OPEN and not any(m.kind == "given up" for m in fault.moves):
+                told += self.move(fault, Move("left open", self.seconds))
+        return told
+
+    def move(self, fault: Fault, move: Move) -> list[Event]:
+        """Log that something was done about a fault, and tell it."""
+        body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
+        self._store.append(RECOVERY, body, person=fault.person)
+        told = move.called(fault.called)
+        fault.add(told)
+        if fault.status == OVER:
+            self._there.remove(fault)
+        return [Moved(fault, told)]
