@@ -237,6 +237,7 @@ class Recovery:
         return closed
 
     def remedy(self, fault: Fault, kind: str, move: Move | None = None) -> None:
+        """Let the world do something about a fault; `move` holds what is said with it."""
         device = self._rules[fault.id].device
         said = ("", "") if move is None else (move.speech, move.image)
         self.seconds += self._game.world.recover(
