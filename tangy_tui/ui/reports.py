@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from datetime import datetime
 from typing import Any, TypeVar
 
 from rich import box
@@ -22,6 +21,7 @@ from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
 from tangy_tui.learning.listing import ListRow
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.ui.local_time import local_time
 from tangy_tui.wording import conflict_lines, counted
 
 T = TypeVar("T")
@@ -119,11 +119,6 @@ def _does(decision: Decision, also: Sequence[str] = ()) -> str:
         return " or ".join([decision.behaviour, *also])
     why = "contested" if decision.contested else "never shown" if not decision.seen else "unsure"
     return f"asks ({why})"
-
-
-def local_time(at: str) -> str:
-    """Write a UTC time of the log as people here would."""
-    return f"{datetime.fromisoformat(at).astimezone():%Y-%m-%d %H:%M}"
 
 
 def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:
