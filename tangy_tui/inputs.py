@@ -14,7 +14,8 @@ from tangy_profiles.reading import plain
 def line_reader(script: Path | None) -> Callable[[], str | None]:
     """Return where lines come from: the script, or standard input."""
     if script is None:
-        return lambda: sys.stdin.readline() or None
+        lines_in = sys.stdin  # None where it was closed
+        return lambda: lines_in.readline() or None if lines_in is not None else None
     try:
         lines = iter(script.read_text(encoding="utf-8").splitlines())
     except FileNotFoundError:

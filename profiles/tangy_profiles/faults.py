@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.health import Fact
+from tangy_profiles.health import STATES, Fact
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import VARIABLES
@@ -285,11 +285,11 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
         raise entry.wrong("recovery", "cannot go on after the expert: nobody comes after that.")
     rule = FaultRule(
         code=code,
-        name=entry.text("name"),
+        name=_text(entry, "name"),
         criticality=criticality,
         recovery=recovery,
         console=_text(entry, "console"),
-        advice=entry.words("advice"),
+        advice=_texts(entry, "advice"),
         when=() if fallback else _alternatives(entry, known),
         also=entry.words("also", known, ()),
         device=entry.choice("device", (*robot.devices, ""), ""),
@@ -321,7 +321,10 @@ def _alternatives(entry: Table, known: Mapping[str, str]) -> tuple[tuple[Conditi
             words = list(test)
             if len(words) != 1 or words[0] not in _TESTS:
                 raise alternative.wrong(key, f"must hold one of: {', '.join(_TESTS)}.")
-            conditions.append(Condition(key, words[0], _value(test, words[0])))
+            condition = Condition(key, words[0], _value(test, words[0]))
+            if key.endswith(".state") and condition.value not in STATES:
+                raise test.wrong(words[0], f"is no state; {nearest(str(condition.value), STATES)}")
+            conditions.append(condition)
         if not conditions:
             raise entry.wrong("when", "holds an alternative without a condition.")
         found.append(tuple(conditions))
@@ -338,6 +341,18 @@ def _value(test: Table, word: str) -> Fact:
 
 def _text(entry: Table, key: str, *, optional: bool = False) -> str:
     text = entry.text(key, "" if optional else None)
+    _check_slots(entry, key, text)
+    return text
+
+
+def _texts(entry: Table, key: str) -> tuple[str, ...]:
+    texts = entry.words(key)
+    for text in texts:
+        _check_slots(entry, key, text)
+    return texts
+
+
+def _check_slots(entry: Table, key: str, text: str) -> None:
     try:
         slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
     except ValueError:
@@ -347,7 +362,6 @@ def _text(entry: Table, key: str, *, optional: bool = False) -> str:
             raise entry.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
         if form or conversion:
             raise entry.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
-    return text
 
 
 def _check_order(entry: Table, rule: FaultRule, earlier: Sequence[FaultRule]) -> None:

@@ -353,7 +353,7 @@ class FaultyWorld(SimulatedWorld):
                         self._is_helped(name, remedy.person)
             case "call expert":
                 for name in found or _MUTE if remedy.fault == "mute" else found:
-                    self.lift(name)
+                    self._is_helped(name, remedy.person)
             case "spin":
                 if "carried-off" in found and self._chance() < FINDS_ITSELF:
                     self.lift("carried-off")

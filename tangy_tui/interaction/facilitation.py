@@ -136,6 +136,8 @@ class Facilitation:
         self.over = True
         self.question: Unsure | None = None
         """What Tangy asks; nothing happens before it is answered, or the game given up."""
+        self.looked_over = False
+        """Whether somebody looks the last behaviour over before the game is ended (`finish`)."""
         self._answers = answers
         self._activity = world.activity
         self._store = store
@@ -212,6 +214,10 @@ class Facilitation:
     def withdraw(self) -> None:
         """Ask no more: it has turned out that there is nothing to answer."""
         self.question = None
+
+    def finish(self) -> list[GameEvent]:
+        """End a game that was played to its end, after its last behaviour was looked over."""
+        return [self._end(None)] if self.world.over and not self.over else []
 
     def stop(self, reason: str) -> list[GameEvent]:
         """End a game that cannot go on, for a reason that a person can read."""
@@ -321,7 +327,8 @@ class Facilitation:
         elif choice is not None and outcome.completed:  # what they did may be known later
             body = {"game": self._game}
             self._store.append(AWAITED, body, person=choice.person, strategy=choice.strategy)
-        return acted, outcome.response, self._end(None) if self.world.over else None
+        ended = self._end(None) if self.world.over and not self.looked_over else None
+        return acted, outcome.response, ended
 
     def _log_response(self, response: Response) -> None:
         self._store.append(

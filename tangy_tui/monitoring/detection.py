@@ -6,6 +6,7 @@ of what the devices report is looked at. What comes out is evidence; what it mea
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 
@@ -46,33 +47,41 @@ class Detector:
             self._refusals.pop(person, None)
 
     def state(self, reading: Reading) -> str:
-        """Return the state of a device: what it says of itself, or STALE if it says too little."""
+        """Return the state of a device: what it says of itself, or STALE if it says too little.
+
+        A measurement that is no number is an error.
+        """
         device = self._robot.devices.get(reading.device)
-        stale = device is not None and reading.age > device.stale_after
-        return STALE if stale and reading.state != ERROR else reading.state
+        if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
+            return ERROR
+        fresh = device is None or reading.age <= device.stale_after  # no age is in no range
+        return reading.state if fresh else STALE
 
     def watch(self, health: Health) -> Evidence:
         """Return the evidence that the devices give; the same object for the same readings.
 
-        What a device measured before it fell silent is no evidence any more.
+        What a device measured before it fell silent is no evidence any more, and a device of the
+        robot's that is not even mentioned is as silent as any.
         """
         if health is not self._health:
-            self._health, self._devices = health, {}
+            self._health = health
+            self._devices = {f"{name}.state": STALE for name in self._robot.devices}
             for reading in health:
                 state = self.state(reading)
                 self._devices[f"{reading.device}.state"] = state
-                self._devices[f"{reading.device}.age"] = reading.age
+                if math.isfinite(reading.age):
+                    self._devices[f"{reading.device}.age"] = reading.age
                 if state != STALE:
                     for fact, value in reading.facts.items():
-                        self._devices[f"{reading.device}.{fact}"] = value
+                        if value == value:
+                            self._devices[f"{reading.device}.{fact}"] = value
         return self._devices
 
     def worst(self, health: Health) -> tuple[str, str]:
         """Return the worst state of all devices, and which one has it ("": all are well)."""
-        states = [(self.state(reading), reading.device) for reading in health]
-        state, name = max(states, key=lambda one: STATES.index(one[0]), default=("OK", ""))
-        device = self._robot.devices.get(name)
-        label = device.label if device is not None else name
+        seen = self.watch(health)
+        states = [(str(seen[f"{d.name}.state"]), d.label) for d in self._robot.devices.values()]
+        state, label = max(states, key=lambda one: STATES.index(one[0]), default=(OK, ""))
         return state, label if state != OK else ""
 
     def compare(self, acted: Acted) -> tuple[dict[str, Fact], list[Mismatch]]:

@@ -18,7 +18,7 @@ from tangy_profiles.health import Fact
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent
-from tangy_tui.monitoring.detection import Detector
+from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import Diagnosis
 from tangy_tui.monitoring.fault import (
     BORNE,
@@ -40,7 +40,7 @@ from tangy_tui.monitoring.telling import evidence_words
 Event: TypeAlias = GameEvent | FaultEvent
 
 AGAIN = 3
-"""A recovery that had to be repeated so often in a game begins with its next rung."""
+"""A recovery that was needed so often in a game begins one rung further from then on."""
 
 TO_TEACH = "Say what to do here, or look at what happened at the table."
 
@@ -91,6 +91,11 @@ class Recovery:
         there = [fault for fault in self._there if fault.status == OPEN]
         return sorted(there, key=lambda fault: URGENCY.index(self._rung_of(fault)))
 
+    @property
+    def ended(self) -> bool:
+        """Whether the game has come to its end, be it told or not."""
+        return self._game.over or self._game.world.over
+
     def rule(self, fault: Fault) -> FaultRule:
         """Return the rule by which a fault was diagnosed."""
         return self._rules[fault.id]
@@ -126,14 +131,16 @@ class Recovery:
         self._times[fault.code, fault.person, fault.behaviour] += 1
         times = self._times[fault.code, fault.person, fault.behaviour]
         self._rules[fault.id] = rule
-        if rule.critical and not self._game.over:
+        if rule.critical:
             self.remedy(fault, "halt")  # before it is written down, which can fail
         self._store.append(FAULT, fault.to_json(), person=person)
         self.faults.append(fault)
         self._there.append(fault)
         told: list[Event] = [Diagnosed(fault)]
-        if times > AGAIN and acted is not None and rule.recovery[0] in ("user", "teacher"):
-            told += self._escalate(fault)
+        if acted is not None and rule.recovery[0] in ("user", "teacher"):
+            for _ in range((times - 1) // AGAIN):
+                if self._rung_of(fault) != "expert":
+                    told += self._escalate(fault)
         return told
 
     def _rung_of(self, fault: Fault) -> str:
@@ -171,7 +178,7 @@ class Recovery:
 
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
         if not rule.remedy:
-            kind = "went on" if rule.bearable else "recovered"
+            kind = "recovered" if self.solved(fault) else "went on"
             return self.move(fault, Move(kind, self.seconds))
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         if rule.recovery[0] != "continue":
@@ -188,8 +195,6 @@ class Recovery:
         )
         told = self.move(fault, move)
         self.remedy(fault, rule.remedy, move.called(fault.called))
-        if rule.remedy == "set aside":
-            self._detector.forgive(fault.person)
         return told + self._judge(fault, rule, attempt)
 
     def _judge(self, fault: Fault, rule: FaultRule, attempt: int) -> list[Event]:
@@ -216,7 +221,7 @@ class Recovery:
     def halt_if_critical(self) -> list[Event]:
         """Stand still if what is most urgent needs an expert."""
         fault = next(iter(self.waiting), None)
-        if self.halted is not None or fault is None or self._game.over:
+        if self.halted is not None or fault is None or self.ended:
             return []
         if self._rung_of(fault) != "expert":
             return []
@@ -228,8 +233,11 @@ class Recovery:
     def solved(self, fault: Fault) -> bool:
         """Say whether a fault is gone, by what can be observed now."""
         rule = self._rules[fault.id]
+        devices = self._detector.watch(self._game.world.health())
+        if rule.fallback:
+            return not symptoms({key: devices[key] for key in fault.evidence if key in devices})
         if rule.solved == "evidence gone" or fault.person is None:
-            return rule.matched(self._detector.watch(self._game.world.health())) is None
+            return rule.matched(devices) is None
         user = self._game.world.observe().user(fault.person)
         closed = user.request == "ANR"
         if rule.solved == "card in view":
@@ -265,4 +273,5 @@ class Recovery:
         fault.add(told)
         if fault.status == OVER:
             self._there.remove(fault)
+            self._detector.forgive(fault.person)
         return [Moved(fault, told)]

@@ -8,6 +8,7 @@ is in the log before it is told.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 
 from tangy_profiles.behaviour import Behaviour
@@ -40,6 +41,9 @@ from tangy_tui.monitoring.recovery import Event as Event
 from tangy_tui.monitoring.recovery import Recovery
 from tangy_tui.world import World
 
+MOST_CLEARINGS = 5
+"""A fault that was cleared so often in a game ends the game when it comes back."""
+
 MOST_MOVES = 200
 """After so many moves against faults without a behaviour in between, a game is ended."""
 
@@ -69,6 +73,7 @@ class Supervision:
             effects_of: learns the effects that a policy's demonstrations show.
             name: what a person is called.
         """
+        game.looked_over = True
         self.game = game
         self.book = book
         self.robot = robot
@@ -78,7 +83,8 @@ class Supervision:
         self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
         self._recovery = Recovery(game, self._detector, robot, store, name)
         self._seen: Evidence | None = None
-        self._acted: Acted | None = None
+        self._acted: dict[str, Acted] = {}  # after which behaviour a fault was noticed
+        self._clearings: Counter[str] = Counter()
 
     @property
     def faults(self) -> list[Fault]:
@@ -142,7 +148,9 @@ class Supervision:
         """Begin the next game, in which nothing is known to be wrong."""
         told: list[Event] = list(self.game.begin())
         self._recovery.begin()
-        self._seen = self._acted = None
+        self._seen = None
+        self._acted.clear()
+        self._clearings.clear()
         self._idle = 0
         self._detector.begin()
         return told
@@ -159,7 +167,8 @@ class Supervision:
             self._idle += 1
             if self._idle > MOST_MOVES:
                 return told + self._stop(f"{MOST_MOVES} moves against faults led nowhere.")
-            return told + self._recovery.go_further(fault)
+            told += self._recovery.go_further(fault)
+            return told + self._end_if_hopeless()
         self._idle = 0
         if not self.game.asks:
             told += self._foresee()
@@ -181,7 +190,8 @@ class Supervision:
             reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
             if reported and self._recovery.rule(fault).matched(evidence) is None:
                 told += self._recovery.move(fault, Move("ended", self.seconds))
-        return told + self._take(diagnose(self.book, evidence), None)
+        told += self._take(diagnose(self.book, evidence), None)
+        return told + self._end_if_hopeless()
 
     @property
     def status(self) -> tuple[str, str]:
@@ -236,16 +246,19 @@ class Supervision:
         told += self._recovery.move(fault, Move("cleared", self.seconds, by=by))
         self._recovery.remedy(fault, "resume")
         self._recovery.halted = None
-        return told + self._recovery.halt_if_critical()
+        self._clearings[fault.code] += 1
+        told += self._recovery.halt_if_critical()
+        return told + self._end_if_hopeless()
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Do what a teacher answered, and go on."""
+        told = self.look()  # what came up while the teacher was thinking comes first
         question = self.question
         if question is None:
-            return []
+            return told
         events = self.game.answer(behaviour, target, teacher)
+        self._idle = 0
         taught = any(isinstance(event, Taught) for event in events)
-        told: list[Event] = []
         if taught:
             told += self._answered(question, Move("taught", self.seconds, by=teacher))
         found = self._after(events)  # by what was expected before the answer was learnt
@@ -255,22 +268,23 @@ class Supervision:
 
     def accept(self, by: str) -> list[Event]:
         """Let a teacher say that what happened is all right; it is expected from now on."""
-        question, acted = self.question, self._acted
-        fault = self._asked_about(question)
-        if question is None or fault is None or acted is None or not fault.mismatches:
-            return []
+        told = self.look()
+        question, fault = self.question, self._asked_about(self.question)
+        if question is None or fault is None or not self.acceptable:
+            return told
         with self._store.transaction():
-            accepted.accept(self._store, self.world.activity, fault, acted, by)
-            told = self._answered(question, Move("accepted", self.seconds, by=by))
+            accepted.accept(self._store, self.world.activity, fault, self._acted[fault.id], by)
+            told += self._answered(question, Move("accepted", self.seconds, by=by))
         self.game.withdraw()
         self._detector.effects = self._effects_of(self.policy)
         return told
 
     @property
     def acceptable(self) -> bool:
-        """Whether what Tangy asks about can be said to be all right."""
+        """Whether what Tangy asks about can be said to be all right: no rule has a cause for it."""
         fault = self._asked_about(self.question)
-        return fault is not None and bool(fault.mismatches) and self._acted is not None
+        unexplained = fault is not None and fault.code == self.book.fallback.code
+        return unexplained and fault is not None and fault.id in self._acted
 
     def give_up(self) -> list[Event]:
         """End a game in which Tangy asks or is halted, and nobody helps."""
@@ -296,6 +310,15 @@ class Supervision:
     def _stop(self, reason: str) -> list[Event]:
         return self._recovery.leave_open() + list(self.game.stop(reason))
 
+    def _end_if_hopeless(self) -> list[Event]:
+        """End a game that is halted by what was cleared again and again."""
+        fault = self.halted
+        if fault is None or self.over or self._clearings[fault.code] < MOST_CLEARINGS:
+            return []
+        told = self._recovery.move(fault, Move("given up", self.seconds))
+        times = f"It was cleared {MOST_CLEARINGS} times and came back."
+        return told + self._stop(f"Tangy was halted. {fault.unnamed} {times}")
+
     # ------------------------------------------------------------------ seeing and explaining
 
     def _after(self, events: Sequence[GameEvent]) -> list[Event]:
@@ -306,7 +329,6 @@ class Supervision:
                 told += self._recovery.leave_open()
             told.append(event)
             if isinstance(event, Acted):
-                self._acted = event
                 self._recovery.seconds += event.outcome.seconds
                 execution, mismatches = self._detector.compare(event)
                 devices = self._detector.watch(self.world.health())
@@ -319,7 +341,9 @@ class Supervision:
                 told += self._take(found, None)
                 for fault in self.waiting[:1]:
                     told += self._recovery.move(fault, Move("teacher asked", self.seconds))
-        return told
+        if not self.over and self.world.over:
+            told += self._recovery.leave_open() + list(self.game.finish())
+        return told + self._end_if_hopeless()
 
     def _foresee(self) -> list[Event]:
         """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
@@ -338,10 +362,12 @@ class Supervision:
                 continue
             try:
                 told += self._recovery.keep(diagnosis, acted, person)
+                if acted is not None and diagnosis.mismatches:
+                    self._acted[self.faults[-1].id] = acted
             except TangyError:
                 self._seen = None  # so that the next look finds it again
                 raise
-        if told:
+        if told and not self._recovery.ended:
             told += self._recovery.halt_if_critical()
             for fault in self.waiting[1:]:
                 if not any(move.kind == "kept" for move in fault.moves):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from shutil import copytree
 
@@ -10,7 +10,7 @@ import pytest
 
 from tangy_sim.faulty import FaultyWorld
 from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved
@@ -59,6 +59,11 @@ def moves(events: list[Event], code: str = "") -> list[str]:
 def acts(events: list[Event]) -> list[Acted]:
     """Return the behaviours that were executed."""
     return [event for event in events if isinstance(event, Acted)]
+
+
+def ended(events: Sequence[object]) -> GameEnded:
+    """Return how a game ended."""
+    return next(event for event in events if isinstance(event, GameEnded))
 
 
 @pytest.fixture(scope="session")

@@ -2,35 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 from shutil import copytree
-from unittest.mock import Mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.errors import StoreError
-from tangy_profiles.faults import Remedy
 from tangy_profiles.store import Store
 from tangy_sim import faulty
 from tangy_sim.injection import KINDS
 from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, GameEnded, Taught
+from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, Taught
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 from tangy_tui.monitoring.fault import ACCEPTED, ENDINGS, FAULT, OVER, RECOVERY, read_faults
 from tangy_tui.monitoring.supervision import Supervision
-from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until, world_of
+from tests.monitoring.conftest import (
+    Supervise,
+    acts,
+    codes,
+    ended,
+    moves,
+    play,
+    until,
+    world_of,
+)
 
 CRITICAL = ("emergency-stop", "link-lost", "laser-disconnected", "camera-frozen", "base-failed")
 EASY = ("voice-dead", "arm-failed", "requests-silent", "laser-occluded", "camera-occluded")
-
-
-def ended(events: Sequence[object]) -> GameEnded:
-    return next(event for event in events if isinstance(event, GameEnded))
 
 
 # ------------------------------------------------------------------------------ standing still
@@ -339,50 +340,3 @@ def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House)
         assert ended(events).stopped is None or "halted" in str(ended(events).stopped)
     assert faults >= 60
     check_log(house.store)
-
-
-def test_no_name_of_a_person_gets_into_the_log(
-    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
-    for person in house.people:
-        house.rename(person, f"Zoe{person.id[-1]}")
-    kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
-    game = supervise(*kinds, seed=2, asks=False)
-    game._recovery._name = lambda person: f"Zoe{person[-1]}"
-    told: list[str] = []
-    for expert in (True, False):
-        play(game, expert=expert)
-        told += [f.console + "".join(m.speech for m in f.moves) for f in game.faults]
-    assert any("Zoe" in words for words in told)
-    logged = "".join(str(event.body) for event in house.store.events())
-    assert "Zoe" not in logged
-    read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(house.store)]
-    assert read == told
-
-
-def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
-    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    game = supervise(seed=3)
-    game.begin()
-    game.step()
-    done: list[str] = []
-    world = world_of(game)
-    recover = world.recover
-
-    def told(remedy: Remedy) -> float:
-        done.append(remedy.kind)
-        return recover(remedy)
-
-    monkeypatch.setattr(world, "recover", told)
-    world.inject("emergency-stop")
-    with monkeypatch.context() as full:
-        full.setattr(house.store, "append", Mock(side_effect=StoreError("The disk is full.")))
-        for _ in range(2):
-            with pytest.raises(StoreError):
-                game.step()
-        assert set(done) == {"halt"}
-        assert game.steps == 1
-    assert codes(game.look()) == ["emergency-stop"]
-    assert game.halted is not None

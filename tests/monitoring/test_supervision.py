@@ -1,0 +1,173 @@
+"""Supervision: the doors by which people act on a game, and what must never get past them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from unittest.mock import Mock
+
+import pytest
+
+from tangy_profiles.errors import StoreError
+from tangy_profiles.faults import Remedy, load_faults
+from tangy_profiles.robot import load_robot
+from tangy_sim import faulty
+from tangy_sim.body import WELL
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import ENDED
+from tangy_tui.monitoring.fault import read_faults
+from tests.monitoring.conftest import (
+    Supervise,
+    acts,
+    codes,
+    ended,
+    moves,
+    play,
+    until,
+    world_of,
+)
+
+
+def test_no_name_of_a_person_gets_into_the_log(
+    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    for person in house.people:
+        house.rename(person, f"Zoe{person.id[-1]}")
+    kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
+    game = supervise(*kinds, seed=2, asks=False)
+    game._recovery._name = lambda person: f"Zoe{person[-1]}"
+    told: list[str] = []
+    for expert in (True, False):
+        play(game, expert=expert)
+        told += [f.console + "".join(m.speech for m in f.moves) for f in game.faults]
+    assert any("Zoe" in words for words in told)
+    logged = "".join(str(event.body) for event in house.store.events())
+    assert "Zoe" not in logged
+    read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(house.store)]
+    assert read == told
+
+
+def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
+    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game = supervise(seed=3)
+    game.begin()
+    game.step()
+    done: list[str] = []
+    world = world_of(game)
+    recover = world.recover
+
+    def told(remedy: Remedy) -> float:
+        done.append(remedy.kind)
+        return recover(remedy)
+
+    monkeypatch.setattr(world, "recover", told)
+    world.inject("emergency-stop")
+    with monkeypatch.context() as full:
+        full.setattr(house.store, "append", Mock(side_effect=StoreError("The disk is full.")))
+        for _ in range(2):
+            with pytest.raises(StoreError):
+                game.step()
+        assert set(done) == {"halt"}
+        assert game.steps == 1
+    assert codes(game.look()) == ["emergency-stop"]
+    assert game.halted is not None
+
+
+def test_what_came_up_while_the_teacher_was_thinking_comes_before_the_answer(
+    supervise: Supervise,
+) -> None:
+    game = supervise("no-effect@1", seed=3)
+    game.begin()
+    until(game, lambda now: now.question)
+    world_of(game).inject("emergency-stop")
+    done = game.steps
+    behaviour = next(iter(game.world.activity.behaviours.values()))
+    assert codes(game.answer(behaviour, None, "Ada")) == ["emergency-stop"]
+    assert game.steps == done
+    assert game.halted is not None
+
+
+def test_a_device_that_is_not_even_mentioned_is_silent(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game = supervise("laser-disconnected@2", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    game.acknowledge("Ada")
+    without = tuple(r for r in world_of(game).health() if r.device != "laser")
+    monkeypatch.setattr(world_of(game), "health", lambda: without)
+    assert moves(game.clear("Ada")) == ["still there"]
+    monkeypatch.setattr(world_of(game), "health", lambda: ())
+    assert codes(game.look()) == ["link-lost"]
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_an_age_that_is_no_time_is_silence(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, value: float
+) -> None:
+    game = supervise(seed=3)
+    game.begin()
+    odd = tuple(r._replace(age=value) if r.device == "camera" else r for r in WELL)
+    monkeypatch.setattr(world_of(game), "health", lambda: odd)
+    assert codes(game.look()) == ["camera-disconnected"]
+
+
+def test_a_measurement_that_is_no_number_is_an_error(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    game = supervise(seed=3)
+    game.begin()
+    facts = {"near_share": float("nan"), "variety": 0.3}
+    odd = tuple(r._replace(facts=facts) if r.device == "laser" else r for r in WELL)
+    monkeypatch.setattr(world_of(game), "health", lambda: odd)
+    assert codes(game.look()) == ["laser-disconnected"]
+
+
+def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rules = load_faults(load_robot())
+    left = tuple(rule for rule in rules.rules if rule.device != "camera")
+    game = supervise(seed=3, asks=False)
+    game.book = replace(rules, rules=left)
+    game.begin()
+    odd = tuple(r._replace(state="ERROR") if r.device == "camera" else r for r in WELL)
+    monkeypatch.setattr(world_of(game), "health", lambda: odd)
+    until(game, lambda now: now.halted)
+    assert game.faults[0].code == "unexplained"
+    game.acknowledge("Ada")
+    assert moves(game.clear("Ada")) == ["still there"]
+
+
+def test_what_nobody_can_mend_gets_to_the_expert_and_then_ends_the_game(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    game = supervise("card-out-of-sight~1", seed=2)
+    events = play(game)
+    kinds = moves(events, "card-out-of-sight")
+    assert {"asked", "teacher asked", "halted", "cleared"} <= set(kinds)
+    assert len(acts(events)) < 150
+    again = supervise("base-stuck~1", seed=2)
+    stopped = ended(play(again)).stopped
+    assert stopped is not None and stopped.endswith("It was cleared 5 times and came back.")
+
+
+def test_only_what_nothing_explains_can_be_called_all_right(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    game = supervise("card-out-of-sight", seed=2)
+    game.begin()
+    until(game, lambda now: now.question)
+    assert game.faults[-1].code == "card-out-of-sight"
+    assert not game.acceptable
+    assert game.accept("Ada") == []
+
+
+def test_nothing_is_logged_of_a_game_after_its_end(supervise: Supervise, house: House) -> None:
+    length = len(acts(play(supervise(seed=3))))
+    play(supervise(f"camera-frozen@{length}", f"voice-dead@{length}", seed=3))
+    last = list(house.store.events())[-1]
+    assert last.kind == ENDED
