@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 from rich import box
 from rich.console import Console
@@ -16,6 +17,8 @@ from tangy_tui.ui.local_time import local_time
 SHORT = 6
 """Characters of an id that are printed."""
 COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end")
+FOLDED = ("activity", "policy")
+"""What people name as they like; all else fits 80 columns, with numbers of five digits too."""
 
 
 def print_games(games: Sequence[Game]) -> None:
@@ -25,10 +28,14 @@ def print_games(games: Sequence[Game]) -> None:
         console.print(NONE_YET)
         return
     table = Table(
-        title=Text("Games"), box=box.SIMPLE_HEAD, title_justify="left", padding=(0, 1, 0, 0)
+        title=Text("Games"), box=box.SIMPLE_HEAD, title_justify="left", padding=0, show_edge=False
     )
     for column in COLUMNS:
-        table.add_column(column, overflow="fold", no_wrap=column not in ("activity", "policy"))
+        if column in FOLDED:
+            table.add_column(column, overflow="fold", min_width=len("activity"))
+        else:
+            justify: Literal["left", "right"] = "right" if column in ("", "steps") else "left"
+            table.add_column(column, no_wrap=True, justify=justify)
     for game in games:
         table.add_row(
             str(game.number),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -12,6 +14,8 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.fault_table import ROWS
+from tangy_tui.monitoring.games import Game
+from tangy_tui.ui.log_report import print_games
 
 Tangy = Callable[..., CompletedProcess[str]]
 FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
@@ -66,6 +70,36 @@ def test_an_empty_folder_has_no_games(tangy: Tangy, tmp_path: Path) -> None:
         done = tangy("log", verb, "last", "--data", tmp_path / "none")
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("number", [7, 1000, 12345])
+def test_no_number_of_games_wraps_the_list(
+    number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    now = datetime(2026, 11, 21, 9, 0, tzinfo=UTC)
+    game = Game(
+        number, "feedfacefeed", 1, now, "bingo", "policy 12", "d" * 64, ("user1",),
+        112, 3, 14, now, 9, "somebody said stop",
+    )  # fmt: skip
+    print_games([game])
+    shown = capsys.readouterr().out.splitlines()
+    (row,) = [line for line in shown if "feedfa" in line]
+    for part in (
+        str(number),
+        "2026-11-21 ",
+        "bingo",
+        "policy ",
+        " 112 ",
+        "17, 3 critical",
+        "stopp",
+    ):
+        assert part in row
+    long = replace(game, policy="the one that was learnt after lunch", activity="a long name")
+    print_games([long])
+    shown = capsys.readouterr().out.splitlines()
+    assert all(len(line) <= 80 for line in shown)
+    assert any("17, 3 critical stopped" in line for line in shown)
 
 
 def test_a_game_is_told_step_by_step_with_its_faults_in_place(tangy: Tangy, played: Path) -> None:
