@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
-from tangy_tui.monitoring.games import Game
+from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import Answered, Done, Moment, Replay
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.wording import Name, counted
+
+MOST_TOLD = 30
+"""Games that a report tells one by one; of more, only those in which something was the matter."""
 
 
 def game_words(game: Game) -> str:
@@ -91,25 +94,25 @@ def answer_words(answer: Answered) -> str:
 
 def session_lines(session: Session) -> Iterator[str]:
     """Tell a session in short: which games, faults, people, and what to look after."""
-    for game in session.games:
-        words = f"{counted(game.steps, 'step')}; {game.ending}"
-        yield f"{game_words(game)}: {words}" + ("" if words.endswith(".") else ".")
+    yield from _games_lines(session.games)
     if session.timed:
         yield f"Time in the room: {length(session.seconds)}."
     yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
     yield ""
     yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
+    numbers = {game.id: game.number for game in session.games}
     for number, fault in enumerate(session.faults, 1):
         kind = "CRITICAL, " if fault.critical else ""
+        where = f"game {numbers[fault.game]}, " if len(numbers) > 1 else ""
         yield (
-            f"  {number}. {clock(fault.seconds)}, step {fault.step}: {fault.name} "
+            f"  {number}. {where}{clock(fault.seconds)}, step {fault.step}: {fault.name} "
             f"({kind}{STATUS_WORDS[fault.status]})"
         )
     for row in fault_rows(session.faults):
         if row["instances"]:
             yield (
                 f"  {row['criticality']}, {RECOVERY_WORDS[row['recovery']]}: "
-                f"{row['success']:.0%} of {row['instances']} went well"
+                f"{row['success']:.0%} of {row['instances']} recovered by that"
             )
     yield ""
     for person in session.people:
@@ -123,13 +126,47 @@ def session_lines(session: Session) -> Iterator[str]:
     yield from session.notes
 
 
+def _games_lines(games: Sequence[Game]) -> Iterator[str]:
+    """Tell each game; of many only those in which something was the matter, and of all the sum."""
+    told = games
+    if len(games) > MOST_TOLD:
+        told = [game for game in games if game.critical or game.other or not game.smooth]
+        days = dict.fromkeys(day_and_time(game.at) for game in (games[0], games[-1]))
+        yield f"{len(games)} games, {' to '.join(days)}: {_sums(games)}."
+        if told:
+            yield "Those with faults, or that did not go to their end:"
+    for game in told:
+        words = f"{counted(game.steps, 'step')}; {game.ending}"
+        yield f"{game_words(game)}: {words}" + ("" if words.endswith(".") else ".")
+    if len(told) < len(games):
+        rest = counted(len(games) - len(told), "game")
+        other = "other " if told else ""
+        yield (
+            f"The {other}{rest} went to the end without a fault; `tangy log list` names them, "
+            "and `tangy log show NUMBER` tells one step by step."
+        )
+
+
+def _sums(games: Sequence[Game]) -> str:
+    stopped = sum(game.stopped is not None for game in games)
+    endless = sum(game.ended is None for game in games)
+    parts = [
+        counted(sum(game.steps for game in games), "step"),
+        f"{len(games) - stopped - endless} {TO_ITS_END}",
+    ]
+    if stopped:
+        parts.append(f"{stopped} stopped before it")
+    if endless:
+        parts.append(f"{endless} without an end in the log")
+    return ", ".join(parts)
+
+
 def _person_line(person: Progress) -> str:
     if not person.interactions:
         return f"{person.name}: was not asked for anything"
     parts = []
     for strategy, one in person.strategies.items():
         if one.used:
-            late = f", {one.late} late" if one.late else ""
             change = f"{one.before.mean:.0%} -> {one.after.mean:.0%}"
-            parts.append(f"{strategy} {one.complied} of {one.used}{late} ({change})")
-    return f"{person.name}: {'; '.join(parts)}"
+            parts.append(f"{strategy}: {one.in_words} ({change})")
+    return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"

@@ -27,7 +27,7 @@ def fault_rows(faults: Iterable[Fault]) -> list[dict[str, Any]]:
     done: dict[tuple[str, str], list[bool]] = {row: [] for row in ROWS}
     for fault in faults:
         row = (CRITICAL if fault.critical else NON_CRITICAL, fault.recovery)
-        done.setdefault(row, []).append(fault.succeeded)
+        done.setdefault(row, []).append(fault.succeeded and len(fault.ladder) == 1)
     return [
         {
             "criticality": criticality,

@@ -48,6 +48,11 @@ class Game:
     stopped: str | None
 
     @property
+    def smooth(self) -> bool:
+        """Whether it was played to its end."""
+        return self.ended is not None and self.stopped is None
+
+    @property
     def ending(self) -> str:
         """How it ended, in words."""
         if self.ended is None:

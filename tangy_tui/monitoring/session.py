@@ -24,6 +24,15 @@ from tangy_tui.monitoring.replay import Replay, read_replays
 STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
 """What became of a fault, in words."""
 
+RESULTS = (
+    ("complied", "complied"),
+    ("late", "followed late"),
+    ("refused", "did not follow"),
+    ("void", "void"),
+    ("awaited", "without an answer"),
+)
+"""What can come of a request: the counts of `Attempts`, and each in words."""
+
 SET_ASIDE = "set aside"
 """The remedy after which a person is left alone: somebody should look after them."""
 
@@ -48,6 +57,11 @@ class Attempts:
     def used(self) -> int:
         """How often the strategy was used in the session."""
         return self.complied + self.late + self.refused + self.void + self.awaited
+
+    @property
+    def in_words(self) -> str:
+        """What came of it: "2 complied, 1 without an answer"."""
+        return result_words({what: getattr(self, what) for what, _ in RESULTS})
 
     def to_json(self) -> dict[str, Any]:
         """Return the counts, and the beliefs with mean and interval."""
@@ -79,6 +93,16 @@ class Progress:
     def total(self, what: str) -> int:
         """Add up one of the counts over the strategies."""
         return sum(getattr(one, what) for one in self.strategies.values())
+
+    @property
+    def in_words(self) -> str:
+        """What came of all that was asked, over the strategies."""
+        return result_words({what: self.total(what) for what, _ in RESULTS})
+
+
+def result_words(counts: Mapping[str, int]) -> str:
+    """Say what came of requests; what there is none of is left out."""
+    return ", ".join(f"{counts[what]} {words}" for what, words in RESULTS if counts[what])
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from html import escape
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import Replay
-from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
+from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.pages.beliefs import belief_drawing, interval
@@ -17,6 +17,9 @@ from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 
 MOST_DRAWN = 24
 """Games that are drawn on one page; of more, the last ones."""
+
+COLUMNS = ("person", "strategy", "used", *(words for _, words in RESULTS), "before", "after")
+"""Of the table of people: the results add up to how often a strategy was used."""
 
 STYLE = """
 :root { --critical: #b91c1c; --minor: #b45309; --on: #ffffff; }
@@ -47,6 +50,7 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 .yes { fill: var(--ink); stroke: var(--paper); stroke-width: 1.2; }
 .late { fill: var(--paper); stroke: var(--ink); stroke-width: 2; }
 .no { stroke: var(--ink); stroke-width: 2.4; fill: none; }
+.open { stroke: var(--dim); stroke-width: 1.6; stroke-dasharray: 2 2; fill: none; }
 .halt { fill: var(--critical); fill-opacity: .13; }
 .fault.critical { fill: var(--critical); } .fault.minor { fill: var(--minor); }
 .mend { stroke-width: 3; } .mend.critical { stroke: var(--critical); }
@@ -68,6 +72,7 @@ KEY = (
     ('<circle class="yes" cx="10" cy="8" r="5"/>', "complied"),
     ('<circle class="late" cx="10" cy="8" r="4.4"/>', "followed late"),
     ('<path class="no" d="M6 4L14 12M6 12L14 4"/>', "did not follow"),
+    ('<circle class="open" cx="10" cy="8" r="4.4"/>', "without an answer"),
     ('<line class="tick" x1="6" x2="6" y1="4" y2="12"/>'
      '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),
     ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', "fault"),
@@ -224,24 +229,12 @@ def _people(session: Session) -> Iterator[str]:
     quiet = [person.name for person in session.people if not person.interactions]
     if quiet:
         yield paragraph(f"Not asked for anything: {', '.join(quiet)}.")
-    columns = ("person", "strategy", "used", "complied", "late", "not", "before", "after")
-    yield table(columns, _people_rows(asked))
+    yield table(COLUMNS, _people_rows(asked))
 
 
 def _person_words(person: Progress) -> str:
-    parts = [
-        f"{person.total(what)} {words}"
-        for what, words in (
-            ("complied", "complied"),
-            ("late", "followed late"),
-            ("refused", "not followed"),
-            ("void", "void"),
-            ("awaited", "without an answer"),
-        )
-        if person.total(what)
-    ]
     times = f"{person.interactions} time" + "s" * (person.interactions != 1)
-    return f"Asked {times}: {', '.join(parts)}."
+    return f"Asked {times}: {person.in_words}."
 
 
 def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
@@ -255,7 +248,8 @@ def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
                 words = f"{belief.mean:.0%} ({low:.0%} to {high:.0%})"
                 beliefs.append(words.replace(" ", "\N{NO-BREAK SPACE}"))
             yield (
-                person.name, strategy, one.used, one.complied, one.late, one.refused, *beliefs,
+                person.name, strategy, one.used, *(getattr(one, what) for what, _ in RESULTS),
+                *beliefs,
             )  # fmt: skip
 
 

@@ -216,12 +216,18 @@ def _spans(replay: Replay, scale: Scale, holds: Callable[[Done], bool]) -> Itera
 
 
 def _answer(x: float, y: float, answer: Answered) -> str:
-    """Mark what a person did: a full dot, a ring where it came late, a cross where it never did."""
+    """Mark what a person did: a full dot, a ring where it came late, a cross where it never did.
+
+    What is not known is a broken ring.
+    """
     if answer.complied:
         return f'<circle class="yes" cx="{x:.1f}" cy="{y}" r="5"><title>complied</title></circle>'
     if answer.followed or answer.complied is None:
-        words = "followed late" if answer.followed else "no answer yet"
-        return f'<circle class="late" cx="{x:.1f}" cy="{y}" r="4.4"><title>{words}</title></circle>'
+        kind, words = (
+            ("late", "followed late") if answer.followed else ("open", "without an answer")
+        )
+        mark = f'<circle class="{kind}" cx="{x:.1f}" cy="{y}" r="4.4">'
+        return f"{mark}<title>{words}</title></circle>"
     arm = 4.2
     return (
         f'<path class="no" d="M{x - arm:.1f} {y - arm:.1f}L{x + arm:.1f} {y + arm:.1f}'

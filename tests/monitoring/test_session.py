@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime
 from typing import Any
 from xml.etree import ElementTree
@@ -11,13 +12,16 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
+from tangy_sim import faulty
 from tangy_tui.house import House
+from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.log_lines import MOST_TOLD, session_lines
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
-from tangy_tui.monitoring.replay import Answered, Done, read_replays
-from tangy_tui.monitoring.session import Session, read_session
+from tangy_tui.monitoring.replay import Answered, Done, Replay, read_replays
+from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
 from tests.monitoring.conftest import Supervise, acts, play
 
@@ -101,6 +105,22 @@ def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
     assert fault.console in session_page(session)
 
 
+def test_a_recovery_has_success_only_where_nothing_else_was_needed(
+    house: House, supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    play(supervise("path-blocked", seed=3))
+    (fault,) = told(house).faults
+    assert (fault.status, fault.ladder) == ("over", ("user", "expert"))
+    assert [row["success"] for row in fault_rows([fault]) if row["instances"]] == [0.0]
+    nobody = supervise("no-effect@12", asks=False)
+    play(nobody)
+    (fault,) = [f for f in nobody.faults if f.code == "unexplained"]
+    assert (fault.recovery, fault.succeeded) == ("teacher", True)
+    (row,) = [row for row in fault_rows([fault]) if row["instances"]]
+    assert (row["recovery"], row["success"]) == ("teacher", 0.0), "a teacher was never asked"
+
+
 def test_what_is_over_needs_no_care_and_what_is_borne_does(
     house: House, supervise: Supervise
 ) -> None:
@@ -130,6 +150,59 @@ def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
     asked = sum(person.interactions for person in told(house).people)
     assert asked == sum(house.store.responses()[key][0] + house.store.responses()[key][1]
                         for key in house.store.responses())  # fmt: skip
+
+
+def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise())
+    (game,) = read_games(house.store)
+    (end,) = house.store.events("game ended")
+    house.store.append(AWAITED, {"game": game.id}, person=house.people[0].id, strategy="neutral")
+    house.store.append("game ended", {**end.body})
+    session = told(house)
+    person = session.people[0]
+    assert person.total("awaited") == 1
+    assert person.interactions == sum(person.total(what) for what, _ in RESULTS)
+    (line,) = [line for line in session_lines(session) if line.startswith(person.name)]
+    (neutral,) = [part for part in line.split("; ") if "neutral: " in part]
+    assert "1 without an answer (" in neutral
+    assert f"{person.strategies['neutral'].refused} did not follow" in neutral or not (
+        person.strategies["neutral"].refused
+    )
+    page = session_page(session)
+    assert "1 without an answer." in page
+    root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
+    rows = [[cell.text for cell in row] for row in root.iter("tr")]
+    at = next(row for row in rows if "without an answer" in row).index("without an answer")
+    (row,) = [row for row in rows if row[:2] == [person.name, "neutral"]]
+    assert row[at] == "1"
+    titles = [circle.find("title") for circle in root.iter("circle")
+              if circle.get("class") == "open"]  # fmt: skip
+    assert [title.text for title in titles if title is not None] == ["without an answer"]
+
+
+def test_of_many_games_only_those_with_faults_or_stops_are_told_one_by_one(
+    house: House, supervise: Supervise
+) -> None:
+    play(supervise())
+    play(supervise("arm-failed@5", seed=2))
+    session = told(house)
+    smooth, bumpy = session.games
+    stopped = replace(smooth, id="stopped", number=3, stopped="Somebody said stop.")
+    games = [replace(smooth, id=f"game{n}", number=n) for n in range(4, 4 + MOST_TOLD)]
+    some = replace(
+        session, replays=tuple(Replay(game) for game in (smooth, *games[: MOST_TOLD - 1]))
+    )
+    assert sum(line.startswith("Game ") for line in session_lines(some)) == MOST_TOLD
+    all_of_them = tuple(Replay(game) for game in (smooth, bumpy, stopped, *games))
+    lines = list(session_lines(replace(session, replays=all_of_them)))
+    told_of = [line.split(" ")[1] for line in lines if line.startswith("Game ")]
+    assert told_of == [str(bumpy.number), "3"]
+    assert lines[0].startswith(f"{MOST_TOLD + 3} games, ")
+    assert f"{MOST_TOLD + 2} played to its end, 1 stopped before it" in lines[0]
+    assert any(f"The other {MOST_TOLD + 1} games " in line and "log list" in line
+               for line in lines)  # fmt: skip
 
 
 def test_a_void_response_counts_in_no_belief_and_is_told(
