@@ -7,6 +7,7 @@ from collections.abc import Callable
 from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, Move
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.monitoring.telling import move_words
+from tangy_tui.monitoring.times import clock
 
 Read = Callable[[], str | None]
 Write = Callable[[str], None]
@@ -35,6 +36,17 @@ def fault_lines(event: FaultEvent) -> list[str]:
     return [f"   {fault.name}: {move_words(event.move)}.", *_said(event.move)]
 
 
+def advice_lines(game: Supervision) -> list[str]:
+    """Say what staff should do about what Tangy asks, or about what halts it."""
+    question = game.question
+    about = "" if question is None else question.fault
+    fault = game.halted or next((one for one in game.faults if one.id == about), None)
+    if fault is None:
+        return []
+    steps = [f"  {number}. {step}" for number, step in enumerate(fault.advice, 1)]
+    return [f"{fault.console} Why: {fault.why}.", *steps]
+
+
 def _said(move: Move) -> list[str]:
     return [f"   Tangy says: {move.speech}"] if move.speech else []
 
@@ -44,7 +56,7 @@ def list_lines(faults: list[Fault]) -> list[str]:
     lines: list[str] = []
     for number, fault in enumerate(faults, 1):
         lines.append(f"{number}. step {fault.step}: {fault.name} ({fault.status})")
-        lines += [f"   {move.seconds:.0f} s: {move_words(move)}" for move in fault.moves]
+        lines += [f"   {clock(move.seconds)}  {move_words(move)}" for move in fault.moves]
     return lines or ["No faults in this game."]
 
 
@@ -68,16 +80,16 @@ def attend(game: Supervision, write: Write, read: Read, who: str) -> list[Event]
                 return game.clear(who)
             write("Say first that you have seen it: seen.")
         elif word in ("what", "what to do", "why"):
-            write(f"{fault.console} Why: {fault.why}.")
-            for number, step in enumerate(fault.advice, 1):
-                write(f"  {number}. {step}")
+            for told_line in advice_lines(game):
+                write(told_line)
         elif word == "faults":
             for told_line in list_lines(game.faults):
                 write(told_line)
         elif word in ("quit", "exit", "leave"):
             break
         elif word and not word.startswith("#"):
-            write(HALTED)
+            if word not in ("help", "?"):
+                write(f"I do not know {word!r} here.")
             for key, meaning in MEANINGS:
                 write(f"  {key}: {meaning}")
     return game.give_up()

@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.beliefs import probability_best
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.fault_lines import attend, fault_lines
+from tangy_tui.fault_lines import advice_lines, attend, fault_lines
 from tangy_tui.interaction.facilitation import (
     Acted,
+    DoneOnce,
     GameBegun,
     GameEnded,
     Learnt,
@@ -29,7 +30,7 @@ from tangy_tui.learning.verifying import (
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.scripted_people import answer_by_script, clear_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.wording import Name, state_words, verification_lines
+from tangy_tui.wording import ALL_RIGHT, Name, once_words, state_words, verification_lines
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
@@ -37,11 +38,13 @@ Write = Callable[[str], None]
 Demonstrations = Callable[[], Sequence[Demonstration]]
 
 HELP = "Answer with a behaviour in words, or type one of: where, why, help, quit."
+WHAT = ("what", "what to do", "what should i do", "what should i do?")
 MEANINGS = (
     ("where", "say what Tangy sees"),
     ("why", "say why Tangy asks"),
     ("quit", "give the game up"),
 )
+ACCEPTING = ("all right", "what happened is all right: expect it from now on")
 _TAKEN_BACK = {"undo": "undo", "redo": "redo", "again": "show again"}
 
 
@@ -81,6 +84,8 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
                 f"   Tangy has learnt that from {teacher}, as {lesson.policy.name!r}.",
                 f"   {lesson.replay.words()}",
             ]
+        case DoneOnce(_, instead):
+            return [f"   {once_words(instead)}"]
         case GameEnded(_, steps, stopped):
             if stopped is not None:
                 return [f"The game stopped after {steps} steps. {stopped}"]
@@ -156,6 +161,8 @@ def _ask(
 ) -> list[Event]:
     """Take a command from a teacher, verified by Y as when teaching; none gives the game up."""
     verifier = supervision.verifier()
+    if supervision.acceptable:
+        write("If all is well, type: all right. What should I do? Type: what.")
     activity = supervision.world.activity
     while (line := read()) is not None:
         text = line.strip()
@@ -174,6 +181,12 @@ def _ask(
                 for words in answer_help(others) if lower in ("help", "?") else [ANSWER_HELP]:
                     write(words)
                 continue
+        elif lower in ALL_RIGHT and supervision.acceptable:
+            return supervision.accept(teacher)
+        elif lower in WHAT and (lines := advice_lines(supervision)):
+            for words in lines:
+                write(words)
+            continue
         elif (told := _told(supervision, name, lower, demonstrations)) is not None:
             for words in told:
                 write(words)
@@ -204,7 +217,8 @@ def _told(
             spoken = [
                 f"  {b.question}: say {b.phrases[0]!r}" for b in world.activity.behaviours.values()
             ]
-            return [HELP, *spoken, *(f"  {word}: {meaning}" for word, meaning in MEANINGS)]
+            more = [*MEANINGS, *([ACCEPTING] if supervision.acceptable else [])]
+            return [HELP, *spoken, *(f"  {word}: {meaning}" for word, meaning in more)]
         case "where":
             state = world.observe()
             seen = state_words(world.activity, state, world.scene(), name)

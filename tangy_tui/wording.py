@@ -126,3 +126,12 @@ def lesson_words(activity: Activity, lesson: Lesson) -> str:
     step = made.steps[-1]
     where = activity.in_words(step.state.situation)
     return f"Learnt from {made.teacher}: {where} -> {step.behaviour}."
+
+
+ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "ok")
+"""What can be said of something unexpected that is all right."""
+
+
+def once_words(instead: str) -> str:
+    """Say that an answer about a fault was acted upon, but not learnt."""
+    return f"Done this once. When nothing is wrong, Tangy goes on to {instead!r} here, as shown."

@@ -121,8 +121,7 @@ class Condition(NamedTuple):
         """The limit that a number passed, in words; "" where there is none."""
         if self.test not in ("above", "below", "at_least"):
             return ""
-        words = {"above": "more than", "below": "less than"}.get(self.test, "not less than")
-        return f"{words} {self.value:g}" if not isinstance(self.value, str) else ""
+        return f"limit {self.value:g}" if not isinstance(self.value, str) else ""
 
     def __str__(self) -> str:
         words = {"is": "is", "not": "is not", "at_least": "at least"}.get(self.test, self.test)

@@ -97,6 +97,17 @@ class Taught:
 
 
 @dataclass(frozen=True, slots=True)
+class DoneOnce:
+    """A teacher's answer was acted upon, but not learnt: it holds for this fault, this once.
+
+    Tangy is sure of what to do in such a situation when nothing is wrong (`instead`).
+    """
+
+    teacher: str
+    instead: str
+
+
+@dataclass(frozen=True, slots=True)
 class GameEnded:
     """The game is over: played to its end, or stopped for a reason that a person can read."""
 
@@ -105,7 +116,7 @@ class GameEnded:
     stopped: str | None
 
 
-GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | GameEnded
+GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | DoneOnce | GameEnded
 
 
 class Facilitation:
@@ -235,12 +246,21 @@ class Facilitation:
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[GameEvent]:
         """Do what a teacher answered, learn from it, and go on by the new policy.
 
+        What a teacher says about a fault, where Tangy is sure of something else when nothing is
+        wrong, is done this once and not learnt.
+
         An answer that cannot be kept is an exception: nothing of it stays in the log, policy and
         beliefs are as before, and the next `step` looks anew where the game is.
         """
         if self.question is None or self._answers is None:
             return []
-        (state, decision), self.question = (self.question.state, self.question.decision), None
+        question, self.question = self.question, None
+        state, decision = question.state, question.decision
+        if question.fault and decision.sure and behaviour.name != decision.behaviour:
+            with self._store.transaction():
+                done = self._act(state, decision, behaviour, target, teacher)
+            first, *rest = self._told(done)
+            return [first, DoneOnce(teacher, decision.behaviour), *rest]
         with self._store.transaction():
             done = self._act(state, decision, behaviour, target, teacher)
             acted, response, _ = done

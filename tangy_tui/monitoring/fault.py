@@ -31,7 +31,7 @@ MOVES: Mapping[str, str] = {
     "halted": "halted",
     "acknowledged": "was acknowledged",
     "expert called": "the expert was called",
-    "still there": "it is still there, and cannot be cleared yet",
+    "still there": "it is still there: it must be mended before it can be cleared",
     "escalated": "that did not help",
     "went on": "went on",
     "recovered": "recovered",

@@ -214,9 +214,10 @@ class Recovery:
         return [*self.move(fault, Move("teacher asked", self.seconds)), *asked]
 
     def _escalate(self, fault: Fault) -> list[Event]:
+        tried, self._tried[fault.id] = self._tried[fault.id], 0
         self._rung[fault.id] += 1
-        self._tried[fault.id] = 0
-        return self.move(fault, Move("escalated", self.seconds, to=self._rung_of(fault)))
+        to = self._rung_of(fault)
+        return self.move(fault, Move("escalated", self.seconds, attempt=tried, to=to))
 
     def halt_if_critical(self) -> list[Event]:
         """Stand still if what is most urgent needs an expert."""

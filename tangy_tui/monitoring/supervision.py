@@ -18,6 +18,7 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import (
     Acted,
+    DoneOnce,
     Facilitation,
     GameEnded,
     GameEvent,
@@ -259,7 +260,7 @@ class Supervision:
         events = self.game.answer(behaviour, target, teacher)
         self._idle = 0
         taught = any(isinstance(event, Taught) for event in events)
-        if taught:
+        if taught or any(isinstance(event, DoneOnce) for event in events):
             told += self._answered(question, Move("taught", self.seconds, by=teacher))
         found = self._after(events)  # by what was expected before the answer was learnt
         if taught:

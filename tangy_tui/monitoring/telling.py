@@ -48,21 +48,54 @@ def evidence_words(
             limit = f" ({words})" if (words := limits.get(key, "")) else ""
             measured = device.facts.get(fact, fact.replace("_", " "))
             parts.append(f"{device.label}: {measured}: {_number(value)}{limit}")
-    return "; ".join([*parts, *map(str, mismatches)])
+    return "; ".join([*parts, *map(mismatch_words, mismatches)])
+
+
+def mismatch_words(mismatch: Mismatch) -> str:
+    """Say what should have followed a behaviour and did not, as one who was there would."""
+    words = _MISMATCHES.get((mismatch.variable, mismatch.seen))
+    if words is None and mismatch.variable == "robot's place":
+        there = _PLACES.get(mismatch.seen, mismatch.seen)
+        wanted = " or ".join(_PLACES.get(place, place) for place in mismatch.expected)
+        words = f"Tangy is {there}" + (f", and should be {wanted}" if wanted else "")
+    if words is None:
+        words = f"{mismatch.variable}: {mismatch.seen}"
+    never = "" if mismatch.expected else " (no demonstration shows what to expect here)"
+    return f"after {mismatch.behaviour!r}, {words}{never}"
 
 
 def move_words(move: Move) -> str:
     """Say in a few words what was done."""
     words = _REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
+    if move.kind == "escalated":
+        return f"{words if move.attempt else 'nobody was there for that'}: now {_TO[move.to]}"
     if move.attempt > 1:
         words = f"{words}, for the {_ordinal(move.attempt)} time"
-    if move.to:
-        words = f"{words}: now {_TO[move.to]}"
     if move.by:
         words = f"{words}, by {move.by}"
     return words
 
 
+_PLACES = {"front": "at the front"}
+_MISMATCHES = {
+    ("activity", "not begun"): "the activity has still not begun",
+    ("activity", "begun"): "the activity has begun, and should not have",
+    ("end", "reached"): "the end has come, and should not have",
+    ("end", "not reached"): "the end has not come, and should have",
+    ("stage", "not left"): "nothing moved on, and it should have",
+    ("stage", "left"): "the activity moved on, and should not have",
+    ("request", "open"): "the request for help is still open, and should have ended",
+    ("request", "closed"): "the request for help has ended, and should not have",
+    ("request", "open with nothing left"): (
+        "the request for help is still open, with nothing left to do"
+    ),
+    ("what was asked about", "unchanged"): "what it was about has not changed",
+    ("what was asked about", "settled"): "what it was about was settled, unexpectedly",
+    ("card", "lost from view"): "what Tangy was looking at went out of its sight",
+    ("card", "kept in view"): "Tangy still sees what should be out of its sight",
+    ("others' requests", "fewer"): "somebody else who asked for help asks no more",
+    ("others' requests", "kept"): "somebody else still asks for help, unexpectedly",
+}
 _REMEDIES = {
     "spin": "Tangy turned on the spot to find its place",
     "restart": "it was started again",

@@ -10,6 +10,7 @@ from textual.screen import Screen
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import (
     Acted,
+    DoneOnce,
     GameBegun,
     GameEnded,
     Learnt,
@@ -29,7 +30,7 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, lesson_words
+from tangy_tui.wording import counted, lesson_words, once_words
 
 DRIVING_SHARE = 0.5
 """The share of a step's time in which the picture of the robot drives."""
@@ -88,6 +89,9 @@ class GamePicture:
                     log.write(f"Tangy asks. {reason}", "warn")
                 case Taught():
                     self._show_lesson(event)
+                case DoneOnce(_, instead):
+                    log.write(once_words(instead), "good")
+                    self._screen.notify(once_words(instead), markup=False)
                 case Diagnosed() | Moved():
                     write_fault(self._screen, event)
                     self._show_scene(0, drive=False, pace=pace)

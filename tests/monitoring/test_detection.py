@@ -112,7 +112,7 @@ def test_a_mismatch_says_variable_expected_and_seen(supervise: Supervise) -> Non
     (mismatch, *_) = game.faults[0].mismatches
     assert mismatch.variable == "robot's place"
     assert (mismatch.expected, mismatch.seen) == (("with the person who asked",), "front")
-    assert "should be with the person who asked, is front" in game.faults[0].why
+    assert "Tangy is at the front, and should be with the person who asked" in game.faults[0].why
 
 
 def test_what_is_brought_about_by_hand_is_seen_at_the_next_look(supervise: Supervise) -> None:

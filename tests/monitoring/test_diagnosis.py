@@ -87,7 +87,7 @@ def test_what_no_rule_explains_asks_the_teacher_and_says_what_was_seen() -> None
     assert told.rule is BOOK.fallback
     assert told.rule.recovery == ("teacher",)
     words = evidence_words(told.evidence, told.mismatches, ROBOT)
-    assert words == "call number: others' requests should be kept, is fewer"
+    assert words == "after 'call number', somebody else who asked for help asks no more"
 
 
 def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:

@@ -40,12 +40,10 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.reasons import why_of
 from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
 from tangy_tui.ui.widgets.log_view import LogView
-from tangy_tui.wording import counted, state_words
+from tangy_tui.wording import ALL_RIGHT, counted, state_words
 
 ResultT = TypeVar("ResultT")
 
-ALL_RIGHT = ("all right", "all is right", "that is all right", "ok")
-"""What can be typed where what happened is all right."""
 
 HELD = "Tangy was stopped: press p to go on first, then answer."
 
