@@ -36,6 +36,8 @@ WELCOME = (
     "Each round shows what staff see at one moment of a game. Say what it is, and what you do. "
     "Nothing of it is real, and nothing of it is kept but your score."
 )
+KEPT = "What was answered before is kept as an unfinished sheet."
+NOTHING_KEPT = "Nothing was kept: the first round was not answered to its end."
 HELP = "Type the number or letter of an answer, or quit."
 
 _STATES = {STALE: "nothing comes from it", ERROR: "it reports an error", "WARN": "it warns"}
@@ -171,26 +173,31 @@ def _cut(text: str, width: int) -> str:
     return text.ljust(width) if len(text) <= width else f"{text[: width - 1]}…"
 
 
-def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str]) -> list[str]:
-    """List earlier sheets, the oldest first; `when` writes a time of the log."""
+def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str = "") -> list[str]:
+    """List earlier sheets (of one person), the oldest first; `when` writes a time of the log."""
     if not sheets:
         return ["No drill yet: tangy drill begins one."]
-    who = max(len("Who"), *(len(sheet.who) for sheet in sheets))
-    lines = [f"{'When':16}  {'Who':{who}}  Rounds   Points  Median s  To rehearse again"]
+    if who:
+        names = sorted({sheet.who for sheet in sheets})
+        sheets = [sheet for sheet in sheets if sheet.by(who)]
+        if not sheets:
+            return [plain(f"No drill of {who} yet; there are sheets of {', '.join(names)}.")]
+    wide = max(len("Who"), *(len(sheet.who) for sheet in sheets))
+    lines = [f"{'When':16}  {'Who':{wide}}  Rounds   Points  Median s  To rehearse again"]
     for sheet in sheets:
         rounds = f"{len(sheet.answered)} of {sheet.rounds}"
         points = f"{sheet.points} of {sheet.most}"
         took = "-" if sheet.median is None else f"{sheet.median:.0f}"
         again = ", ".join(one.name for one in sheet.again) or "nothing"
         line = (
-            f"{when(sheet.at):16}  {sheet.who:{who}}  {rounds:>8} {points:>8}  {took:>8}  {again}"
+            f"{when(sheet.at):16}  {sheet.who:{wide}}  {rounds:>8} {points:>8}  {took:>8}  {again}"
         )
         lines.append(plain(line))
     return lines
 
 
 def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = False) -> Sheet | None:
-    """Rehearse line by line; at the end of the lines it is left.
+    """Rehearse line by line; at the end of the lines, or when interrupted, it is left.
 
     Args:
         strict: an answer that is none ends it, instead of being asked for again.
@@ -200,10 +207,21 @@ def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = Fal
 
     Raises:
         TangyError: only if `strict`; what was answered before is kept.
+        KeyboardInterrupt: passed on, after what was answered before was kept and told.
     """
     if drill.note:
         write(drill.note)
     write(WELCOME)
+    try:
+        _go_through(drill, write, read, strict)
+    except KeyboardInterrupt:
+        drill.leave()
+        _tell(drill, write)
+        raise
+    return _tell(drill, write)
+
+
+def _go_through(drill: Drill, write: Write, read: Read, strict: bool) -> None:
     while (shown := drill.next()) is not None:
         write("")
         write(f"Round {shown.number} of {drill.rounds}")
@@ -211,13 +229,24 @@ def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = Fal
             write(f"  {label:{_LABEL}}  {text}")
         if not _answer_round(drill, shown, write, read, strict):
             drill.leave()
-            break
+            return
+
+
+def _tell(drill: Drill, write: Write) -> Sheet | None:
+    """Tell the sheet, and of a drill that was left what is kept of it."""
+    write("")
     sheet = drill.sheet if drill.sheet.answered else None
     if sheet is not None:
-        write("")
         for _, text in sheet_lines(sheet, before=drill.before):
             write(text)
+    if not drill.over:
+        write(left_words(drill))
     return sheet
+
+
+def left_words(drill: Drill) -> str:
+    """Say what is kept of a drill that was left."""
+    return KEPT if drill.sheet.answered else NOTHING_KEPT
 
 
 def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: bool) -> bool:
@@ -242,7 +271,8 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
             if strict:
                 drill.leave()
                 wrong = f"Round {shown.number}, {question.text}"
-                raise TangyError(plain(f"{wrong} {word!r}: {nearest(word, question.keys)}"))
+                wrong = f"{wrong} {word!r}: {nearest(word, question.keys)} {left_words(drill)}"
+                raise TangyError(plain(wrong))
             write(HELP)
             continue
         answered = drill.answer(word)

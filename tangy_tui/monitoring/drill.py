@@ -98,7 +98,7 @@ class Drill:
         earlier = read_sheets(store)
         if seed is None:
             seed = 1 + max((sheet.seed for sheet in earlier), default=0)
-        mine = [sheet for sheet in earlier if sheet.who.casefold() == who.casefold()]
+        mine = [sheet for sheet in earlier if sheet.by(who)]
         self.before = mine[-1] if mine else None
         """The sheet of the drill that the same person had before."""
         self.tabletop = tabletop

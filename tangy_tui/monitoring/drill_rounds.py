@@ -256,8 +256,8 @@ class Tabletop:
                         _count(refused, event)
                 found = [event.fault for event in events if isinstance(event, Diagnosed)]
                 if found:
-                    if [fault.code for fault in found] != [kind.code]:
-                        return None
+                    if [fault.code for fault in found] != [kind.code] or game.over:
+                        return None  # something else, or too late to do anything about it
                     return self._fault_round(number, kind, game, found[0], acted, rng)
                 if game.over:
                     return None

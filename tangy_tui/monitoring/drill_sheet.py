@@ -115,6 +115,10 @@ class Sheet:
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
 
+    def by(self, who: str) -> bool:
+        """Say whether it is somebody's, however the name is written."""
+        return self.who.casefold() == who.casefold()
+
     @property
     def finished(self) -> bool:
         """Whether every round was answered."""
@@ -185,7 +189,7 @@ class Sheet:
 def read_sheets(store: Store, who: str = "") -> list[Sheet]:
     """Read the sheets that were kept (of one person), the oldest first."""
     sheets = [Sheet.from_json(event.body, event.at) for event in store.events(DRILL)]
-    return [sheet for sheet in sheets if not who or sheet.who.casefold() == who.casefold()]
+    return [sheet for sheet in sheets if not who or sheet.by(who)]
 
 
 def last_sheet(store: Store) -> Sheet | None:

@@ -19,6 +19,7 @@ from tangy_tui.verbs.common import (
     open_house,
     print_json,
     print_line,
+    say_notices,
 )
 
 LONGEST_WHO = 40  # characters
@@ -52,11 +53,12 @@ def drill(
             from tangy_tui.monitoring.drill_sheet import read_sheets
             from tangy_tui.ui.local_time import local_time
 
-            sheets = read_sheets(house.store, "" if who is None else name)
+            only = "" if who is None else name
             if as_json:
+                sheets = read_sheets(house.store, only)
                 print_json([{"at": sheet.at, **sheet.to_json()} for sheet in sheets])
             else:
-                for line in sheets_lines(sheets, local_time):
+                for line in sheets_lines(read_sheets(house.store), local_time, only):
                     print_line(line)
             return
         if not (plain_lines or as_json) and full_screen():
@@ -65,7 +67,7 @@ def drill(
             raise typer.Exit(
                 run_drill(house, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
             )
-        from tangy_tui.drill_lines import drill_by_lines
+        from tangy_tui.drill_lines import drill_by_lines, left_words
         from tangy_tui.inputs import line_reader
         from tangy_tui.monitoring.drill import Drill
 
@@ -80,7 +82,14 @@ def drill(
             seed=seed,
             rounds=rounds,
         )
-        write = (lambda _: None) if as_json else print_line
-        sheet = drill_by_lines(made, write, line_reader(None), strict=as_json)
-        if as_json:
-            print_json((sheet or made.sheet).to_json())
+        if not as_json:
+            drill_by_lines(made, print_line, line_reader(None))
+            return
+        try:
+            drill_by_lines(made, lambda _: None, line_reader(None), strict=True)
+        except KeyboardInterrupt:
+            say_notices([left_words(made)])
+            raise
+        if not made.over:
+            say_notices([left_words(made)])
+        print_json(made.sheet.to_json())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -23,7 +24,7 @@ from tangy_tui.drill_lines import (
     told_lines,
 )
 from tangy_tui.learning.policies import keep_policy
-from tangy_tui.monitoring import drill_policy
+from tangy_tui.monitoring import drill_policy, drill_rounds
 from tangy_tui.monitoring.drill import NOTHING, Drill
 from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import (
@@ -44,6 +45,7 @@ from tangy_tui.monitoring.drill_sheet import (
     last_sheet,
     read_sheets,
 )
+from tangy_tui.monitoring.supervision import Supervision
 
 BOOK = load_faults(load_robot())
 KINDS = round_kinds(BOOK)
@@ -137,6 +139,24 @@ def test_each_kind_of_fault_is_seen_and_alone(table: Tabletop, kind: RoundKind) 
         (rule.device and other.device == rule.device) or other.recovery[0] == rule.recovery[0]
         for other in others
     )
+
+
+def test_no_round_is_at_the_end_of_its_game(
+    table: Tabletop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chosen: list[bool] = []
+    real = Tabletop._fault_round
+
+    def look(self: Tabletop, number: int, kind: RoundKind, game: Supervision, *rest: Any) -> Round:
+        chosen.append(game.over)
+        return real(self, number, kind, game, *rest)
+
+    monkeypatch.setattr(Tabletop, "_fault_round", look)
+    monkeypatch.setattr(drill_rounds, "SETS_IN", (40, 70))  # where most games end
+    late = next(kind for kind in KINDS if kind.name == "request-withdrawn")
+    for seed in range(8):
+        table.play(1, late, Random(seed))
+    assert chosen == [False] * 8
 
 
 def test_what_is_seen_does_not_name_the_fault_or_say_what_to_do(table: Tabletop) -> None:

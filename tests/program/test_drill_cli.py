@@ -10,6 +10,8 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_profiles.store import Store
+from tangy_tui import inputs
+from tangy_tui.drill_lines import KEPT, NOTHING_KEPT
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -114,3 +116,66 @@ def test_with_what_was_learnt_nothing_has_to_be_shown(tangy: Tangy, taught: Path
     with Store.open(taught, write=False) as store:
         assert not list(store.events("fault", "game begun"))
         assert len(list(store.events("drill"))) == 1
+
+
+def one_round(data: tuple[object, ...], who: str, tangy: Tangy) -> None:
+    done = tangy("drill", "--plain", "--rounds", "1", "--who", who, *data, stdin=answers(2))
+    assert done.returncode == 0
+    assert NOTHING_KEPT not in done.stdout
+    assert KEPT not in done.stdout
+
+
+def test_who_has_no_sheet_is_told_who_has(tangy: Tangy, taught: Path) -> None:
+    data = ("--data", taught)
+    one_round(data, "Ben", tangy)
+    one_round(data, "Ada", tangy)
+    asked = ("drill", "--scores", *data, "--who")
+    assert tangy(*asked, "Rosa").stdout == "No drill of Rosa yet; there are sheets of Ada, Ben.\n"
+    found = tangy(*asked, "ada").stdout
+    assert ("Ada" in found, "Ben" in found) == (True, False)
+    assert tangy("drill", "--scores", *data).stdout.count("1 of 1") == 2
+
+
+@pytest.mark.parametrize("left", ["quit\n", "", "0\nquit\n", "0\n"])
+@pytest.mark.parametrize("form", ["--plain", "--json"])
+def test_who_leaves_before_a_round_is_answered_is_told_that_nothing_is_kept(
+    left: str, form: str, tangy: Tangy, taught: Path
+) -> None:
+    done = tangy("drill", form, "--seed", "3", "--data", taught, stdin=left)
+    assert done.returncode == 0
+    said = done.stdout if form == "--plain" else done.stderr
+    assert said.count(NOTHING_KEPT) == 1
+    assert tangy("drill", "--scores", "--data", taught).stdout.startswith("No drill yet")
+    if form == "--json":
+        assert json.loads(done.stdout)["answers"] == []
+
+
+@pytest.mark.parametrize("form", ["--plain", "--json"])
+@pytest.mark.parametrize("lines", [0, 2])
+def test_what_was_answered_before_an_interrupt_is_kept_and_told(
+    lines: int, form: str, tangy: Tangy, taught: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = iter(("0", "1")[:lines])
+
+    def read() -> str:
+        for line in left:
+            return line
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(inputs, "line_reader", lambda _: read)
+    done = tangy("drill", form, "--rounds", "4", "--seed", "3", "--data", taught)
+    assert done.returncode == 130
+    said = done.stdout if form == "--plain" else done.stderr
+    assert said.count(KEPT if lines else NOTHING_KEPT) == 1
+    kept = json.loads(tangy("drill", "--scores", "--json", "--data", taught).stdout)
+    assert [(len(one["answers"]), one["finished"]) for one in kept] == [(1, False)] * bool(lines)
+
+
+def test_a_wrong_line_of_a_script_says_what_is_kept(tangy: Tangy, taught: Path) -> None:
+    asked = ("drill", "--json", "--rounds", "4", "--seed", "3", "--data", taught)
+    done = tangy(*asked, stdin="nonsense\n")
+    assert (done.returncode, done.stdout, NOTHING_KEPT in done.stderr) == (2, "", True)
+    done = tangy(*asked, stdin="0\n1\nn\n0\nnonsense\n")
+    assert (done.returncode, done.stdout, KEPT in done.stderr) == (2, "", True)
+    (kept,) = json.loads(tangy("drill", "--scores", "--json", "--data", taught).stdout)
+    assert (len(kept["answers"]) >= 1, kept["finished"]) == (True, False)
