@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.resources import files
+from os.path import isdir
 from pathlib import Path
 from types import MappingProxyType
 
@@ -18,7 +19,7 @@ from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import PAPER, Persuading, read_persuading
-from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.state import Situation
 
 CONDITIONS = ("before", "after", "beside requester", "requested or away", "count", "otherwise")
@@ -181,13 +182,16 @@ def load_activity(name: str) -> Activity:
     """Load an activity by name, or by the path of its TOML file.
 
     Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
+        ProfileError: one line that says file, key, value and the nearest valid word; there is no
+            such activity, or it is a folder.
     """
     shipped = shipped_activities()
     if name in shipped:
         return read_activity(shipped[name])
     if name.endswith(".toml"):
         return read_activity(Path(name))
+    if isdir(name):  # noqa: PTH112 - it says no to a name too long, where Path raises
+        raise ProfileError(plain(f"{name}: is a folder; name the TOML file in it."))
     raise ProfileError(f"There is no activity {name!r}: {nearest(name, shipped)}")
 
 
@@ -199,7 +203,7 @@ def read_activity(path: Path) -> Activity:
     """
     top = read_toml(path)
     strategies = _strategies(top.table("strategies"))
-    plain = top.choice("plain_strategy", strategies)
+    plain_strategy = top.choice("plain_strategy", strategies)
     states = _user_states(top)
     state_names = [s.name for s in states]
     behaviours = _behaviours(top, strategies, state_names)
@@ -209,7 +213,7 @@ def read_activity(path: Path) -> Activity:
         title=top.text("title"),
         patience=top.number("patience", 0.1, 600),
         strategies=MappingProxyType(strategies),
-        plain_strategy=plain,
+        plain_strategy=plain_strategy,
         deck=read_deck(top.table("deck")),
         user_states=states,
         stage_rules=rules,

@@ -199,15 +199,17 @@ def read_toml(path: Path) -> Table:
     """Read a TOML file.
 
     Raises:
-        ProfileError: the file is missing, unreadable, too large or not TOML.
+        ProfileError: the file is missing, a folder, unreadable, empty, too large or not TOML.
     """
     name = plain(path.name)
     try:
         if path.stat().st_size > LARGEST_PROFILE:
             raise ProfileError(f"{name}: is larger than {LARGEST_PROFILE:,} bytes.")
-        return Table(tomllib.loads(path.read_text(encoding="utf-8")), name)
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise ProfileError(plain(f"{path}: there is no such file.")) from None
+    except IsADirectoryError:
+        raise ProfileError(plain(f"{path}: is a folder; name the TOML file in it.")) from None
     except OSError as error:
         raise ProfileError(plain(f"{path}: cannot be read ({error.strerror}).")) from None
     except UnicodeDecodeError:
@@ -218,3 +220,6 @@ def read_toml(path: Path) -> Table:
         raise ProfileError(f"{name}: holds a number of thousands of digits.") from None
     except RecursionError:
         raise ProfileError(f"{name}: is nested too deeply.") from None
+    if not values:
+        raise ProfileError(f"{name}: is empty: it has no entries.")
+    return Table(values, name)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule, check_faults
 from tangy_profiles.robot import Robot
 from tangy_sim.injection import KINDS
+from tangy_tui.monitoring.drill_rounds import round_kinds
 from tangy_tui.monitoring.telling import RECOVERY_WORDS
 
 
@@ -17,8 +19,8 @@ class Rules:
     """Fault rules that were looked over.
 
     `unseen` is the evidence of the robot's devices that no rule looks at; `unruled` the kinds of
-    fault of the simulator whose right diagnosis is no rule; `untried` the rules that no kind of
-    the simulator brings about.
+    fault of the simulator whose right diagnosis is no rule; `untried` the rules that nothing in
+    the simulator brings about; `together` those that only some kinds at once do, with these kinds.
     """
 
     file: str
@@ -27,6 +29,7 @@ class Rules:
     unseen: tuple[str, ...] = ()
     unruled: tuple[str, ...] = ()
     untried: tuple[str, ...] = ()
+    together: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Return what `--json` prints."""
@@ -47,6 +50,7 @@ class Rules:
             "evidence_without_rule": list(self.unseen),
             "kinds_without_rule": list(self.unruled),
             "rules_without_kind": list(self.untried),
+            "only_by_kinds_together": {code: list(these) for code, these in self.together.items()},
         }
 
 
@@ -56,14 +60,16 @@ def check_rules(robot: Robot, path: Path | None = None) -> Rules:
     if book is None:
         return Rules(path.name if path is not None else "faults.toml", tuple(mistakes))
     codes = {rule.code for rule in book.rules}
-    brought_about = {kind.code for kind in KINDS.values()}
+    alone = {kind.code for kind in KINDS.values()}
+    ways = {way.code: way.injections for way in round_kinds(book) if way.code not in alone}
     return Rules(
         book.source,
         (),
         book.rules,
         _unseen(book, robot),
         tuple(name for name, kind in KINDS.items() if kind.code not in codes),
-        tuple(rule.code for rule in book.rules if rule.code not in brought_about),
+        tuple(rule.code for rule in book.rules if rule.code not in alone | ways.keys()),
+        {code: kinds for code, kinds in ways.items() if kinds},
     )
 
 

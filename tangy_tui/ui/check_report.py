@@ -69,6 +69,8 @@ def print_rules(rules: Rules) -> None:
     _print_left(console, "Evidence of devices that no rule looks at", rules.unseen)
     _print_left(console, "Faults of the simulator that no rule is for", rules.unruled)
     _print_left(console, "Rules that the simulator cannot bring about", rules.untried)
+    for code, kinds in rules.together.items():
+        console.print(Text(plain(f"Only together do {' and '.join(kinds)} bring about: {code}.")))
     console.print(_verdict(rules.file, not rules.unruled, "no mistake"))
 
 

@@ -177,7 +177,8 @@ def test_a_mistake_is_one_line_with_file_key_value_and_the_nearest_word(
         (SHIPPED.encode("utf-16"), "not UTF-8"),
         ("x = " + "[" * 100_000, "nested too deeply"),
         (SHIPPED + "#" * 1_000_000, "larger than 1,000,000 bytes"),
-        ("", "missing"),
+        ("", "is empty"),
+        ("patience = 4.0", "missing"),
         ("\x00", "not TOML"),
         (SHIPPED.replace("[strategies]", "[strategies]\n[other]"), "strategy"),
     ],
@@ -193,8 +194,13 @@ def test_a_file_that_is_not_there_is_refused_by_its_path(tmp_path: Path) -> None
         with pytest.raises(ProfileError, match=r"none\.toml: there is no such|cannot be read"):
             load_activity(name)
     (tmp_path / "folder.toml").mkdir()
-    with pytest.raises(ProfileError, match="cannot be read"):
-        load_activity(str(tmp_path / "folder.toml"))
+    for folder in (tmp_path, tmp_path / "folder.toml"):
+        with pytest.raises(ProfileError, match="is a folder; name the TOML file in it"):
+            load_activity(str(folder))
+    with pytest.raises(ProfileError, match="There is no activity ''"):
+        load_activity("")
+    with pytest.raises(ProfileError, match="There is no activity 'nn"):
+        load_activity("n" * 300)
     with pytest.raises(ProfileError, match="did you mean 'bingo'"):
         load_activity("bingoo")
 

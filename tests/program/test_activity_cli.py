@@ -90,6 +90,24 @@ def test_a_file_that_cannot_be_read_is_one_line(tangy: Tangy, tmp_path: Path) ->
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 
+def test_a_folder_and_an_empty_file_are_called_that(tangy: Tangy, tmp_path: Path) -> None:
+    empty, folder = tmp_path / "empty.toml", tmp_path / "folder"
+    empty.touch()
+    folder.mkdir()
+    for option in ((), ("--faults",)):
+        assert "empty.toml: is empty" in tangy("activity", "check", *option, empty).stderr
+        assert "folder: is a folder" in tangy("activity", "check", *option, folder).stderr
+
+
+def test_what_only_comes_of_two_kinds_together_can_be_brought_about(tangy: Tangy) -> None:
+    rules = json.loads(tangy("activity", "check", "--json").stdout)["files"][-1]
+    together = rules["only_by_kinds_together"]
+    assert together == {"mute": ["voice-dead", "screen-dead"]}
+    assert not {"mute", "unknown-situation"} & set(rules["rules_without_kind"])
+    said = tangy("activity", "check").stdout
+    assert "Only together do voice-dead and screen-dead bring about: mute." in said
+
+
 @pytest.mark.parametrize(
     ("put", "reason"),
     [
