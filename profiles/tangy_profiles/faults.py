@@ -261,8 +261,8 @@ def evidence_keys(robot: Robot) -> dict[str, str]:
     for device in robot.devices.values():
         keys[f"{device.name}.state"] = f"{device.label}: OK, WARN, STALE or ERROR"
         keys[f"{device.name}.age"] = f"{device.label}: s since the newest data"
-        for fact, words in device.facts.items():
-            keys[f"{device.name}.{fact}"] = f"{device.label}: {words}"
+        for fact, measure in device.facts.items():
+            keys[f"{device.name}.{fact}"] = f"{device.label}: {measure.says}"
     return keys
 
 
@@ -289,7 +289,7 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
         recovery=recovery,
         console=_text(entry, "console"),
         advice=_texts(entry, "advice"),
-        when=() if fallback else _alternatives(entry, known),
+        when=() if fallback else _alternatives(entry, known, robot),
         also=entry.words("also", known, ()),
         device=entry.choice("device", (*robot.devices, ""), ""),
         tries=entry.whole("tries", 1, 10, 1),
@@ -309,7 +309,9 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
     return rule
 
 
-def _alternatives(entry: Table, known: Mapping[str, str]) -> tuple[tuple[Condition, ...], ...]:
+def _alternatives(
+    entry: Table, known: Mapping[str, str], robot: Robot
+) -> tuple[tuple[Condition, ...], ...]:
     found: list[tuple[Condition, ...]] = []
     for alternative in entry.tables("when"):
         conditions: list[Condition] = []
@@ -321,8 +323,8 @@ def _alternatives(entry: Table, known: Mapping[str, str]) -> tuple[tuple[Conditi
             if len(words) != 1 or words[0] not in _TESTS:
                 raise alternative.wrong(key, f"must hold one of: {', '.join(_TESTS)}.")
             condition = Condition(key, words[0], _value(test, words[0]))
-            if key.endswith(".state") and condition.value not in STATES:
-                raise test.wrong(words[0], f"is no state; {nearest(str(condition.value), STATES)}")
+            if problem := _never(condition, robot):
+                raise test.wrong(words[0], problem)
             conditions.append(condition)
         if not conditions:
             raise entry.wrong("when", "holds an alternative without a condition.")
@@ -330,6 +332,21 @@ def _alternatives(entry: Table, known: Mapping[str, str]) -> tuple[tuple[Conditi
     if not found:
         raise entry.wrong("when", "must hold at least one alternative.")
     return tuple(found)
+
+
+def _never(condition: Condition, robot: Robot) -> str:
+    """Say why a condition on what a device reports can never be met as meant; "" if it can."""
+    head, _, fact = condition.key.partition(".")
+    device = robot.devices.get(head)
+    if device is None or fact == "age":
+        return ""
+    if fact == "state":
+        known = condition.value in STATES and condition.test in ("is", "not")
+        return "" if known else f"is no state; {nearest(str(condition.value).upper(), STATES)}"
+    measure = device.facts[fact]
+    if condition.test not in ("is", "not") and measure.high is None:
+        return "compares what is no number: use is or not."
+    return measure.wrong(condition.value)
 
 
 def _value(test: Table, word: str) -> Fact:

@@ -24,16 +24,43 @@ class Limb:
 
 
 @dataclass(frozen=True)
+class Measure:
+    """What a device measures: in words of the staff, and its values.
+
+    They are words, or a range of numbers, or else yes and no.
+    """
+
+    says: str
+    words: tuple[str, ...] = ()
+    low: float | None = None
+    high: float | None = None
+
+    def wrong(self, value: str | float | bool) -> str:
+        """Say why something is no value of this; "" if it is one."""
+        if self.words:
+            return (
+                ""
+                if value in self.words
+                else f"is none of its words; {nearest(str(value), self.words)}"
+            )
+        if self.low is None or self.high is None:
+            return "" if isinstance(value, bool) else "must be true or false."
+        if isinstance(value, str | bool) or not self.low <= value <= self.high:
+            return f"must be a number from {self.low:g} to {self.high:g}."
+        return ""
+
+
+@dataclass(frozen=True)
 class Device:
     """A device of the robot: its data is stale after so many s; `facts` are what it measures.
 
-    Of each fact the profile says in words of the staff what it is.
+    Of each fact the profile says in words of the staff what it is, and which values it can have.
     """
 
     name: str
     label: str
     stale_after: float
-    facts: Mapping[str, str]
+    facts: Mapping[str, Measure]
 
 
 @dataclass(frozen=True)
@@ -120,8 +147,17 @@ def _devices(top: Table) -> dict[str, Device]:
             name,
             entry.text("label"),
             entry.number("stale_after", 0.05, 60),
-            MappingProxyType({fact: facts.text(fact) for fact in facts}),
+            MappingProxyType({fact: _measure(facts, fact) for fact in facts}),
         )
         facts.close()
         entry.close()
     return devices
+
+
+def _measure(facts: Table, name: str) -> Measure:
+    entry = facts.table(name)
+    says, words = entry.text("says"), entry.words("words", default=())
+    low = entry.number("low", default=0) if "high" in entry else None
+    high = entry.number("high") if "high" in entry else None
+    entry.close(also=("low", "high"))
+    return Measure(says, words, low, high)

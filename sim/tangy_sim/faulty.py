@@ -33,7 +33,8 @@ SECONDS = {"ask": 25.0, "call expert": 300.0, "spin": 10.0, "restart": 5.0, "oth
 """How long remedies take; others take no time."""
 
 NOTICED = 2.0
-"""s since which a fault is there that is brought about by hand, so that its data is stale."""
+"""s in which a fault is noticed that devices show at once: then its data is stale, and a robot
+that stops by itself has stopped. A fault that is brought about by hand is there for so long."""
 
 
 @dataclass
@@ -195,13 +196,16 @@ class FaultyWorld(SimulatedWorld):
         """Let the robot try to carry out an action."""
         if self.over:
             return super().execute(action)
+        known = set(self.present)
         self._let_faults_come(action)
         present = self.present
         before, waited = self.tracker.state(), tuple(self.tracker.queue)
         self._refused = False
         mute = {"voice-dead", "screen-dead"} <= present.keys() or "link-lost" in present
         vain = present.get("no-effect")
-        if mute and action.behaviour.effect not in ("go to user", "go to front"):
+        if any(fault.kind.stops for name, fault in present.items() if name not in known):
+            outcome = self._in_vain(action, completed=False, seconds=NOTICED)
+        elif mute and action.behaviour.effect not in ("go to user", "go to front"):
             outcome = self._in_vain(action, completed=False)
         elif vain is not None and (vain.shown or self.can_show(vain.kind, action)):
             outcome = self._in_vain(action, completed=True)
@@ -214,10 +218,11 @@ class FaultyWorld(SimulatedWorld):
             self._withdraw(before.attended, waited)
         return outcome
 
-    def _in_vain(self, action: Action, *, completed: bool) -> Outcome:
-        """Let time pass with an action that changes nothing."""
-        away = self.tracker.place != FRONT
-        calls = self.users.away_calls if away else 1.0
+    def _in_vain(self, action: Action, *, completed: bool, seconds: float | None = None) -> Outcome:
+        """Let time pass (by default what the action takes) with an action that changes nothing."""
+        calls = self.users.away_calls if self.tracker.place != FRONT else 1.0
+        if seconds is not None:
+            calls = seconds / self.users.call_seconds
         self.tracker.executed(action.behaviour, succeeded=False)
         self._pass(calls)
         return Outcome(completed, calls * self.users.call_seconds, (), None)
@@ -338,13 +343,13 @@ class FaultyWorld(SimulatedWorld):
 
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert do something about a fault; return the s it took."""
-        for one in [i for i in self._to_come if i.in_recovery]:
-            self._to_come.remove(one)
-            if one.kind.name not in self.present:
-                self._set_in(one.kind, self.seconds)
         seconds = SECONDS.get(remedy.kind, 0.0)
         if seconds and not self.over:
             self._pass(seconds / self.users.call_seconds)
+        for one in [i for i in self._to_come if i.in_recovery]:
+            self._to_come.remove(one)
+            if one.kind.name not in self.present:
+                self._set_in(one.kind, self.seconds - NOTICED)
         found = [f.kind.name for f in self.present.values() if f.kind.code == remedy.fault]
         match remedy.kind:
             case "ask":

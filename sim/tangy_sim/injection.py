@@ -39,30 +39,32 @@ class Kind:
     """Whether it cannot see cards with it."""
     helped: bool = False
     """Whether people at the table can put it right."""
+    stops: bool = False
+    """Whether the robot stops at once by itself, in the middle of whatever it does."""
 
 
 _KINDS = (
     Kind("emergency-stop", "somebody presses the emergency stop", "emergency-stop", AT_ONCE,
-         otherwise("stop_button", latched=True), holds=True),
+         otherwise("stop_button", latched=True), holds=True, stops=True),
     Kind("link-lost", "nothing is heard from the robot", "link-lost", AT_ONCE,
          silent("link", "stop_button", "laser", "base", "localisation", "navigator", "camera",
-                "requests", "voice", "screen", "arms"), holds=True, blinds=True),
+                "requests", "voice", "screen", "arms"), holds=True, blinds=True, stops=True),
     Kind("laser-disconnected", "the laser scanner's cable comes off", "laser-disconnected",
-         AT_ONCE, silent("laser"), holds=True),
+         AT_ONCE, silent("laser"), holds=True, stops=True),
     Kind("laser-occluded", "a coat hangs over the laser scanner", "laser-occluded", AT_ONCE,
          otherwise("laser", near_share=0.85), holds=True, helped=True),
     Kind("camera-disconnected", "the head camera's cable comes off", "camera-disconnected",
-         AT_ONCE, silent("camera"), blinds=True),
+         AT_ONCE, silent("camera"), blinds=True, stops=True),
     Kind("camera-occluded", "a scarf hangs over the head camera", "camera-occluded", AT_ONCE,
          otherwise("camera", brightness=0.03, contrast=0.01), blinds=True, helped=True),
     Kind("camera-frozen", "the head camera sends one picture for ever", "camera-frozen", AT_ONCE,
-         lasting("camera", "unchanged"), blinds=True),
+         lasting("camera", "unchanged"), blinds=True, stops=True),
     Kind("base-failed", "the wheels report nothing", "base-failed", AT_ONCE, silent("base"),
-         holds=True),
+         holds=True, stops=True),
     Kind("stop-button-silent", "nothing is heard from the emergency stop", "stop-button-silent",
-         AT_ONCE, silent("stop_button")),
+         AT_ONCE, silent("stop_button"), stops=True),
     Kind("navigation-failed", "the navigation program ends", "navigation-failed", AT_ONCE,
-         dead("navigator"), holds=True),
+         dead("navigator"), holds=True, stops=True),
     Kind("base-stuck", "something is caught between the wheels", "base-stuck", DRIVING,
          otherwise("base", still=4.0), holds=True),
     Kind("wheels-slip", "a rug slides under the wheels", "wheels-slip", DRIVING,
@@ -125,9 +127,12 @@ def read_injection(text: str) -> Injection:
         name, found, when = text.partition(sign)
         if found:
             break
-    kind = KINDS.get(name.strip())
+    name = name.strip().casefold()
+    kind = KINDS.get(name)
     if kind is None:
-        raise TangyError(plain(f"There is no fault {name.strip()!r}: {nearest(name, KINDS)}"))
+        like = [other for other in KINDS if name and name in other]
+        meant = f"choose one of: {', '.join(like)}." if like[1:] else nearest(name, like or KINDS)
+        raise TangyError(plain(f"There is no fault {name!r}: {meant}"))
     when = when.strip()
     if not found:
         return Injection(kind)

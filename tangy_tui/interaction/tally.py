@@ -66,9 +66,13 @@ class Tally:
         self,
         order: Iterable[Situation],
         beliefs: Mapping[str, Beliefs],
-        faults: Sequence[Mapping[str, Any]] = (),
+        faults: Sequence[Mapping[str, Any]] | None = None,
     ) -> dict[str, Any]:
-        """Return the document that `tangy play --json` prints, with the faults there were."""
+        """Return the document that `tangy play --json` prints.
+
+        Args:
+            faults: those there were; by default why games were stopped.
+        """
         behaviours: Counter[str] = Counter()
         for (_, behaviour), count in self._done.items():
             behaviours[behaviour] += count
@@ -93,5 +97,5 @@ class Tally:
                 person: {strategy: [b.alpha, b.beta] for strategy, b in profile.items()}
                 for person, profile in beliefs.items()
             },
-            "faults": [*faults, *({"reason": reason} for reason in self.stopped)],
+            "faults": [{"reason": reason} for reason in self.stopped] if faults is None else faults,
         }

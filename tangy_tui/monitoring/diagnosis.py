@@ -51,6 +51,9 @@ def diagnose(
         keys = {condition.key for condition in conditions}
         if (keys & rule.symptoms) - explained:
             take(rule, keys)
+    if evidence.get("behaviour.completed") is False and any(d.rule.critical for d in found):
+        # What critically went wrong broke the behaviour off: nothing was to be expected of it.
+        explained.update(key for key in evidence if key.startswith("mismatch."))
     if left := symptoms(evidence) - explained:
         take(book.fallback, left)
     return sorted(found, key=lambda diagnosis: diagnosis.rule.urgency)

@@ -214,6 +214,20 @@ class Moved:
 FaultEvent: TypeAlias = Diagnosed | Moved
 
 
+def fault_documents(faults: Iterable[Fault], stopped: str | None) -> list[dict[str, Any]]:
+    """Return what went wrong in a game, as `--json` prints it.
+
+    Where Tangy only did not know what to do, that is told if it ended the game (`stopped` says
+    why it ended).
+    """
+    told = list(faults)
+    documents = [fault.document() for fault in told if not fault.asks_only]
+    if stopped is None or any(m.kind == "given up" for f in told for m in f.moves):
+        return documents
+    asked = next((fault for fault in reversed(told) if fault.asks_only), None)
+    return [*documents, {**(asked.document() if asked is not None else {}), "reason": stopped}]
+
+
 def read_faults(store: Store, game: str | None = None) -> list[Fault]:
     """Read the faults of a game (of all games) with their moves from the log, in order."""
     return fold_faults(

@@ -46,7 +46,8 @@ def evidence_words(
             continue  # it was said with the state
         else:
             limit = f" ({words})" if (words := limits.get(key, "")) else ""
-            measured = device.facts.get(fact, fact.replace("_", " "))
+            measure = device.facts.get(fact)
+            measured = measure.says if measure is not None else fact.replace("_", " ")
             parts.append(f"{device.label}: {measured}: {_number(value)}{limit}")
     return "; ".join([*parts, *map(mismatch_words, mismatches)])
 

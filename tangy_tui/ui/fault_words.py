@@ -157,7 +157,7 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
         elif fact == "state":
             what = device.label
         else:
-            what = f"{device.label}, {device.facts.get(fact, fact)}"
+            what = f"{device.label}, {device.facts[fact].says if fact in device.facts else fact}"
         pieces.append(Piece(what, _expected(key, value, rule), _observed(fact, value)))
     for one in fault.mismatches:
         wanted = " or ".join(one.expected) or "nothing known"

@@ -95,7 +95,9 @@ def play(
         scripted = who == "scripted"
         supervision = house.supervision(learnt, seed, asks=by_lines or scripted, injections=faults)
         if not by_lines:
-            _play_headless(house, supervision, games, as_json, expert=bool(expert))
+            _play_headless(
+                house, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
+            )
             return
         from tangy_tui.game_lines import play_by_lines
         from tangy_tui.inputs import line_reader
@@ -144,17 +146,24 @@ def demo(
 
 
 def _play_headless(
-    house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
+    house: House,
+    supervision: Supervision,
+    games: int,
+    as_json: bool,
+    *,
+    expert: bool,
+    injected: bool,
 ) -> None:
     from collections import Counter
 
     from tangy_sim.faulty import FaultyWorld
     from tangy_tui.documents import lesson_document
-    from tangy_tui.interaction.facilitation import Taught
+    from tangy_tui.interaction.facilitation import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally
+    from tangy_tui.monitoring.fault import fault_documents
     from tangy_tui.monitoring.scripted_people import go_on_by_script
     from tangy_tui.ui import reports
-    from tangy_tui.wording import lesson_words
+    from tangy_tui.wording import counted, lesson_words
 
     tally = Tally()
     lessons: list[Lesson] = []
@@ -163,21 +172,33 @@ def _play_headless(
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(supervision.begin())
+            stopped = None
             while not supervision.over:
                 events = go_on_by_script(supervision, expert=expert)
                 tally.add(events)
+                stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), None)
                 lessons += [event.lesson for event in events if isinstance(event, Taught)]
         world = supervision.world
         if isinstance(world, FaultyWorld):
             absent.update(world.still_to_come)
-        faults += [fault.document() for fault in supervision.faults if not fault.asks_only]
+        faults += fault_documents(supervision.faults, stopped)
     beliefs = supervision.persuasion.beliefs
     if as_json:
-        told = {"answers": [lesson_document(house, one) for one in lessons]} if lessons else {}
+        told: dict[str, Any] = {}
+        if lessons:
+            told["answers"] = [lesson_document(house, one) for one in lessons]
+        if injected:
+            told["did_not_come_about"] = dict(absent)
         print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
             print(lesson_words(house.activity, lesson))
         reports.print_tally(house, tally, beliefs)
-        for injected, times in absent.items():
-            print(f"{injected} did not come about in {times} of {games} games.")
+        for one, times in absent.items():
+            print(f"{one} did not come about in {times} of {games} games.")
+        if faults:
+            critical = sum(fault.get("criticality") == "critical" for fault in faults)
+            print(
+                f"{counted(len(faults), 'fault')}, {critical} of them critical: "
+                "`tangy log` lists the games, `tangy log report last` tells of the last one."
+            )

@@ -145,6 +145,8 @@ def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
         ("base-stuck~", "a probability above 0"),
         ("", "There is no fault ''"),
         ("\x1b[2J", "There is no fault"),
+        ("camera", "choose one of: camera-disconnected, camera-occluded"),
+        ("voice", "did you mean 'voice-dead'?"),
     ],
 )
 def test_an_injection_that_is_none_says_why(text: str, says: str) -> None:
@@ -175,3 +177,7 @@ def test_a_game_that_goes_round_in_circles_asks_the_teacher(supervise: Supervise
     until(game, lambda now: now.question, most=40)
     assert game.faults[-1].code == "no-progress"
     assert game.steps < 12
+
+
+def test_the_name_of_a_kind_may_be_written_in_capitals() -> None:
+    assert read_injection("Base-Stuck@3").kind is KINDS["base-stuck"]

@@ -76,9 +76,9 @@ def test_a_halted_game_that_is_given_up_says_why(supervise: Supervise) -> None:
 
 def test_a_fault_in_the_last_step_does_not_hold_the_end_up(supervise: Supervise) -> None:
     length = len(acts(play(supervise(seed=3))))
-    game = supervise(f"camera-frozen@{length}", seed=3)
+    game = supervise(f"voice-dead@{length}", seed=3)
     events = play(game)
-    assert codes(events) == ["camera-frozen"]
+    assert codes(events) == ["voice-dead"]
     assert moves(events) == ["left open"]
     assert ended(events).stopped is None
     assert game.halted is None

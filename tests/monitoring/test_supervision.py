@@ -12,8 +12,10 @@ from tangy_profiles.faults import Remedy, load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim import faulty
 from tangy_sim.body import WELL
+from tangy_sim.injection import KINDS
 from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import ENDED
+from tangy_tui.interaction.facilitation import ENDED, DoneOnce
+from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import read_faults
 from tests.monitoring.conftest import (
     Supervise,
@@ -171,3 +173,33 @@ def test_nothing_is_logged_of_a_game_after_its_end(supervise: Supervise, house: 
     play(supervise(f"camera-frozen@{length}", f"voice-dead@{length}", seed=3))
     last = list(house.store.events())[-1]
     assert last.kind == ENDED
+
+
+@pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.stops))
+def test_what_stops_the_robot_breaks_off_what_it_does_and_is_seen_at_once(
+    supervise: Supervise, kind: str
+) -> None:
+    game = supervise(f"{kind}@1", seed=3)
+    (act,) = acts(game.begin() + game.step())
+    assert not act.outcome.completed
+    assert act.outcome.seconds == faulty.NOTICED
+    assert [fault.code for fault in game.faults] == [kind]  # and nothing is unexplained
+    assert game.halted is game.faults[0]
+    ages = [age for key, age in game.halted.evidence.items() if key.endswith(".age")]
+    assert all(float(age) <= faulty.NOTICED for age in ages)
+
+
+def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_once(
+    house: House, learnt: Policy
+) -> None:
+    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game.begin()
+    until(game, lambda now: now.question)
+    assert game.question is not None
+    known = game.question.decision.behaviour
+    other = next(b for name, b in game.world.activity.behaviours.items() if name != known)
+    events = game.answer(other, None, "Ada")
+    assert [e.instead for e in events if isinstance(e, DoneOnce)] == [known]
+    assert moves(events)[0] == "taught"
+    assert game.policy is learnt
+    assert game.policy.decide(game.world.observe().situation).sure

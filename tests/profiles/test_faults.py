@@ -114,6 +114,36 @@ def test_every_mistake_is_one_line_with_the_nearest_word(
     assert told in refusal(tmp_path, robot, RULE.replace(right, wrong, 1) + LAST)
 
 
+@pytest.mark.parametrize(
+    ("key", "wrong", "told"),
+    [
+        ("laser.state", 'is = "stale"', "did you mean 'STALE'?"),
+        ("laser.state", 'not = "OKAY"', "did you mean 'OK'?"),
+        ("stop_button.latched", 'is = "yes"', "must be true or false"),
+        ("stop_button.latched", "above = 0", "use is or not"),
+        ("navigator.path", 'is = "nonne"', "did you mean 'none'?"),
+        ("camera.brightness", "below = -3", "a number from 0 to 1"),
+        ("camera.brightness", "is = true", "a number from 0 to 1"),
+    ],
+)
+def test_a_condition_that_a_device_can_never_meet_is_refused(
+    tmp_path: Path, robot: Robot, key: str, wrong: str, told: str
+) -> None:
+    text = RULE.replace('"laser.state" = { is = "STALE" }', f'"{key}" = {{ {wrong} }}', 1)
+    assert text != RULE
+    assert told in refusal(tmp_path, robot, text + LAST)
+
+
+@pytest.mark.parametrize("text", ["Ask {nome}.", "Brace {", "{name.__class__}"])
+@pytest.mark.parametrize("key", ["name", "advice"])
+def test_every_text_is_filled_in_only_with_what_there_is(
+    tmp_path: Path, robot: Robot, key: str, text: str
+) -> None:
+    right = {"name": '"Laser silent"', "advice": '"Call the expert."'}[key]
+    assert right in RULE
+    assert key in refusal(tmp_path, robot, RULE.replace(right, f'"{text}"', 1) + LAST)
+
+
 def test_who_asks_a_user_says_and_shows_what_for(tmp_path: Path, robot: Robot) -> None:
     text = RULE.replace('"critical"', '"non-critical"').replace('["expert"]', '["user", "expert"]')
     assert "what a user is asked to do" in refusal(tmp_path, robot, text + LAST)
@@ -128,7 +158,7 @@ def test_who_asks_a_user_says_and_shows_what_for(tmp_path: Path, robot: Robot) -
         (RULE + RULE.replace("laser-silent", "again") + LAST, "'laser-silent' matches first"),
         (LAST + RULE, "comes after 'unexplained', which explains everything"),
         (RULE, "the last of the faults must have `fallback = true`"),
-        ("", "faults: is missing"),
+        ("", "is empty"),
         ("faults = 3", "must be a list of tables"),
     ],
 )

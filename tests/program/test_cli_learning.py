@@ -310,3 +310,20 @@ def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
         lines = "tell a joke\ny\nsay goodbye\ny\nquit\n"
     found = document(tangy("policy", "--compare", "Cleo", "Dan", "--json", *at))
     assert not found["same"]
+
+
+def test_what_goes_wrong_is_told_in_one_document(tangy: Tangy, taught: Path) -> None:
+    at = ("play", "--headless", "--seed", 3, "--data", taught)
+    asked = ("--inject", "laser-disconnected@4", "--inject", "base-stuck@999")
+    played = document(tangy(*at, "--json", *asked))
+    (fault,) = played["faults"]
+    assert fault["code"] == "laser-disconnected"
+    assert fault["criticality"] == "critical"
+    assert fault["moves"][-1]["kind"] == "given up"
+    assert played["did_not_come_about"] == {"base-stuck@999": 1}
+    cleared = document(tangy(*at, "--json", "--expert", "scripted", *asked))
+    assert [fault["status"] for fault in cleared["faults"]] == ["over"]
+    assert "did_not_come_about" not in document(tangy(*at, "--json"))
+    said = tangy(*at, "--expert", "scripted", *asked).stdout
+    assert "base-stuck@999 did not come about in 1 of 1 games." in said
+    assert "1 fault, 1 of them critical" in said
