@@ -1,15 +1,34 @@
-"""What a teacher said is all right, although no demonstration had shown it: effects learnt late."""
+"""What a teacher said is all right, although no demonstration had shown it: effects learnt late.
+
+Each can be taken back, and then is a fault again when it happens.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import Acted
-from tangy_tui.learning.effects import Effects, learn_effects
+from tangy_tui.learning.effects import Effects, Mismatch, learn_effects
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.fault import ACCEPTED, Fault
+from tangy_tui.monitoring.fault import ACCEPTED, Fault, read_faults
+
+TAKEN_BACK = "acceptance taken back"
+
+
+@dataclass(frozen=True)
+class Acceptance:
+    """One thing that a teacher said is all right: its number in the log, when, by whom, what."""
+
+    number: int
+    at: str
+    by: str
+    step: Step
+    mismatches: tuple[Mismatch, ...]
 
 
 def accept(store: Store, activity: Activity, fault: Fault, acted: Acted, by: str) -> None:
@@ -27,14 +46,45 @@ def accept(store: Store, activity: Activity, fault: Fault, acted: Acted, by: str
     )
 
 
+def read_accepted(store: Store, activity: str) -> list[Acceptance]:
+    """Return what teachers accepted in games of an activity and did not take back, oldest first."""
+    there: dict[int, Acceptance] = {}
+    what: dict[str, tuple[Mismatch, ...]] = {}
+    for event in store.events(ACCEPTED, TAKEN_BACK):
+        body = event.body
+        if event.kind == TAKEN_BACK:
+            there.pop(body["number"], None)
+        elif body["activity"] == activity:
+            what = what or {fault.id: fault.mismatches for fault in read_faults(store)}
+            there[event.seq] = Acceptance(
+                event.seq,
+                event.at,
+                body["by"],
+                Step.from_json(body),
+                what.get(body["fault"], ()),
+            )
+    return list(there.values())
+
+
+def take_back(store: Store, activity: str, place: int) -> Acceptance:
+    """Take back what was accepted, by its place in the list (from 1 on).
+
+    Raises:
+        TangyError: there is no such place.
+    """
+    accepted = read_accepted(store, activity)
+    if not 1 <= place <= len(accepted):
+        there = f"choose from 1 to {len(accepted)}" if accepted else "nothing was accepted"
+        raise TangyError(f"There is no number {place} in the list: {there}.")
+    taken = accepted[place - 1]
+    store.append(TAKEN_BACK, {"number": taken.number})
+    return taken
+
+
 def expected_effects(store: Store, activity: Activity, policy: Policy) -> Effects:
     """Learn the effects from a policy's demonstrations and from what teachers accepted since."""
-    steps = tuple(
-        Step.from_json(event.body)
-        for event in store.events(ACCEPTED)
-        if event.body["activity"] == activity.name
-    )
     learnt = _shown_effects(store, activity, policy)
+    steps = tuple(one.step for one in read_accepted(store, activity.name))
     if not steps:
         return learnt
     accepted = Demonstration("accepted", activity.name, "", 0, (), steps, True)

@@ -256,3 +256,41 @@ def _edit_words(house: House, editor: Editor, edit: Edit) -> str:
     from tangy_tui.wording import edit_words
 
     return edit_words(house.activity, editor.library, edit)
+
+
+@app.command()
+def accepted(
+    take_back: Annotated[
+        int | None, typer.Option(metavar="N", help="Take back the one of this number.")
+    ] = None,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """List what was unexpected in games and a teacher said is all right; take one back."""
+    from tangy_tui.monitoring.accepted import read_accepted
+    from tangy_tui.monitoring.accepted import take_back as take_it_back
+    from tangy_tui.monitoring.telling import mismatch_words
+    from tangy_tui.ui.local_time import local_time
+
+    with open_house(data, activity, 4, write=take_back is not None) as house:
+        name = house.activity.name
+        if take_back is not None:
+            take_it_back(house.store, name, take_back)
+        there = read_accepted(house.store, name)
+        words = ["; ".join(map(mismatch_words, one.mismatches)) for one in there]
+        if as_json:
+            print_json(
+                [
+                    {"number": n, "at": one.at, "by": one.by, "what": what}
+                    for n, (one, what) in enumerate(zip(there, words, strict=True), 1)
+                ]
+            )
+            return
+        if take_back is not None:
+            print("Taken back: it is a fault again when it happens.")
+        for n, (one, what) in enumerate(zip(there, words, strict=True), 1):
+            print(plain(f"{n}. {local_time(one.at)}, {one.by}: {what}"))
+        if not there:
+            print("Nothing unexpected is taken for all right.")

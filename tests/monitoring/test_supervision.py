@@ -7,7 +7,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from tangy_profiles.errors import StoreError
+from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.faults import Remedy, load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim import faulty
@@ -16,6 +16,7 @@ from tangy_sim.injection import KINDS
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import ENDED, DoneOnce
 from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.accepted import read_accepted, take_back
 from tangy_tui.monitoring.fault import read_faults
 from tests.monitoring.conftest import (
     Supervise,
@@ -203,3 +204,21 @@ def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_onc
     assert moves(events)[0] == "taught"
     assert game.policy is learnt
     assert game.policy.decide(game.world.observe().situation).sure
+
+
+def test_what_was_called_all_right_can_be_taken_back(house: House, learnt: Policy) -> None:
+    def unexpected() -> list[str]:
+        return codes(play(house.supervision(learnt, 4, asks=True, injections=["no-effect@1"])))
+
+    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game.begin()
+    until(game, lambda now: now.question)
+    game.accept("Ada")
+    (one,) = read_accepted(house.store, house.activity.name)
+    assert (one.by, one.mismatches[0].variable) == ("Ada", "activity")
+    assert unexpected() == []
+    with pytest.raises(TangyError, match="choose from 1 to 1"):
+        take_back(house.store, house.activity.name, 2)
+    take_back(house.store, house.activity.name, 1)
+    assert read_accepted(house.store, house.activity.name) == []
+    assert unexpected() == ["unexplained"]
