@@ -253,8 +253,6 @@ def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
     fault, log = event.fault, screen.query_one(LogView)
     if isinstance(event, Moved) and event.move.speech:
         screen.query_one(RoomView).say(event.move.speech)
-    if isinstance(event, Moved) and event.move.kind == "halted":
-        screen.query_one(RoomView).skip()
     if fault.asks_only:
         return  # the question that Tangy asks says all of it
     kind: Kind = "bad" if fault.critical else "warn"

@@ -68,7 +68,9 @@ class GamePicture:
             match event:
                 case GameBegun(_, number, state):
                     log.write(f"Game {number} begins.", "dim")
-                    self._screen.query_one(RoomView).say("")
+                    room = self._screen.query_one(RoomView)
+                    room.say("")
+                    room.put(state.place)
                     self._screen.query_one(Transcript).clear()
                     self.grounds.clear()
                     self.lesson = ""

@@ -106,6 +106,7 @@ class TeachingPicture:
     def _scene(self, came_from: str) -> None:
         room = self._screen.query_one(RoomView)
         scene = self._teaching.world.scene()
+        room.hold(False)
         if came_from != scene.place:
             stand, people = self._house.room.stand, self._teaching.people
             way = stand(came_from, people).distance(stand(scene.place, people))

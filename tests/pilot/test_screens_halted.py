@@ -287,3 +287,26 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
         await until(pilot, lambda: game.faults[0].status == OVER)
         assert kinds_of(game.faults[0])[-1] == "accepted"
         await until(pilot, lambda: not screen.query(AskingPanel))
+
+
+async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        screen, _, world = game_of(pilot)
+        room = screen.query_one(RoomView)
+        while room.going is None:
+            await pilot.press("n")
+            await pilot.pause()
+        caught, going = room.place_of_robot, room.going
+        await pilot.press("ctrl+x")
+        world.inject("emergency-stop")
+        await halted(pilot)
+        assert (room.place_of_robot, room.going) == (caught, going)
+        await pilot.press("e", "c")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert (room.place_of_robot, room.going) == (caught, going)
+        assert room._timer is None
+        await pilot.press("p")
+        await pilot.pause()
+        assert room._timer is not None

@@ -294,3 +294,51 @@ async def test_as_it_looks(
         screen.room.say("Please take off: B-3.")
         await pilot.pause()
         assert pilot.text() == snapshot
+
+
+async def test_a_robot_that_is_held_stays_where_it_is_seen_and_walks_on_when_let_go(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, clock=clock) as pilot:
+        room = screen.room
+        room.drive("user4", 4.0)
+        room.show(sample.scene("user4"))
+        clock.advance(2.0)
+        room.tick()
+        await pilot.pause()
+        caught = room.place_of_robot
+        room.hold(True)
+        clock.advance(9.0)
+        room.tick()
+        room.show(sample.scene("user4", asking=()))
+        await pilot.pause()
+        assert room.place_of_robot == caught
+        assert not screen.arrived
+        room.hold(False)
+        clock.advance(1.0)
+        room.tick()
+        await pilot.pause()
+        assert room.place_of_robot != caught
+        assert not screen.arrived
+        clock.advance(1.0)
+        room.tick()
+        await pilot.pause()
+        assert screen.arrived == ["user4"]
+
+
+async def test_where_the_robot_has_been_taken_while_it_was_held_it_walks_to(
+    run: Run, sample: Sample, clock: StillClock
+) -> None:
+    screen = RoomScreen(sample)
+    async with run(screen, clock=clock) as pilot:
+        room = screen.room
+        room.hold(True)
+        room.show(sample.scene("user1"))
+        await pilot.pause()
+        assert room.place_of_robot == sample.room.stand(FRONT, ())
+        room.hold(False)
+        clock.advance(1.0)
+        room.tick()
+        await pilot.pause()
+        assert screen.arrived == ["user1"]

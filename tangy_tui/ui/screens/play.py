@@ -188,7 +188,6 @@ class PlayScreen(PlayPanels):
         self._stopped = True
         self._going.clear()
         self._nudge.set()
-        self.query_one(RoomView).skip()
         self._write("STOP. Press p to go on.", "bad")
         if self._asking is not None:
             self._asking.hold(True)
@@ -343,6 +342,8 @@ class PlayScreen(PlayPanels):
         asking = self._asking
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()
+        halted = self._supervision.halted is not None
+        self.query_one(RoomView).hold(self._stopped or halted)
         robot = self._faults.status
         if self._halted and self._supervision.halted is None:
             robot = "ASKS"

@@ -281,8 +281,8 @@ class TeachScreen(TangyScreen[bool]):
         await self.run_action("app.learn")
 
     def on_stop(self, message: Stop) -> None:
-        """Let the robot stand; what was verified has been done."""
-        self.query_one(RoomView).skip()
+        """Let the robot stand where it is seen until the next command is carried out."""
+        self.query_one(RoomView).hold(True)
         self.query_one(CommandBar).ready()
         self._log.write("STOP: the simulated robot stands still.", "warn")
 

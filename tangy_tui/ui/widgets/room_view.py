@@ -35,7 +35,8 @@ EMPTY = Scene(FRONT, (), {}, (), None)
 class RoomView(Widget):
     """Robot and people in the activity room, seen from behind the people's backs.
 
-    `show` draws a scene at once; `drive` lets the robot walk to where it is going.
+    `show` draws a scene at once; `drive` lets the robot walk to where it is going, and `hold`
+    keeps it where it is seen, whatever is shown meanwhile.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
@@ -95,6 +96,7 @@ class RoomView(Widget):
         self._at = room.stand(FRONT, self._ids)
         self._seen = self._from = self._to = self._at
         self._going: str | None = None
+        self._held = False
         self._share = 0.0
         self._seconds = 0.0
         self._last = 0.0
@@ -125,7 +127,12 @@ class RoomView(Widget):
     def show(self, scene: Scene) -> None:
         """Draw a scene. A robot that is walking to the scene's place goes on walking."""
         self._scene = scene
-        if self._going != scene.place:
+        if self._held:
+            if self._at == self._stand(scene.place):
+                self._halt()
+            elif self._going != scene.place:
+                self._aim(scene.place)  # it walks there when it is let go
+        elif self._going != scene.place:
             self._halt()
             self._at = self._stand(scene.place)
         self._draw_again()
@@ -147,22 +154,28 @@ class RoomView(Widget):
         It walks from where it is seen, so it does not matter whether the scene that has it at
         the end of its way is shown before or after.
         """
-        self._from = self._at = self._seen
-        self._to = self._stand(to)
-        self._going = to
-        self._share = 0.0
-        self._seconds = seconds
-        self._last = self._clock()
-        if seconds <= 0 or not self.is_attached:
+        self._at = self._seen
+        self._seconds = max(0.0, seconds)
+        self._aim(to)
+        if (seconds <= 0 and not self._held) or not self.is_attached:
             self._arrive()
             return
-        self._turn()
         if self._scene.card is None:
             self._move_sprite(turned=True)
         else:  # it is read when the robot is there
             self._draw_again()
-        if self._timer is None:
-            self._timer = self.set_interval(FRAME_SECONDS, self.tick)
+        self._walk()
+
+    def hold(self, held: bool) -> None:
+        """Hold the robot where it is seen, or let it walk on to where it is to be."""
+        if held == self._held:
+            return
+        self._held = held
+        if held:
+            self._at = self._seen
+            self._stand_still()
+        elif self._going is not None:
+            self._walk()
 
     def skip(self) -> None:
         """Let the robot be where it is going."""
@@ -171,10 +184,10 @@ class RoomView(Widget):
 
     def tick(self) -> None:
         """Draw the next frame of a walk."""
-        if self._going is None:
+        if self._going is None or self._held:
             return
         now = self._clock()
-        self._share += (now - self._last) * self.pace / self._seconds
+        self._share += (now - self._last) * self.pace / (self._seconds or FRAME_SECONDS)
         self._last = now
         if self._share >= 1:
             self._arrive()
@@ -210,9 +223,24 @@ class RoomView(Widget):
         known = place == FRONT or place in self._ids
         return self._room.stand(place if known else FRONT, self._ids)
 
+    def _aim(self, place: str) -> None:
+        """Let a place be where the robot is to walk to from where it is."""
+        self._from, self._to = self._at, self._stand(place)
+        self._going = place
+        self._share = 0.0
+        self._turn()
+
+    def _walk(self) -> None:
+        self._last = self._clock()
+        if self._timer is None and not self._held:
+            self._timer = self.set_interval(FRAME_SECONDS, self.tick)
+
     def _halt(self) -> None:
         self._going = None
         self._heading = ""
+        self._stand_still()
+
+    def _stand_still(self) -> None:
         if self._timer is not None:
             self._timer.stop()
             self._timer = None
