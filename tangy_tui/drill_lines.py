@@ -122,7 +122,7 @@ def told_lines(table: Tabletop, shown: Round, answered: Answered) -> list[Told]:
 def _verdict(right: bool, was: str, said: str) -> Told:
     if right:
         return "good", f"Right: {was}."
-    return "bad", f"No: {was}. You said: {said}."
+    return "bad", f"Not quite. Right would be: {was}. You said: {said}."
 
 
 def _named(table: Tabletop, code: str) -> str:

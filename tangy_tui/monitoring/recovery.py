@@ -254,7 +254,7 @@ class Recovery:
         )
 
     def _text(self, fault: Fault, text: str) -> str:
-        """Let the world do something about a fault; `move` holds what is said with it."""
+        """Fill in a text of a rule; the person stays a slot."""
         rule, object = self._rules[fault.id], self._game.world.activity.object
         return rule.fill(text, name=NAME, object=object, why=fault.why)
 

@@ -307,7 +307,7 @@ def test_each_wrong_answer_costs_its_point(table: Tabletop, store: Store) -> Non
         assert answered.cleared_right is (None if shown.release is None else False)
         assert (answered.points, answered.most) == (0, 2 if shown.release is None else 3)
         told = [text for _, text in told_lines(table, shown, answered)]
-        assert told[0].startswith("No: ")
+        assert told[0].startswith("Not quite. Right would be: ")
         assert shown.fault is None or all(any(a in t for t in told) for a in shown.fault.advice)
     sheet = drill.sheet
     assert sheet.points == 0
