@@ -193,6 +193,7 @@ class House:
             self.store,
             lambda learnt: expected_effects(self.store, self.activity, learnt),
             self.name,
+            [str(one) for one in to_come],
         )
 
     def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:

@@ -8,7 +8,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
-from tangy_tui.monitoring.replay import Answered, Done, Moment, Replay
+from tangy_tui.monitoring.replay import Answered, Done, Moment, Noted, Replay
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
@@ -61,6 +61,8 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
                 f"!  Fault, {kind}: {fault.name}. {fault.console}",
                 f"   Why: {fault.why}.",
             ]
+        case Noted(what, by):
+            return [f"*  {what}{f', by {by}' if by else ''}."]
         case Moved(fault, move):
             said = [f"   Tangy says: {move.speech}"] if move.speech else []
             whose = "" if fault.asks_only else f"{fault.name}: "

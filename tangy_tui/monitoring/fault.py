@@ -15,6 +15,9 @@ from tangy_tui.learning.effects import Mismatch
 FAULT = "fault"
 RECOVERY = "recovery"
 ACCEPTED = "effect accepted"
+STAFF = "staff action"
+"""What people did that is neither a behaviour nor a move: stopping the robot, letting it go on,
+bringing a fault about."""
 
 NAME = "{name}"
 """What stands for a person's name in the log, from which names can be forgotten."""

@@ -14,6 +14,7 @@ from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.monitoring.fault import (
     FAULT,
     RECOVERY,
+    STAFF,
     Diagnosed,
     Fault,
     Moved,
@@ -21,7 +22,7 @@ from tangy_tui.monitoring.fault import (
 )
 from tangy_tui.monitoring.games import Game
 
-KINDS = (STEP, RESPONSE, AWAITED, FAULT, RECOVERY, ENDED)
+KINDS = (STEP, RESPONSE, AWAITED, FAULT, RECOVERY, STAFF, ENDED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,15 @@ class Answered:
     took: float | None
 
 
-What: TypeAlias = Done | Answered | Diagnosed | Moved
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """What people did beside: they stopped the robot, or brought a fault about."""
+
+    what: str
+    by: str
+
+
+What: TypeAlias = Done | Answered | Diagnosed | Moved | Noted
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +110,8 @@ class Moment:
                 }
             case Diagnosed(fault):
                 return {"kind": "fault", **fault.document()}
+            case Noted(what, by):
+                return {"kind": "staff", "what": what, "by": by}
             case Moved(fault, move):
                 return {"kind": "recovery", "fault": fault.id, "move": move.to_json()}
 
@@ -184,6 +195,8 @@ def _replay(
             what = _done(event.body, step, begun, replay.seconds, activity, names)
         elif event.kind in (RESPONSE, AWAITED):
             what = _answered(event)
+        elif event.kind == STAFF:
+            what = Noted(str(event.body["what"]), str(event.body["by"]))
         elif event.kind in (FAULT, RECOVERY):
             fault = faults.get(str(event.body.get("fault")))
             if fault is None:

@@ -19,7 +19,7 @@ from tangy_tui.interaction.tally import Row
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
-from tangy_tui.monitoring.replay import Replay, read_replays
+from tangy_tui.monitoring.replay import Noted, Replay, read_replays
 
 STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
 """What became of a fault, in words."""
@@ -213,6 +213,10 @@ def read_session(
     notes = [unknown_words(name) for name in unknown]
     if not all(replay.timed for replay in replays):
         notes.append("An older Tangy kept no times within a game: those games are drawn by steps.")
+    noted = [m.what.what for r in replays for m in r.moments if isinstance(m.what, Noted)]
+    on_purpose = dict.fromkeys(what for what in noted if "brought about" in what)
+    if on_purpose:
+        notes.append(f"Not all of this went wrong by itself: {'; '.join(on_purpose)}.")
     titles = {activities[g.activity].title if g.activity in activities else g.activity
               for g in games}  # fmt: skip
     return Session(

@@ -35,6 +35,7 @@ from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 from tangy_tui.monitoring.fault import (
     BORNE,
     OPEN,
+    STAFF,
     Fault,
     Move,
 )
@@ -65,6 +66,7 @@ class Supervision:
         store: Store,
         effects_of: Callable[[Policy], Effects],
         name: Callable[[str], str] = str,
+        to_come: Sequence[str] = (),
     ) -> None:
         """Prepare to supervise.
 
@@ -73,12 +75,14 @@ class Supervision:
             book: the fault rules.
             effects_of: learns the effects that a policy's demonstrations show.
             name: what a person is called.
+            to_come: faults that are brought about on purpose, for the log.
         """
         game.looked_over = True
         self.game = game
         self.book = book
         self.robot = robot
         self._idle = 0
+        self._to_come = tuple(to_come)
         self._store = store
         self._effects_of = effects_of
         self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
@@ -154,6 +158,8 @@ class Supervision:
         self._clearings.clear()
         self._idle = 0
         self._detector.begin()
+        if self._to_come:
+            self.note(f"faults are to be brought about: {', '.join(self._to_come)}", "")
         return told
 
     def step(self) -> list[Event]:
@@ -250,6 +256,12 @@ class Supervision:
         self._clearings[fault.code] += 1
         told += self._recovery.halt_if_critical()
         return told + self._end_if_hopeless()
+
+    def note(self, what: str, by: str) -> None:
+        """Log what people did in a game beside all this: a STOP, a fault brought about."""
+        if not self.over:
+            body = {"game": self.game.game, "what": what, "by": by, "seconds": self.seconds}
+            self._store.append(STAFF, body)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Do what a teacher answered, and go on."""

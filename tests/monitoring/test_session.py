@@ -16,11 +16,12 @@ from tangy_sim import faulty
 from tangy_tui.house import House
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.log_lines import MOST_TOLD, session_lines
+from tangy_tui.learning.policy import Policy
+from tangy_tui.log_lines import MOST_TOLD, replay_lines, session_lines
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
-from tangy_tui.monitoring.replay import Answered, Done, Replay, read_replays
+from tangy_tui.monitoring.replay import Answered, Done, Noted, Replay, read_replays
 from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
 from tests.monitoring.conftest import Supervise, acts, play
@@ -339,3 +340,22 @@ def test_everybody_who_was_asked_is_in_the_moments(house: House, supervise: Supe
     assert {Done, Answered} <= kinds
     assert all(datetime.fromisoformat(moment.at).tzinfo for moment in replay.moments)
     assert [moment.to_json()["kind"] for moment in replay.moments].count("step") == len(replay.done)
+
+
+def test_what_was_brought_about_on_purpose_is_told_as_that(house: House, learnt: Policy) -> None:
+    game = house.supervision(learnt, 3, injections=["voice-dead@2"])
+    game.begin()
+    game.step()
+    game.note("STOP", "Ada")
+    game.leave()
+    played = read_games(house.store)[-1]
+    activities = {house.activity.name: house.activity}
+    (replay,) = read_replays(house.store, [played], activities, {})
+    noted = [m.what for m in replay.moments if isinstance(m.what, Noted)]
+    assert [note.what for note in noted] == [
+        "faults are to be brought about: voice-dead@2",
+        "STOP",
+    ]
+    assert "*  STOP, by Ada." in "\n".join(replay_lines(replay, house.activity, str))
+    session = read_session(house.store, [played], activities, {})
+    assert any("voice-dead@2" in note for note in session.notes)
