@@ -9,27 +9,43 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.store import Store
 from tangy_sim.faulty import FaultyWorld
 from tangy_tui.house import House
-from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, Fault, FaultEvent, Moved
+from tangy_tui.interaction.facilitation import BEGUN
+from tangy_tui.monitoring.fault import (
+    ENDINGS,
+    FAULT,
+    OPEN,
+    OVER,
+    Diagnosed,
+    Fault,
+    FaultEvent,
+    Moved,
+    read_faults,
+)
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.monitoring.telling import move_words
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
 from tangy_tui.ui.fault_words import (
-    banner_fault,
     banner_words,
     doing_words,
     kind_words,
+    said_words,
     status_words,
+    told_in_banner,
 )
-from tangy_tui.ui.widgets.fault_banner import FaultBanner
+from tangy_tui.ui.widgets.command_bar import CommandInput
+from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -45,7 +61,8 @@ NO_GAME = "No game is going on: press g to play one first."
 Tell = Callable[[list[Event], bool], None]
 """Shows events; the second is whether it is known already why a game was stopped."""
 
-_TAKES_TIME = ("asked", "remedied")
+TAKES_TIME = ("asked", "remedied")
+"""The moves of which it takes time to see what comes."""
 
 
 class FaultConsole:
@@ -83,6 +100,7 @@ class FaultConsole:
         self._dialog: CriticalDialog | None = None
         self._status = ("", "")
         self._during: tuple[Fault, int] | None = None
+        self._put_away: set[tuple[str, int]] = set()
         self._asked_for: dict[str, int] = {}
         self._game = 0
 
@@ -106,6 +124,8 @@ class FaultConsole:
             self.busy = True  # until somebody lets it try again
             self._failed(str(error))
             return
+        if self._dialog is not None:
+            self._dialog.look()
         if events or self.supervision.status != self._status:
             self._tell(events, False)
 
@@ -114,15 +134,17 @@ class FaultConsole:
     @property
     def status(self) -> str:
         """How the robot is, in words, with the cause."""
-        supervision = self.supervision
-        if supervision.halted is None and supervision.over:
-            return "OK"
+        supervision, halted = self.supervision, self.supervision.halted
         word, cause = self._status = supervision.status
+        if halted is not None and supervision.over:
+            return f"WARN: {halted.name}, not cleared"
         question = supervision.question
         if word == "ASKS" and question is not None:
             named = (fault.name for fault in supervision.faults if fault.id == question.fault)
-            cause = next(named, "")
-        return status_words((word, cause))
+            return status_words((word, next(named, "")))
+        if self._during is not None and halted is None:
+            return status_words(("WARN", self._during[0].name))
+        return "OK" if halted is None and supervision.over else status_words((word, cause))
 
     @property
     def asked_about(self) -> Fault | None:
@@ -138,28 +160,47 @@ class FaultConsole:
             self._free.clear()
             screen.run_worker(self._attend(), name="fault", group="fault")
             return  # it hides the rest, which is drawn with the first key in it
-        fault, doing = banner_fault(supervision), ""
-        if self._during is not None and supervision.halted is None:
-            fault, count = self._during
-            doing = doing_words(fault, supervision.book, self._house.name, fault.moves[:count])
-        elif fault is not None:
-            doing = doing_words(fault, supervision.book, self._house.name)
-        if fault is None or (supervision.over and supervision.halted is None):
-            screen.query_one(FaultBanner).show("")
-        else:
-            screen.query_one(FaultBanner).show(
-                banner_words(fault, doing), critical=fault.critical, seen=fault.acknowledged
+        banner, told = screen.query_one(FaultBanner), self.told
+        if told:
+            fault = told[0]
+            typing = isinstance(screen.focused, CommandInput)
+            banner.show(
+                banner_words(fault, doing_words(fault, supervision.book)),
+                said=said_words(fault),
+                more=len(told) - 1,
+                critical=fault.critical,
+                key="" if supervision.over else ESC_SEEN if typing else SEEN,
             )
+        else:
+            banner.show(())
         faults = screen.query_one(FaultList)
-        faults.fill(supervision.faults)
+        faults.fill([self._as_shown(fault) for fault in supervision.faults])
         faults.set_class(any(not fault.asks_only for fault in supervision.faults), "-there")
         if self._dialog is not None:
             self._dialog.show(screen.query_one(StatusLine).status)
 
+    @property
+    def told(self) -> list[Fault]:
+        """The faults of which the banner tells, the most urgent first, as they are shown."""
+        supervision, during = self.supervision, self._during
+        if supervision.halted is not None and supervision.over:
+            return [supervision.halted]
+        told = [] if supervision.over else told_in_banner(supervision)
+        if during is not None and supervision.halted is None:
+            told = [during[0], *(fault for fault in told if fault is not during[0])]
+        shown = (self._as_shown(fault) for fault in told)
+        return [fault for fault in shown if _told_so_far(fault) not in self._put_away]
+
+    def _as_shown(self, fault: Fault) -> Fault:
+        """Return a fault as it was before what came of the last move, which is yet to be shown."""
+        if self._during is None or self._during[0] is not fault or self.supervision.halted:
+            return fault
+        return replace(fault, moves=fault.moves[: self._during[1]], status=OPEN)
+
     def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
         """Part what was begun about a fault from what came of it, which takes its time to see."""
         for n, event in enumerate(events):
-            if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
+            if isinstance(event, Moved) and event.move.kind in TAKES_TIME and events[n + 1 :]:
                 if self.supervision.halted is not None or self.supervision.question is not None:
                     break
                 count = next(k for k, m in enumerate(event.fault.moves, 1) if m is event.move)
@@ -197,6 +238,33 @@ class FaultConsole:
         self._dialog = None
         self._free.set()
 
+    def see(self) -> bool:
+        """Take away what the banner tells, because it was seen; False: it tells of nothing."""
+        told = self.told
+        if not told or self.supervision.over:
+            return False
+        fault = next(f for f in self.supervision.faults if f.id == told[0].id)
+        if fault.status != OVER:
+            self.acknowledge(fault)
+        self._put_away.add(_told_so_far(told[0]))
+        self.show()
+        return True
+
+    async def all_well(self) -> bool:
+        """Ask about what nobody cleared in the last game; False: no other one may begin."""
+        await self._free.wait()
+        fault = uncleared(self._house.store)
+        if fault is None:
+            return True
+        dialog = ConfirmDialog(
+            "Is all well now?",
+            f"The last game ended with: {fault.name}, which nobody cleared. Tangy moves as soon "
+            "as a game begins.",
+            yes="all is well: begin the game",
+            no="do not begin",
+        )
+        return await self._screen.app.push_screen_wait(dialog)
+
     def acknowledge(self, fault: Fault | None = None) -> None:
         """Say that a fault (default: the one that halts the robot) was seen."""
         self._tell(self.supervision.acknowledge(self._who, fault), False)
@@ -221,11 +289,15 @@ class FaultConsole:
             return NOT_SIMULATED
         return NO_GAME if self.supervision.over else ""
 
-    async def inject(self) -> str:
-        """Let a fault be chosen, and bring it about or lift it; return what was done."""
+    async def inject(self) -> tuple[str, bool]:
+        """Let a fault be chosen, and bring it about or lift it.
+
+        Returns:
+            What was done ("": nothing), and whether it is seen at once what came of it.
+        """
         world = self.supervision.world
         if not isinstance(world, FaultyWorld):
-            return NOT_SIMULATED
+            return NOT_SIMULATED, False
         if self._game != self.supervision.games:
             self._game = self.supervision.games
             self._asked_for.clear()
@@ -237,15 +309,38 @@ class FaultConsole:
         dialog = InjectDialog(world.present, to_come)
         kind = await self._screen.app.push_screen_wait(dialog)
         if kind is None or self.refuses():
-            return ""
+            return "", False
         if kind in world.present or kind in to_come:
+            there = kind in world.present
             world.lift(kind)
             self._asked_for.pop(kind, None)
-            return f"Lifted: {kind}."
+            return f"Lifted: {kind}.", there
         self._asked_for[kind] = len(world.came)
         world.inject(kind)
-        later = comes_later(kind)
-        return f"Brought about: {kind}." if not later else f"{kind} comes as soon as it can show."
+        if comes_later(kind):
+            return f"{kind} comes as soon as it can show.", False
+        return f"Brought about: {kind}.", True
+
+
+def uncleared(store: Store) -> Fault | None:
+    """Return what the last game in a log ended with for which Tangy stood still, if it did."""
+    game, last = store.last(BEGUN), store.last(FAULT)
+    if game is None or last is None or last.body["game"] != game.body["game"]:
+        return None
+    return next(
+        (
+            fault
+            for fault in read_faults(store, game.body["game"])
+            if fault.status == OPEN
+            and (fault.critical or any(move.kind == "halted" for move in fault.moves))
+        ),
+        None,
+    )
+
+
+def _told_so_far(fault: Fault) -> tuple[str, int]:
+    """Return what a fault is told by: each time that Tangy asks somebody it is told anew."""
+    return fault.id, sum(bool(move.speech) for move in fault.moves)
 
 
 def write_fault(screen: Screen[Any], event: FaultEvent) -> None:

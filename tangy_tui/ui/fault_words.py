@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
-from tangy_profiles.health import STALE, Fact, Health
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
 from tangy_profiles.robot import Device, Robot
+from tangy_tui.learning.effects import Effects
+from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, Move
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
+from tangy_tui.monitoring.telling import RECOVERY_WORDS, mismatch_words, move_words
 from tangy_tui.ui.clean_output import clean
 
 Name = Callable[[str], str]
@@ -28,6 +32,13 @@ REMEDIES = {
     "set aside": "leaving it at that",
 }
 """What Tangy does by itself, in words."""
+
+_STATES = {
+    STALE: f"nothing comes from it ({STALE})",
+    ERROR: f"it reports a failure ({ERROR})",
+    WARN: f"it warns ({WARN})",
+    OK: f"all is well ({OK})",
+}
 
 _DOING = {
     "teacher asked": "asking the teacher",
@@ -68,19 +79,16 @@ def clock_words(seconds: float) -> str:
     return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
 
 
-def doing_words(fault: Fault, book: FaultBook, name: Name, moves: list[Move] | None = None) -> str:
-    """Say what Tangy does about a fault at present (after some of its moves, if given)."""
-    moves = fault.moves if moves is None else moves
-    done = [move for move in moves if _DOING.get(move.kind) != ""]
-    if not done:
+def doing_words(fault: Fault, book: FaultBook) -> str:
+    """Say what Tangy does about a fault at present."""
+    move = _last(fault)
+    if move is None:
         return f"next: {RECOVERY_WORDS[fault.recovery]}"
-    move = done[-1]
     match move.kind:
         case "asked":
-            return f"asking {_asked(fault, name)}{_tries(fault, move, book)}"
+            return f"asks{_tries(fault, move, book)}"
         case "remedied":
-            words = REMEDIES.get(move.remedy, move.remedy)
-            return f"{words}{_tries(fault, move, book)}"
+            return f"{REMEDIES.get(move.remedy, move.remedy)}{_tries(fault, move, book)}"
         case "went on":
             return "going on without"
         case "escalated":
@@ -88,19 +96,30 @@ def doing_words(fault: Fault, book: FaultBook, name: Name, moves: list[Move] | N
     return _DOING.get(move.kind) or move_words(move)
 
 
-def _asked(fault: Fault, name: Name) -> str:
-    return name(fault.person) if fault.person is not None else "those at the table"
+def said_words(fault: Fault) -> str:
+    """Return what Tangy says about a fault at present: what it asks somebody for."""
+    move = _last(fault)
+    return "" if move is None else clean(move.speech)
+
+
+def _last(fault: Fault) -> Move | None:
+    """Return what was done last; what came before a fault was seen is still so."""
+    done = [move for move in fault.moves if _DOING.get(move.kind) != ""]
+    return done[-1] if done else None
 
 
 def _tries(fault: Fault, move: Move, book: FaultBook) -> str:
     tries = book.rule(fault.code).tries
-    return f", try {move.attempt} of {tries}" if tries > 1 else ""
+    return f" ({move.attempt} of {tries})" if tries > 1 else ""
 
 
-def banner_words(fault: Fault, doing: str) -> str:
-    """Write the banner of a fault: symbol, criticality, name, and what is done about it."""
+def banner_words(fault: Fault, doing: str) -> tuple[str, ...]:
+    """Write the banner of a fault in forms that take less and less room: mark, name, doing."""
+    mark, name = mark_of(fault).strip(), clean(fault.name)
     return (
-        f"{mark_of(fault).strip()} FAULT {kind_words(fault)}: {clean(fault.name)} -> {clean(doing)}"
+        f"{mark} FAULT {kind_words(fault)}: {name} -> {clean(doing)}",
+        f"{mark} FAULT {name} -> {clean(doing)}",
+        f"{mark} {name}: {clean(doing)}",
     )
 
 
@@ -122,22 +141,22 @@ def searched(fault: Fault, name: Name) -> str:
     ).lower()
 
 
-def banner_fault(supervision: Supervision) -> Fault | None:
-    """Return the fault that the banner is about: the most urgent one that is there.
+def told_in_banner(supervision: Supervision) -> list[Fault]:
+    """Return the faults that the banner is about, the most urgent that are there first.
 
     One that Tangy goes on without is told of until somebody has seen it.
     """
     there = [f for f in supervision.waiting if not f.asks_only]
     there += [f for f in supervision.faults if f.status == BORNE and not f.acknowledged]
-    return supervision.halted or (there[0] if there else None)
+    first = supervision.halted
+    return there if first is None else [first, *(f for f in there if f is not first)]
 
 
 class Piece(NamedTuple):
-    """One piece of evidence: of what, what was to be expected, and what was observed."""
+    """One piece of evidence in words, and ("": nothing more) what was to be expected."""
 
     what: str
-    expected: str
-    observed: str
+    note: str = ""
 
 
 def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
@@ -150,41 +169,96 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
         head, _, fact = key.partition(".")
         device = robot.devices.get(head)
         if device is not None and fact == "age":
-            pieces.append(_age(device, value))
+            pieces += _age(device, value)
             continue
         if device is None:
             what = SYMPTOMS.get(key, key)
         elif fact == "state":
             what = device.label
         else:
-            what = f"{device.label}, {device.facts[fact].says if fact in device.facts else fact}"
-        pieces.append(Piece(what, _expected(key, value, rule), _observed(fact, value)))
+            measure = device.facts.get(fact)
+            what = f"{device.label}, {measure.says if measure is not None else fact}"
+        expected = _expected(key, value, rule, book)
+        if expected:
+            observed = _observed(fact, value)
+            pieces.append(Piece(f"{what}: {observed}", f"to be expected: {expected}"))
     for one in fault.mismatches:
+        words = mismatch_words(one)
         wanted = " or ".join(one.expected) or "nothing known"
-        pieces.append(Piece(f"{one.variable} after {one.behaviour}", wanted, one.seen))
+        note = f"{one.variable}: {one.seen}; to be expected: {wanted}"
+        pieces.append(Piece(f"{words[:1].upper()}{words[1:]}", note))
     return pieces
 
 
 def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list[Piece]:
-    """Say how old the newest data of a fault's device is, unless its evidence says so."""
+    """Say how old the newest data of a fault's device is if it is too old, unless that is said."""
     device = robot.devices.get(book.rule(fault.code).device)
     if device is None or f"{device.name}.age" in fault.evidence:
         return []
-    return [_age(device, reading.age) for reading in health if reading.device == device.name]
+    ages = (reading.age for reading in health if reading.device == device.name)
+    return [piece for age in ages for piece in _age(device, age)]
 
 
-def _age(device: Device, age: Fact) -> Piece:
-    old = f"{age:.3g}" if isinstance(age, float) else str(age)
-    expected = f"at most {device.stale_after:g} s old"
-    return Piece(f"{device.label}, newest data", expected, f"{old} s old")
+class StillThere:
+    """Says of faults whether they are there, by what the devices of a world say now."""
+
+    def __init__(self, supervision: Supervision) -> None:
+        self._supervision = supervision
+        nothing = Effects(MappingProxyType({}))  # devices are looked at, and no behaviours
+        self._detector = Detector(supervision.world.activity, supervision.robot, nothing)
+
+    def words(self, fault: Fault) -> str:
+        """Say whether a fault is still there; empty where the devices cannot tell."""
+        supervision = self._supervision
+        rule = supervision.book.rule(fault.code)
+        if rule.fallback or not rule.device:
+            return ""
+        evidence = self._detector.watch(supervision.world.health())
+        conditions = rule.matched(evidence)
+        if conditions is None:
+            keys = "press c to clear." if fault.acknowledged else "press a, and c to clear."
+            return f"It is gone now: {keys}"
+        now = {condition.key: evidence[condition.key] for condition in conditions}
+        there = replace(fault, evidence=now, mismatches=())
+        pieces = evidence_of(there, supervision.book, supervision.robot)
+        return f"Still there: {'; '.join(piece.what for piece in pieces)}."
 
 
-def _expected(key: str, value: Fact, rule: FaultRule) -> str:
-    """Turn the condition by which a fault was recognised round."""
+def _age(device: Device, age: Fact) -> list[Piece]:
+    if isinstance(age, (bool, str)) or age <= device.stale_after:
+        return []
+    expected = f"to be expected: at most {device.stale_after:g} s old"
+    return [Piece(f"{device.label}, newest data: {age:.3g} s old", expected)]
+
+
+def _expected(key: str, value: Fact, rule: FaultRule, book: FaultBook) -> str:
+    """Turn the condition by which a fault was recognised round; empty: it only narrows it down."""
     if key.endswith(".state"):
-        return "OK"
-    conditions = [c for when in rule.when for c in when if c.key == key and c.holds({key: value})]
-    return _otherwise(conditions[0]) if conditions else "nothing of the kind"
+        return "OK" if value != "OK" else ""
+    for conditions in rule.when:
+        for condition in conditions:
+            if condition.key == key and condition.holds({key: value}):
+                return "" if _narrows(condition, conditions, book) else _otherwise(condition)
+    return "nothing of the kind"
+
+
+def _narrows(condition: Condition, among: Sequence[Condition], book: FaultBook) -> bool:
+    """Say whether a condition only says that it is not another fault.
+
+    It is then the contrary of another rule's, and its own rule has one that is not.
+    """
+    theirs = [c for rule in book.rules for conditions in rule.when for c in conditions]
+
+    def contrary(one: Condition) -> bool:
+        return any(_contrary(one, other) for other in theirs)
+
+    return contrary(condition) and not all(contrary(one) for one in among)
+
+
+def _contrary(one: Condition, other: Condition) -> bool:
+    if (one.key, one.value) != (other.key, other.value):
+        return False
+    return {one.test, other.test} in ({"below", "at_least"}, {"is", "not"})
 
 
 def _otherwise(condition: Condition) -> str:
@@ -206,9 +280,7 @@ def _otherwise(condition: Condition) -> str:
 def _observed(fact: str, value: Fact) -> str:
     if fact != "state":
         return _written(value)
-    return {STALE: "STALE: nothing comes from it", "ERROR": "ERROR: it reports a failure"}.get(
-        str(value), str(value)
-    )
+    return _STATES.get(str(value), str(value))
 
 
 def _written(value: Fact) -> str:

@@ -95,15 +95,27 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
         assert number == len(screen._picture.grounds) == game.steps
 
 
-async def test_a_try_is_seen_before_what_came_of_it(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+@pytest.mark.parametrize("size", [TINY, SMALL, MIDDLE], ids=["tiny", "small", "middle"])
+async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
+    run: Run, house: House, policy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, policy), size=size) as pilot:
         screen, game, world = game_of(pilot)
+        room = screen.query_one(RoomView)
+        height = room.size.height
         world.inject("camera-occluded")
-        await until(pilot, lambda: screen.query_one(FaultBanner).display)
-        await pilot.press("full_stop")  # the step's time is over
-        await until(pilot, lambda: "asked" in kinds_of(game.faults[0]))
-        assert "asking those at the table, try 1 of 2" in screen.query_one(FaultBanner).words
-        assert not any("recovered" in said for said in screen.query_one(LogView).sentences)
+        await until(pilot, lambda: screen.query_one(FaultBanner).said)  # no key ends a step's time
+        text = seen(pilot)
+        assert "Head camera covered" in pilot.lines()[1]
+        assert "asks (1 of 2)" in pilot.lines()[1]
+        assert "“Something covers my eyes. Could somebody please take it away?”" in text
+        assert "robot WARN: Head camera covered" in pilot.lines()[0]
+        assert room.size.height == height or size == MIDDLE  # where the list comes up as well
+        assert not any("recovered" in said for said in sentences(screen))
+        await pilot.press("a")
+        await pilot.pause()
+        assert not screen.query_one(FaultBanner).display
+        assert "No fault that nobody has seen." not in sentences(screen)
         await pilot.press("e")
         await until(pilot, lambda: game.over)
         assert any("camera covered: recovered" in said for said in sentences(screen))

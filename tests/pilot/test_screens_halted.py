@@ -14,8 +14,10 @@ from tangy_tui.monitoring.fault import OVER, read_faults
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.fault_console import uncleared
 from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -95,7 +97,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
     async with run(app=playing(house, policy), size=MIDDLE) as pilot:
         await halting(pilot, "laser-disconnected")
         text = seen(pilot)
-        assert "laser scanner: STALE: nothing comes from it" in text
+        assert "Still there: laser scanner: nothing comes from it (STALE)." in text
         assert "to be expected: OK" in text
         assert "laser scanner, newest data: 2 s old" in text
         assert "at most 0.25 s old" in text
@@ -135,10 +137,39 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
         await until(pilot, lambda: pilot.app.screen is screen)
         assert game.over
         assert kinds_of(dialog.fault)[-1] == "given up"
-        assert "robot HALTED" in seen(pilot)
+        assert "robot WARN: Emergency stop pressed, not cleared" in seen(pilot)
+        assert pilot.lines()[-1].strip().startswith("g plays again")
+        assert "pause" not in pilot.lines()[-1]
+        assert "[a] seen" not in pilot.text()
         ended = house.store.last("game ended")
         assert ended is not None
         assert "Emergency stop pressed" in str(ended.body["stopped"])
+
+
+@pytest.mark.parametrize("key", ["y", "n"])
+async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
+    run: Run, house: House, policy: Policy, key: str
+) -> None:
+    before = house.supervision(policy, 5, asks=True, injections=("emergency-stop",))
+    before.begin()
+    while before.halted is None:
+        before.step()
+    before.give_up()
+    async with run(app=playing(house, policy)) as pilot:
+        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await pilot.pause()
+        assert "The last game ended with: Emergency stop pressed" in seen(pilot)
+        logged = house.store.last("game begun")
+        await pilot.press(key)
+        if key == "n":
+            await until(
+                pilot, lambda: not any(isinstance(s, PlayScreen) for s in pilot.app.screen_stack)
+            )
+            assert house.store.last("game begun") == logged
+        else:
+            game = game_of(pilot)[1]
+            await until(pilot, lambda: not game.over)
+            assert uncleared(house.store) is None
 
 
 async def test_stop_works_inside_and_leaves_the_dialog(

@@ -15,11 +15,19 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.monitoring.telling import move_words
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
-from tangy_tui.ui.fault_words import ages_of, clock_words, evidence_of, kind_words, mark_of
+from tangy_tui.ui.fault_words import (
+    StillThere,
+    ages_of,
+    clock_words,
+    evidence_of,
+    kind_words,
+    mark_of,
+)
 from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
@@ -28,6 +36,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 SEEN_FIRST = "Press a first: it says that you have seen this."
 SEEN = "You have seen it. Press e to call the expert, or c when all is well."
+ALREADY_CALLED = "The expert was called already. Press c when all is well."
 CALLED = "The expert was called. Press c when all is well."
 STILL_THERE = "It is still there. Tangy stands still. Press e to call the expert (again)."
 STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
@@ -62,6 +71,7 @@ class CriticalDialog(Dialog[None]):
         border: heavy $error; border-title-color: $error;
     }
     CriticalDialog Page { height: 1fr; }
+    CriticalDialog .now { height: auto; max-height: 3; text-style: bold; }
     CriticalDialog .said { height: auto; color: $warning; text-style: bold; }
     CriticalDialog KeyLine { padding: 0; }
     """
@@ -87,6 +97,8 @@ class CriticalDialog(Dialog[None]):
         self._clock = clock
         self._keys = FreshKeys()
         self._status = Status()
+        self._there = StillThere(desk.supervision)
+        self._now = ""
 
     @property
     def fault(self) -> Fault:
@@ -100,6 +112,7 @@ class CriticalDialog(Dialog[None]):
         said = SEEN if fault.acknowledged else SEEN_FIRST
         box = Vertical(
             Page(self._write),
+            Static(self._is_there(), classes="now", markup=False),
             Static(f"! {said}", classes="said", markup=False),
             KeyLine(*self._key_words()),
             id="critical",
@@ -120,10 +133,23 @@ class CriticalDialog(Dialog[None]):
         self._status = status
         for line in self.query(StatusLine):
             line.show(status)
+        self.look()
         for page in self.query(Page):
             page.show(self._write, None)
         for keys in self.query(KeyLine):
             keys.show(*self._key_words())
+
+    def look(self) -> None:
+        """Say whether the fault is still there, if that is not what is said already."""
+        before = self._now
+        words = self._is_there()
+        if words != before:
+            for now in self.query(".now").results(Static):
+                now.update(words)
+
+    def _is_there(self) -> str:
+        self._now = clean(self._there.words(self._fault))
+        return self._now
 
     def say(self, sentence: str) -> None:
         """Say what a key did, or what has to be done first."""
@@ -155,6 +181,8 @@ class CriticalDialog(Dialog[None]):
             case "a":
                 desk.acknowledge()
                 self.say(SEEN)
+            case "e" if self._called:
+                self.say(ALREADY_CALLED)
             case "e":
                 desk.call_expert()
                 self.say(CALLED)
@@ -168,6 +196,12 @@ class CriticalDialog(Dialog[None]):
                     self.answer(None)
             case _:
                 self.run_worker(self._confirm(), group="give up", exclusive=True)
+
+    @property
+    def _called(self) -> bool:
+        """Whether the expert was called, and the fault not found to be still there since then."""
+        kinds = [m.kind for m in self._fault.moves if m.kind in ("expert called", "still there")]
+        return kinds[-1:] == ["expert called"]
 
     async def _confirm(self) -> None:
         """Give the game up, if that is meant."""
@@ -201,6 +235,13 @@ class CriticalDialog(Dialog[None]):
         where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
         still = f"{where} Tangy has stopped, and nothing moves before this is cleared."
         lines += paragraph(still, width)
+        others = [f for f in supervision.faults if f is not fault and f.status != OVER]
+        if others:
+            lines += paragraph(clean(f"Also wrong: {', '.join(f.name for f in others)}."), width)
+        if len(fault.moves) > 1:
+            last = fault.moves[-1]
+            so_far = f"Last, at {clock_words(last.seconds)}: {move_words(last)}."
+            lines += paragraph(clean(so_far), width, "dim")
         lines += heading("What to do, and whom to call")
         lines += advice_lines(fault.advice, width)
         lines += paragraph("Call the expert for the robot with e.", width)
@@ -209,7 +250,6 @@ class CriticalDialog(Dialog[None]):
         if pieces:
             lines += heading("How Tangy knows") + evidence_lines(pieces, width)
         lines += heading("So far") + moves_so_far(fault.moves, width)
-        others = [f for f in supervision.faults if f is not fault and f.status != OVER]
         if others:
             lines += heading("Also wrong")
         for other in others:

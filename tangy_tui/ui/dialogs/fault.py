@@ -108,11 +108,9 @@ def evidence_lines(pieces: Sequence[Piece], width: int) -> list[Line]:
     """Write what was observed, and under it what was to be expected."""
     lines: list[Line] = []
     for piece in pieces:
-        lines += paragraph(f"{clean(piece.what)}: {clean(piece.observed)}", width)
-        lines += [
-            Line(((f"  {text}", "dim"),))
-            for text in wrap(f"to be expected: {clean(piece.expected)}", max(10, width - 2))
-        ]
+        lines += paragraph(clean(piece.what), width)
+        note = wrap(clean(piece.note), max(10, width - 2)) if piece.note else []
+        lines += [Line(((f"  {text}", "dim"),)) for text in note]
     return lines
 
 

@@ -13,10 +13,12 @@ from tangy_tui.house import House, teacher_name
 from tangy_tui.interaction.facilitation import GameEnded, Unsure
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.verifying import Verified
+from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
+from tangy_tui.ui.fault_console import TAKES_TIME
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
@@ -205,6 +207,8 @@ class PlayScreen(PlayPanels):
 
     async def _play(self) -> None:
         while self._tally.games < self._games:
+            if not await self._may_begin():
+                return
             try:
                 await self._play_game()
             except TangyError as error:  # the log could not be written, so nothing more is done
@@ -212,11 +216,23 @@ class PlayScreen(PlayPanels):
         if self._leave_after is not None:
             await close_after(self, self._tally, self._leave_after)
 
+    async def _may_begin(self) -> bool:
+        """Ask before a game begins after one that ended with what nobody cleared."""
+        if not self._supervision.over or self._leave_after is not None:
+            return True
+        if await self._faults.all_well():
+            return True
+        self._games = self._tally.games
+        if not self._supervision.games:
+            close(self, self._tally)
+        return False
+
     async def _play_game(self) -> None:
         """Play one game, or the rest of one that was held."""
         supervision = self._supervision
         if supervision.over:
             self._tell(supervision.begin())
+        owed = 0.0  # s of the game that are to pass after what is done against a fault
         while not supervision.over:
             await self._going.wait()
             if supervision.halted is not None:
@@ -233,10 +249,15 @@ class PlayScreen(PlayPanels):
             self._tell(events)
             if supervision.question is not None:
                 await self._ask(supervision.question)
-            if self._skipping:
+            owed = max(owed, supervision.seconds - before)
+            tried = any(isinstance(e, Moved) and e.move.kind in TAKES_TIME for e in events)
+            if self._skipping or supervision.halted is not None:
                 await asyncio.sleep(0)  # let the screen and the keys live
+            elif supervision.waiting and not tried:
+                await asyncio.sleep(0)  # what is to be done about a fault is done at once
             else:
-                await self._wait(supervision.seconds - before)
+                await self._wait(owed)
+                owed = 0.0
             if rest:
                 self._faults.done()
                 self._tell(rest)
@@ -272,6 +293,8 @@ class PlayScreen(PlayPanels):
         self._tally.add(events)
         if not self.query(LogView):
             return  # the screen is going, and its panels go before its game does
+        if any(isinstance(event, Diagnosed) for event in events):
+            self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
@@ -351,7 +374,7 @@ class PlayScreen(PlayPanels):
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
         self._picture.show_status(robot, self._note())
         going = self._going.is_set()
-        self.query_one(KeyLine).show(*keys(going=going))
+        self.query_one(KeyLine).show(*keys(going=going, over=self._supervision.over))
         if asking is not None:
             asking.show_keys(going=going)
         self._faults.show()

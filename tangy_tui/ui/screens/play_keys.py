@@ -18,8 +18,12 @@ TRIES_AGAIN = "p tries again; esc leads home."
 STOPPED_FIRST = "Not now: Tangy was stopped. Press p to go on first."
 
 
-def keys(*, going: bool) -> tuple[tuple[str, str], ...]:
-    """Return the keys and what they do while the game goes on, or stands still."""
+def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
+    """Return the keys and what they do while the game goes on, stands still, or is over."""
+    if over:
+        return (
+            ("g", "plays again"), ("w", "why"), ("1-6", "show"), ("esc", "back"), ("?", "help"),
+        )  # fmt: skip
     return (
         ("p", "pause" if going else "go on"), ("n", "step"), ("<>", "speed"), ("e", "end"),
         ("g", "game"), ("w", "why"), ("1-6", "show"), ("f", "fault"), ("esc", "back"),

@@ -14,7 +14,6 @@ from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.fault_console import FaultConsole
-from tangy_tui.ui.fault_words import banner_fault
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.asking import AskingPanel
@@ -34,6 +33,8 @@ ON_THE_LEFT = ("log", "faults")
 
 class PlayPanels(TangyScreen[Tally]):
     """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
+
+    ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner"
 
     def __init__(self, house: House, supervision: Supervision, who: str) -> None:
         """Make the panels; `who` answers, acknowledges and clears."""
@@ -117,14 +118,20 @@ class PlayPanels(TangyScreen[Tally]):
 
     def action_acknowledge(self) -> None:
         """Say that the fault in the banner was seen."""
-        fault = banner_fault(self._supervision)
-        if fault is None or fault.acknowledged:
-            self._tell_now("No fault that nobody has seen.", "dim")
-            return
         try:
-            self._faults.acknowledge(fault)
+            if not self._faults.see():
+                self._tell_now("No fault that nobody has seen.", "dim")
         except TangyError as error:
             self._fail(str(error))
+
+    def on_descendant_focus(self) -> None:
+        """Say which key takes the banner away: in a line to type in, keys are letters."""
+        if self.query(FaultBanner):
+            self._faults.show()
+
+    def on_descendant_blur(self) -> None:
+        """Say which key takes the banner away, now that keys are keys again."""
+        self.on_descendant_focus()
 
     def action_inject(self) -> None:
         """Bring about a fault in the simulated room, or lift one."""
@@ -134,7 +141,10 @@ class PlayPanels(TangyScreen[Tally]):
             self.run_worker(self._inject(), name="inject", group="inject")
 
     async def _inject(self) -> None:
-        if said := await self._faults.inject():
+        said, shown = await self._faults.inject()
+        if shown:  # what is there now says it, and nothing is to lie over that
+            self._write(said, "dim")
+        elif said:
             self._tell_now(said, "dim")
 
     @property
