@@ -142,7 +142,12 @@ class TangyApp(App[None]):
                 heard()
 
     def action_stop(self) -> None:
-        """Stop the robot."""
+        """Stop the robot; where nothing could move, say so."""
+        from tangy_tui.ui.base import Dialog
+
+        moving = [s for s in self.screen_stack if hasattr(s, "on_stop")]
+        if all(isinstance(screen, Dialog) for screen in moving):
+            self.say("Nothing is moving.")
         self.stop("ctrl+x was pressed")
 
     async def action_quit(self) -> None:

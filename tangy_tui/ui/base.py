@@ -150,6 +150,10 @@ class Dialog(ModalScreen[ResultT]):
             self._answered = True
             self.dismiss(result)
 
+    def on_mount(self) -> None:
+        """Take away what was said in passing: it would lie over the dialog."""
+        self.app.clear_notifications()
+
     def on_stop(self, message: Stop) -> None:
         """Take STOP for a no."""
         self.answer(self._no)

@@ -61,7 +61,7 @@ NO_GAME = "No game is going on: press g to play one first."
 Tell = Callable[[list[Event], bool], None]
 """Shows events; the second is whether it is known already why a game was stopped."""
 
-TAKES_TIME = ("asked", "remedied")
+_TAKES_TIME = ("asked", "remedied")
 """The moves of which it takes time to see what comes."""
 
 
@@ -200,13 +200,22 @@ class FaultConsole:
     def parts(self, events: list[Event]) -> tuple[list[Event], list[Event]]:
         """Part what was begun about a fault from what came of it, which takes its time to see."""
         for n, event in enumerate(events):
-            if isinstance(event, Moved) and event.move.kind in TAKES_TIME and events[n + 1 :]:
+            if isinstance(event, Moved) and event.move.kind in _TAKES_TIME and events[n + 1 :]:
                 if self.supervision.halted is not None or self.supervision.question is not None:
                     break
                 count = next(k for k, m in enumerate(event.fault.moves, 1) if m is event.move)
                 self._during = (event.fault, count)
                 return events[: n + 1], events[n + 1 :]
         return events, []
+
+    def urgent(self, events: list[Event]) -> bool:
+        """Say whether something is to be done about a fault at once, before any time passes."""
+        moved = {event.move.kind for event in events if isinstance(event, Moved)}
+        found = any(isinstance(event, Diagnosed) for event in events)
+        if self.supervision.halted is not None:
+            return found or bool(moved)
+        due = found or "went on" in moved  # what people do ends no wait between two tries
+        return due and bool(self.supervision.waiting) and moved.isdisjoint(_TAKES_TIME)
 
     def done(self) -> None:
         """Say that what came of it may be shown."""
@@ -313,9 +322,11 @@ class FaultConsole:
         if kind in world.present or kind in to_come:
             there = kind in world.present
             world.lift(kind)
+            self.supervision.note(f"a fault was lifted: {kind}", self._who)
             self._asked_for.pop(kind, None)
             return f"Lifted: {kind}.", there
         self._asked_for[kind] = len(world.came)
+        self.supervision.note(f"a fault was brought about: {kind}", self._who)
         world.inject(kind)
         if comes_later(kind):
             return f"{kind} comes as soon as it can show.", False

@@ -128,6 +128,11 @@ def state_words(fault: Fault) -> str:
     return {OPEN: "open", BORNE: "going on without", OVER: "over"}[fault.status]
 
 
+def short_state(fault: Fault) -> str:
+    """Say the same where there is little room, beside what happened last."""
+    return {OPEN: "open", BORNE: "without", OVER: "over"}[fault.status]
+
+
 def last_words(fault: Fault) -> str:
     """Say what happened last to a fault."""
     return move_words(fault.moves[-1]) if fault.moves else "nothing yet"

@@ -35,6 +35,9 @@ from tangy_tui.wording import counted, lesson_words, once_words
 DRIVING_SHARE = 0.5
 """The share of a step's time in which the picture of the robot drives."""
 
+NOT_DONE = "not done: "
+"""What stands before a behaviour that could not be carried out."""
+
 TAUGHT_SECONDS = 6.0
 """How long the message stands that says what was learnt from an answer."""
 
@@ -142,8 +145,9 @@ class GamePicture:
         target = f" ({house.name(event.action.target)})" if event.action.target else ""
         how = f", {event.choice.strategy}" if event.choice else ""
         who = f", {teacher} answered" if teacher else ""
+        done = "" if event.outcome.completed else NOT_DONE
         screen.query_one(Transcript).append(
-            f"{words} -> {event.action.behaviour.name}{target}{how}{who}"
+            f"{words} -> {done}{event.action.behaviour.name}{target}{how}{who}"
         )
         screen.query_one(LogView).write(event.speech)
         screen.query_one(RoomView).say(event.speech)

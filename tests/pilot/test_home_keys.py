@@ -43,3 +43,17 @@ async def test_two_keys_make_one_demonstration(run: Run, house: House) -> None:
         pilot.type("y")
         await pilot.pause()
         assert len(read_library(house.store, "bingo").entries) <= 1
+
+
+async def test_stop_at_home_says_that_nothing_moves(
+    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        said: list[str] = []
+        monkeypatch.setattr(pilot.app, "say", lambda sentence, **more: said.append(sentence))
+        await pilot.press("ctrl+x")
+        assert said == ["Nothing is moving."]
+        await pilot.press("t")
+        await pilot.pause()
+        await pilot.press("ctrl+x")
+        assert said == ["Nothing is moving."]

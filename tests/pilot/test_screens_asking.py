@@ -241,9 +241,10 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         screen = await asked(pilot)
         pilot.type(*"call number", "enter")
         await questioned(pilot)
-        before = list(house.store.events())
         await pilot.press("ctrl+x")
         await pilot.pause()
+        before = list(house.store.events())
+        assert before[-1].body["what"] == "the robot was stopped"
         assert isinstance(pilot.app.screen, PlayScreen)
         assert "STOPPED" in screen_text(pilot.app)
         assert "press p to go on first" in screen_text(pilot.app)

@@ -17,7 +17,7 @@ from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog
 from tangy_tui.ui.fault_words import status_words
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
-from tangy_tui.ui.widgets.fault_list import FaultList
+from tangy_tui.ui.widgets.fault_list import SHORTEST_LAST, FaultList, columns_for
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
@@ -151,6 +151,26 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         await pilot.pause()
         assert pilot.app.screen is screen
         assert len(faults._keys) == 2
+
+
+async def test_the_list_can_fill_the_screen(run: Run, house: House, policy: Policy) -> None:
+    async with run(app=playing(house, policy, speed=1000)) as pilot:
+        screen, game, world = game_of(pilot)
+        world.inject("arm-failed")
+        await until(pilot, lambda: game.faults and game.faults[0].status == BORNE)
+        await pilot.press("p", "6", "plus")
+        await pilot.pause()
+        assert screen.query_one(FaultList).size.height > SMALL[1] - 7
+        assert "! FAULT" in pilot.text()  # the banner stays
+
+
+@pytest.mark.parametrize("width", [56, 57, 76, 100])
+def test_the_list_says_what_was_done_last_at_every_width(width: int) -> None:
+    columns = columns_for(width, 24)
+    assert columns.last >= SHORTEST_LAST
+    assert columns.name == 24
+    wider = columns_for(width + 20, 24)
+    assert (wider.time, wider.step, wider.state) >= (columns.time, columns.step, columns.state)
 
 
 async def test_the_timeline_has_times_evidence_and_steps_for_staff(

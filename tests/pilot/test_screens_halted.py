@@ -106,6 +106,23 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
         assert "0:31 halted" in text
 
 
+async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy)) as pilot:
+        _, _, world = game_of(pilot)
+        dialog = await halting(pilot, "camera-frozen")
+        assert "Still there: head camera" in seen(pilot)
+        assert "brightness" not in seen(pilot)  # it only says that it is not covered
+        world.lift("camera-frozen")
+        await until(pilot, lambda: "It is gone now: press a, and c" in seen(pilot))
+        await pilot.press("e", "e")
+        await pilot.pause()
+        assert "It is gone now: press c to clear." in seen(pilot)
+        assert "The expert was called already" in seen(pilot)
+        assert kinds_of(dialog.fault).count("expert called") == 1
+
+
 async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
     run: Run, house: House, policy: Policy
 ) -> None:

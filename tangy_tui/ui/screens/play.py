@@ -13,12 +13,10 @@ from tangy_tui.house import House, teacher_name
 from tangy_tui.interaction.facilitation import GameEnded, Unsure
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.verifying import Verified
-from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.fault_console import TAKES_TIME
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
@@ -77,6 +75,7 @@ class PlayScreen(PlayPanels):
         self._nudge = asyncio.Event()
         self._skipping = False
         self._single = False
+        self._left = 0.0  # s of a drive that STOP or a fault broke off
         self._stopped = False
         self._halted = False
         self._learning = False
@@ -191,6 +190,8 @@ class PlayScreen(PlayPanels):
         self._going.clear()
         self._nudge.set()
         self._write("STOP. Press p to go on.", "bad")
+        with suppress(TangyError):  # it stands still, whether the log is full or not
+            self._supervision.note("the robot was stopped", self._teacher)
         if self._asking is not None:
             self._asking.hold(True)
         self._show_status()
@@ -218,9 +219,8 @@ class PlayScreen(PlayPanels):
 
     async def _may_begin(self) -> bool:
         """Ask before a game begins after one that ended with what nobody cleared."""
-        if not self._supervision.over or self._leave_after is not None:
-            return True
-        if await self._faults.all_well():
+        begun = not self._supervision.over or self._leave_after is not None
+        if begun or await self._faults.all_well():
             return True
         self._games = self._tally.games
         if not self._supervision.games:
@@ -239,6 +239,9 @@ class PlayScreen(PlayPanels):
                 self._skipping = False
                 await self._faults.free()
                 continue
+            if self._left and not self._skipping and not self._single:
+                await self._wait(self._left)  # it walks on to where it was going
+                continue
             if self._single:
                 self._single = False
                 self._going.clear()
@@ -250,11 +253,11 @@ class PlayScreen(PlayPanels):
             if supervision.question is not None:
                 await self._ask(supervision.question)
             owed = max(owed, supervision.seconds - before)
-            tried = any(isinstance(e, Moved) and e.move.kind in TAKES_TIME for e in events)
-            if self._skipping or supervision.halted is not None:
+            if supervision.halted is not None:
+                self._left = owed if self.query_one(RoomView).going is not None else 0.0
+                owed = 0.0
+            if self._skipping or self._faults.urgent(events):
                 await asyncio.sleep(0)  # let the screen and the keys live
-            elif supervision.waiting and not tried:
-                await asyncio.sleep(0)  # what is to be done about a fault is done at once
             else:
                 await self._wait(owed)
                 owed = 0.0
@@ -285,15 +288,20 @@ class PlayScreen(PlayPanels):
     async def _wait(self, seconds: float) -> None:
         """Let a step's time (in the game, in s) pass; a key that changes the pace ends it early."""
         self._nudge.clear()
+        clock = asyncio.get_running_loop().time
+        speed, until = self._speed, clock() + seconds / self._speed
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._nudge.wait(), seconds / self._speed)
+            await asyncio.wait_for(self._nudge.wait(), seconds / speed)
+        held = self._stopped or self._supervision.halted is not None
+        caught = held and self.query_one(RoomView).going is not None
+        self._left = max(0.0, until - clock()) * speed if caught else 0.0
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
         if not self.query(LogView):
             return  # the screen is going, and its panels go before its game does
-        if any(isinstance(event, Diagnosed) for event in events):
+        if self._faults.urgent(events):
             self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
         for event in events:

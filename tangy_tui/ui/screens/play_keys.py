@@ -26,7 +26,7 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
         )  # fmt: skip
     return (
         ("p", "pause" if going else "go on"), ("n", "step"), ("<>", "speed"), ("e", "end"),
-        ("g", "game"), ("w", "why"), ("1-6", "show"), ("f", "fault"), ("esc", "back"),
+        ("w", "why"), ("1-6", "show"), ("f", "fault"), ("g", "game"), ("esc", "back"),
         ("?", "help"),
     )  # fmt: skip
 

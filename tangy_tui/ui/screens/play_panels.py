@@ -141,7 +141,10 @@ class PlayPanels(TangyScreen[Tally]):
             self.run_worker(self._inject(), name="inject", group="inject")
 
     async def _inject(self) -> None:
-        said, shown = await self._faults.inject()
+        try:
+            said, shown = await self._faults.inject()
+        except TangyError as error:  # it cannot be logged, so it is not done
+            said, shown = str(error), False
         if shown:  # what is there now says it, and nothing is to lie over that
             self._write(said, "dim")
         elif said:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len
 from textual import events
@@ -18,6 +18,7 @@ from tangy_tui.ui.fault_words import (
     last_words,
     mark_of,
     searched,
+    short_state,
     state_words,
 )
 from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
@@ -27,9 +28,12 @@ LONGEST = 40
 """Characters of a filter."""
 
 WIDEST_NAME = 32
-STATE = 16
-SHORTEST_LAST = 12
-"""Columns below which there is no telling what happened last."""
+TIME, STEP, STATE, SHORT_STATE = 7, 5, 16, 7
+SHORTEST_NAME = 10
+SHORTEST_LAST = 14
+"""Columns that what happened last is given before less important columns."""
+
+HINT = "enter tells   / finds"
 
 
 class FaultList(ChoiceList):
@@ -117,7 +121,8 @@ class FaultList(ChoiceList):
         )
         of = f"{len(kept)} of {len(self._faults)}" if words else ""
         typed = f"/{clean(self.filter)}{'_' if self._typing else ''}" if self.filtered else ""
-        self.border_subtitle = f"{typed}  {of}".strip().replace("[", "\\[")
+        hint = HINT if self._faults else ""
+        self.border_subtitle = (f"{typed}  {of}".strip() or hint).replace("[", "\\[")
         none = "No fault has these words." if self._faults else "No faults in this game."
         self.show(lambda width, height: fault_list_lines(kept, width, none))
 
@@ -125,23 +130,55 @@ class FaultList(ChoiceList):
         self.post_message(self.Chosen(self, str(self._keys[index])))
 
 
+class Columns(NamedTuple):
+    """How wide the columns of a list are; a column without width is left out."""
+
+    time: int
+    step: int
+    name: int
+    state: int
+    last: int
+
+
+def columns_for(width: int, name: int) -> Columns:
+    """Give out so many columns: what a fault is and what was done last, then the others.
+
+    Args:
+        name: the columns of the longest name.
+    """
+    name = min(WIDEST_NAME, name)
+    for time, step, state in (
+        (TIME, STEP, STATE),
+        (TIME, 0, STATE),
+        (TIME, 0, SHORT_STATE),
+        (0, 0, SHORT_STATE),
+    ):
+        last = width - 2 - time - step - 2 * bool(time) - name - 2 - state
+        if last >= SHORTEST_LAST:
+            return Columns(time, step, name, state, last)
+    name = max(SHORTEST_NAME, min(name, width - TIME - SHORT_STATE - 6))
+    return Columns(TIME, 0, name, SHORT_STATE, 0)
+
+
 def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[Line]:
     """Write the list for so many columns."""
     if not faults:
         return [Line(((none, "dim"),))]
-    name = min(WIDEST_NAME, max(cell_len(clean(fault.name)) for fault in faults))
-    name = min(name, max(10, width - 16 - STATE - 2))
-    return [Line(_row(fault, name, width), fault.id) for fault in faults]
+    columns = columns_for(width, max(cell_len(clean(fault.name)) for fault in faults))
+    return [Line(_row(fault, columns), fault.id) for fault in faults]
 
 
-def _row(fault: Fault, name: int, width: int) -> Row:
-    last = width - name - 16 - STATE - 2
+def _row(fault: Fault, columns: Columns) -> Row:
     there = fault.status == OPEN
     ink = "bad" if fault.critical and there else "warn" if there else "text"
+    time = f"{clock_words(fault.seconds):>6} " if columns.time else ""
+    step = f"{fault.step:>4} " if columns.step else ""
+    state = state_words(fault) if columns.state == STATE else short_state(fault)
+    last = shorten(f"  {clean(last_words(fault))}", columns.last) if columns.last else ""
     return (
         (f"{mark_of(fault)} ", ink),
-        (f"{clock_words(fault.seconds):>6} {fault.step:>4}  ", "dim"),
-        (fit(clean(fault.name), name), "strong" if there else "text"),
-        (f"  {fit(state_words(fault), STATE)}", ink),
-        (shorten(f"  {clean(last_words(fault))}", last) if last >= SHORTEST_LAST else "", "dim"),
+        (f"{time}{step} " if time else "", "dim"),
+        (fit(clean(fault.name), columns.name), "strong" if there else "text"),
+        (f"  {fit(state, columns.state)}", ink),
+        (last, "dim"),
     )
