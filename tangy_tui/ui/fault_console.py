@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -273,6 +274,11 @@ class FaultConsole:
             no="do not begin",
         )
         return await self._screen.app.push_screen_wait(dialog)
+
+    def note(self, what: str) -> None:
+        """Log what somebody did beside; a log that is full does not keep them from doing it."""
+        with suppress(TangyError):
+            self.supervision.note(what, self._who)
 
     def acknowledge(self, fault: Fault | None = None) -> None:
         """Say that a fault (default: the one that halts the robot) was seen."""

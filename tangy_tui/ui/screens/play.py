@@ -99,6 +99,8 @@ class PlayScreen(PlayPanels):
             self._halted = False
             self._faults.busy = self._learning
             self._going.set()
+            if stopped:
+                self._faults.note("the robot was let go on")
             if stopped and (asking := self._asking) is not None:
                 asking.hold(False)
         self._nudge.set()
@@ -190,8 +192,7 @@ class PlayScreen(PlayPanels):
         self._going.clear()
         self._nudge.set()
         self._write("STOP. Press p to go on.", "bad")
-        with suppress(TangyError):  # it stands still, whether the log is full or not
-            self._supervision.note("the robot was stopped", self._teacher)
+        self._faults.note("the robot was stopped")
         if self._asking is not None:
             self._asking.hold(True)
         self._show_status()

@@ -46,7 +46,8 @@ HELP = (
     "line, so that keys are keys again, : leads back to it, and a second esc gives the game "
     "up, if you mean it. Where something happened that was not to be expected, r (or typing: all "
     "right) says that it is all right. When something goes wrong, a line under the first one says "
-    "what, and what Tangy does about it; a says that you have seen it, 6 shows all faults of this "
+    "what, what Tangy does about it and what it asks for; a says that you have seen it and takes "
+    "the line away, 6 shows all faults of this "
     "game, and Enter there what to do. When it is critical Tangy stands still until you clear it. "
     "f brings about a fault in the simulated room."
 )
