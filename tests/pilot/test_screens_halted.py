@@ -358,3 +358,17 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
         await pilot.press("p")
         await pilot.pause()
         assert room._timer is not None
+
+
+async def test_a_step_that_could_not_be_carried_out_is_marked(
+    run: Run, house: House, policy: Policy
+) -> None:
+    async with run(app=playing(house, policy, "base-stuck")) as pilot:
+        screen, game, _ = game_of(pilot)
+        await pilot.press("e")
+        await halted(pilot)
+        steps = list(screen.query_one(Transcript)._steps)
+        done = [ground.acted.outcome.completed for ground in screen._picture.grounds]
+        assert not all(done)
+        assert ["not done: " not in step for step in steps] == done
+        assert len(steps) == game.steps
