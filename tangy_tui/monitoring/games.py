@@ -13,7 +13,7 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Event, Store
 from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
 from tangy_tui.learning.policies import POLICY
-from tangy_tui.monitoring.fault import FAULT
+from tangy_tui.monitoring.fault import FAULT, OPEN, Fault, read_faults
 
 SHORTEST = 4
 """Characters of an id that are enough to name a game."""
@@ -204,3 +204,19 @@ def _of_day(games: Sequence[Game], day: date) -> list[Game]:
         close = min(days, key=lambda other: abs(other - day))
         raise TangyError(f"No game was played on {day}; the nearest day with one is {close}.")
     return found
+
+
+def uncleared(store: Store) -> Fault | None:
+    """Return what the last game in a log ended with for which Tangy stood still, if it did."""
+    game, last = store.last(BEGUN), store.last(FAULT)
+    if game is None or last is None or last.body["game"] != game.body["game"]:
+        return None
+    return next(
+        (
+            fault
+            for fault in read_faults(store, game.body["game"])
+            if fault.status == OPEN
+            and (fault.critical or any(move.kind == "halted" for move in fault.moves))
+        ),
+        None,
+    )

@@ -216,6 +216,11 @@ class Supervision:
         return self._detector.worst(self.world.health())
 
     @property
+    def devices(self) -> Evidence:
+        """What the devices give as evidence now."""
+        return self._detector.watch(self.world.health())
+
+    @property
     def waiting(self) -> list[Fault]:
         """The faults that are still to be dealt with, the most urgent first."""
         return self._recovery.waiting

@@ -16,21 +16,18 @@ from typing import Any
 from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.store import Store
 from tangy_sim.faulty import FaultyWorld
 from tangy_tui.house import House
-from tangy_tui.interaction.facilitation import BEGUN
 from tangy_tui.monitoring.fault import (
     ENDINGS,
-    FAULT,
     OPEN,
     OVER,
     Diagnosed,
     Fault,
     FaultEvent,
     Moved,
-    read_faults,
 )
+from tangy_tui.monitoring.games import uncleared
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.monitoring.telling import move_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -337,22 +334,6 @@ class FaultConsole:
         if comes_later(kind):
             return f"{kind} comes as soon as it can show.", False
         return f"Brought about: {kind}.", True
-
-
-def uncleared(store: Store) -> Fault | None:
-    """Return what the last game in a log ended with for which Tangy stood still, if it did."""
-    game, last = store.last(BEGUN), store.last(FAULT)
-    if game is None or last is None or last.body["game"] != game.body["game"]:
-        return None
-    return next(
-        (
-            fault
-            for fault in read_faults(store, game.body["game"])
-            if fault.status == OPEN
-            and (fault.critical or any(move.kind == "halted" for move in fault.moves))
-        ),
-        None,
-    )
 
 
 def _told_so_far(fault: Fault) -> tuple[str, int]:

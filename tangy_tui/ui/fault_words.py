@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
 from tangy_profiles.robot import Device, Robot
-from tangy_tui.learning.effects import Effects
-from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, Move
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, mismatch_words, move_words
@@ -204,29 +201,20 @@ def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list
     return [piece for age in ages for piece in _age(device, age)]
 
 
-class StillThere:
-    """Says of faults whether they are there, by what the devices of a world say now."""
-
-    def __init__(self, supervision: Supervision) -> None:
-        self._supervision = supervision
-        nothing = Effects(MappingProxyType({}))  # devices are looked at, and no behaviours
-        self._detector = Detector(supervision.world.activity, supervision.robot, nothing)
-
-    def words(self, fault: Fault) -> str:
-        """Say whether a fault is still there; empty where the devices cannot tell."""
-        supervision = self._supervision
-        rule = supervision.book.rule(fault.code)
-        if rule.fallback or not rule.device:
-            return ""
-        evidence = self._detector.watch(supervision.world.health())
-        conditions = rule.matched(evidence)
-        if conditions is None:
-            keys = "press c to clear." if fault.acknowledged else "press a, and c to clear."
-            return f"It is gone now: {keys}"
-        now = {condition.key: evidence[condition.key] for condition in conditions}
-        there = replace(fault, evidence=now, mismatches=())
-        pieces = evidence_of(there, supervision.book, supervision.robot)
-        return f"Still there: {'; '.join(piece.what for piece in pieces)}."
+def still_there_words(fault: Fault, supervision: Supervision) -> str:
+    """Say whether a fault is still there; empty where the devices cannot tell."""
+    rule = supervision.book.rule(fault.code)
+    if rule.fallback or not rule.device:
+        return ""
+    evidence = supervision.devices
+    conditions = rule.matched(evidence)
+    if conditions is None:
+        keys = "press c to clear." if fault.acknowledged else "press a, and c to clear."
+        return f"It is gone now: {keys}"
+    now = {condition.key: evidence[condition.key] for condition in conditions}
+    there = replace(fault, evidence=now, mismatches=())
+    pieces = evidence_of(there, supervision.book, supervision.robot)
+    return f"Still there: {'; '.join(piece.what for piece in pieces)}."
 
 
 def _age(device: Device, age: Fact) -> list[Piece]:

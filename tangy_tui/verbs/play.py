@@ -67,6 +67,7 @@ def play(
     """
     from tangy_tui.house import teacher_name
     from tangy_tui.learning.policies import load_policy, need_policy
+    from tangy_tui.monitoring.games import uncleared
 
     who = plain(teacher or teacher_name())[:40]
     if expert not in ("", "scripted"):
@@ -90,6 +91,12 @@ def play(
                 )
             )
         learnt, notices = load_policy(house.store, house.activity, policy)
+        left = None if as_json else uncleared(house.store)
+        if left is not None:
+            notices = [
+                *notices,
+                f"The last game ended with a fault that nobody cleared: {left.name}.",
+            ]
         say_notices(notices)
         by_lines = not (headless or as_json)
         scripted = who == "scripted"

@@ -11,10 +11,10 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.house import House
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.monitoring.fault import OVER, read_faults
+from tangy_tui.monitoring.games import uncleared
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
-from tangy_tui.ui.fault_console import uncleared
 from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.play import PlayScreen

@@ -21,12 +21,12 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
 from tangy_tui.ui.fault_words import (
-    StillThere,
     ages_of,
     clock_words,
     evidence_of,
     kind_words,
     mark_of,
+    still_there_words,
 )
 from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 from tangy_tui.ui.messages import Stop
@@ -97,7 +97,6 @@ class CriticalDialog(Dialog[None]):
         self._clock = clock
         self._keys = FreshKeys()
         self._status = Status()
-        self._there = StillThere(desk.supervision)
         self._now = ""
 
     @property
@@ -148,7 +147,7 @@ class CriticalDialog(Dialog[None]):
                 now.update(words)
 
     def _is_there(self) -> str:
-        self._now = clean(self._there.words(self._fault))
+        self._now = clean(still_there_words(self._fault, self._desk.supervision))
         return self._now
 
     def say(self, sentence: str) -> None:
