@@ -127,9 +127,12 @@ def play_by_lines(
             without lines the game ends there.
     """
     for _ in range(games):
+        if supervision.halted is not None:
+            write(f"No other game is begun: nobody cleared {supervision.halted.name!r}.")
+            break
         events = supervision.begin()
         while True:
-            answered = next((e.teacher for e in events if isinstance(e, Taught)), "")
+            answered = next((e.teacher for e in events if isinstance(e, Taught | DoneOnce)), "")
             for event in events:
                 for line in game_lines(event, supervision, name, answered):
                     write(line)

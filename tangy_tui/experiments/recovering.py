@@ -122,7 +122,7 @@ def _induced(one: Induced, game: Supervision, matches: Matches) -> dict[str, Any
 def _diagnosed(match: Match, game: Supervision) -> dict[str, Any]:
     fault, induced = match.fault, match.induced
     right = recovery_of(induced.kind, game.book) if induced is not None else None
-    recovered = fault.succeeded
+    recovered = fault.succeeded and len(fault.ladder) == 1
     return {
         "code": fault.code,
         "step": fault.step,

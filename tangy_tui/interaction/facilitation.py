@@ -32,6 +32,8 @@ STEP = "game step"
 RESPONSE = "response"
 ENDED = "game ended"
 
+NOT_DONE = "(it could not be carried out)"
+
 MOST_STEPS = 1_000
 """A game longer than this goes round in circles: all 75 numbers need about 120 steps."""
 
@@ -321,7 +323,8 @@ class Facilitation:
             action,
             outcome,
             after,
-            activity.fill(action.speech, name, outcome.numbers) or NOTHING_SAID,
+            activity.fill(action.speech, name, outcome.numbers)
+            or (NOTHING_SAID if outcome.completed else NOT_DONE),
             activity.fill(action.image, name, outcome.numbers),
             outcome.completed and expected == behaviour.name,
         )

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tangy_profiles.faults import Evidence, FaultBook, FaultRule
+from tangy_profiles.faults import Condition, Evidence, FaultBook, FaultRule
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.detection import symptoms
 
@@ -23,6 +23,8 @@ class Diagnosis:
     rule: FaultRule
     evidence: Evidence
     mismatches: tuple[Mismatch, ...]
+    beside: frozenset[str] = frozenset()
+    """The keys of evidence that only says that it is not another fault."""
 
 
 def diagnose(
@@ -32,7 +34,7 @@ def diagnose(
     explained: set[str] = set()
     found: list[Diagnosis] = []
 
-    def take(rule: FaultRule, keys: set[str]) -> None:
+    def take(rule: FaultRule, keys: set[str], conditions: Sequence[Condition] = ()) -> None:
         mine = rule.symptoms.union(keys) - explained
         explained.update(mine)
         ages = {f"{key.removesuffix('state')}age" for key in keys if key.endswith(".state")}
@@ -41,6 +43,7 @@ def diagnose(
                 rule,
                 {key: evidence[key] for key in evidence if key in keys or key in ages},
                 tuple(m for m in mismatches if f"mismatch.{m.variable}" in mine),
+                frozenset(c.key for c in conditions if narrows(c, conditions, book)),
             )
         )
 
@@ -50,7 +53,7 @@ def diagnose(
             continue
         keys = {condition.key for condition in conditions}
         if (keys & rule.symptoms) - explained:
-            take(rule, keys)
+            take(rule, keys, conditions)
     if evidence.get("behaviour.completed") is False and any(d.rule.critical for d in found):
         # What critically went wrong broke the behaviour off: nothing was to be expected of it. What
         # others did meanwhile is another matter.
@@ -59,3 +62,22 @@ def diagnose(
     if left := symptoms(evidence) - explained:
         take(book.fallback, left)
     return sorted(found, key=lambda diagnosis: diagnosis.rule.urgency)
+
+
+def narrows(condition: Condition, among: Sequence[Condition], book: FaultBook) -> bool:
+    """Say whether a condition only says that it is not another fault.
+
+    It is then the contrary of another rule's, and its own rule has one that is not.
+    """
+    theirs = [c for rule in book.rules for conditions in rule.when for c in conditions]
+
+    def contrary(one: Condition) -> bool:
+        return any(_contrary(one, other) for other in theirs)
+
+    return contrary(condition) and not all(contrary(one) for one in among)
+
+
+def _contrary(one: Condition, other: Condition) -> bool:
+    if (one.key, one.value) != (other.key, other.value):
+        return False
+    return {one.test, other.test} in ({"below", "at_least"}, {"is", "not"})

@@ -30,6 +30,7 @@ from tangy_tui.learning.asking import Answers
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector
+from tangy_tui.monitoring.diagnosis import narrows
 from tangy_tui.monitoring.fault import Diagnosed, Fault
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.telling import evidence_words
@@ -302,8 +303,10 @@ class Tabletop:
         else:
             game.acknowledge(who)
         now = self._detector.watch(game.world.health())
-        conditions = [c for those in self.book.rule(fault.code).when for c in those if c.holds(now)]
-        evidence = {key: now[key] for key in fault.evidence if key in now}
+        rule = self.book.rule(fault.code)
+        beside = {c.key for those in rule.when for c in those if narrows(c, those, self.book)}
+        conditions = [c for those in rule.when for c in those if c.holds(now)]
+        evidence = {key: now[key] for key in fault.evidence if key in now and key not in beside}
         seen = evidence_words(evidence, (), self.robot, conditions)
         game.clear(who)
         return Release(seen, game.halted is not fault)

@@ -110,7 +110,8 @@ class Recovery:
         """Keep a new diagnosis as a fault; a critical one stops the robot before anything else."""
         rule = diagnosis.rule
         conditions = rule.matched(diagnosis.evidence) or ()
-        why = evidence_words(diagnosis.evidence, diagnosis.mismatches, self._robot, conditions)
+        seen = {k: v for k, v in diagnosis.evidence.items() if k not in diagnosis.beside}
+        why = evidence_words(seen, diagnosis.mismatches, self._robot, conditions)
         fault = Fault(
             id=uuid4().hex[:12],
             game=self._game.game,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
 from tangy_profiles.robot import Device, Robot
+from tangy_tui.monitoring.diagnosis import narrows
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, Move
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, mismatch_words, move_words
@@ -231,27 +232,8 @@ def _expected(key: str, value: Fact, rule: FaultRule, book: FaultBook) -> str:
     for conditions in rule.when:
         for condition in conditions:
             if condition.key == key and condition.holds({key: value}):
-                return "" if _narrows(condition, conditions, book) else _otherwise(condition)
+                return "" if narrows(condition, conditions, book) else _otherwise(condition)
     return "nothing of the kind"
-
-
-def _narrows(condition: Condition, among: Sequence[Condition], book: FaultBook) -> bool:
-    """Say whether a condition only says that it is not another fault.
-
-    It is then the contrary of another rule's, and its own rule has one that is not.
-    """
-    theirs = [c for rule in book.rules for conditions in rule.when for c in conditions]
-
-    def contrary(one: Condition) -> bool:
-        return any(_contrary(one, other) for other in theirs)
-
-    return contrary(condition) and not all(contrary(one) for one in among)
-
-
-def _contrary(one: Condition, other: Condition) -> bool:
-    if (one.key, one.value) != (other.key, other.value):
-        return False
-    return {one.test, other.test} in ({"below", "at_least"}, {"is", "not"})
 
 
 def _otherwise(condition: Condition) -> str:

@@ -13,6 +13,7 @@ from tangy_profiles.robot import load_robot
 from tangy_sim import faulty
 from tangy_sim.body import WELL
 from tangy_sim.injection import KINDS
+from tangy_tui.game_lines import play_by_lines
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import ENDED, DoneOnce
 from tangy_tui.learning.policy import Policy
@@ -222,3 +223,27 @@ def test_what_was_called_all_right_can_be_taken_back(house: House, learnt: Polic
     take_back(house.store, house.activity.name, 1)
     assert read_accepted(house.store, house.activity.name) == []
     assert unexpected() == ["unexplained"]
+
+
+def test_what_only_excludes_another_fault_is_not_told_as_its_evidence(supervise: Supervise) -> None:
+    game = supervise("camera-frozen@2", seed=3)
+    game.begin()
+    until(game, lambda now: now.halted)
+    assert game.faults[0].why == "head camera: seconds with the very same picture: 2 (limit 1)"
+
+
+def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervise) -> None:
+    game = supervise("link-lost@3", seed=3)
+    typed, said = iter(["quit"]), list[str]()
+    play_by_lines(game, 2, str, said.append, lambda: next(typed, None), "Ada")
+    assert "No other game is begun: nobody cleared 'Link to the robot lost'." in said
+    assert "Game 2 begins." not in said
+
+
+def test_an_answer_that_holds_once_is_put_down_to_who_gave_it(supervise: Supervise) -> None:
+    game = supervise("no-effect@1", seed=3)
+    typed, said = iter(["call number", "y"]), list[str]()
+    play_by_lines(game, 1, str, said.append, lambda: next(typed, None), "Ada")
+    (done,) = [line for line in said if line.startswith("2. ")]
+    assert done.endswith("as Ada said")
+    assert any(line.startswith("   Done this once.") for line in said)
