@@ -209,7 +209,7 @@ class FaultyWorld(SimulatedWorld):
             outcome = self._in_vain(action, completed=False, seconds=NOTICED)
         elif mute and action.behaviour.effect not in ("go to user", "go to front"):
             outcome = self._in_vain(action, completed=False)
-        elif vain is not None and (vain.shown or self.can_show(vain.kind, action)):
+        elif vain is not None and self.can_show(vain.kind, action):
             outcome = self._in_vain(action, completed=True)
             self.lift("no-effect")
         else:

@@ -149,10 +149,6 @@ class Recovery:
         rung = self._rung[fault.id]
         return ladder[rung] if rung < len(ladder) else "expert"
 
-    def _next(self) -> Fault | None:
-        waiting = self.waiting
-        return waiting[0] if waiting else None
-
     def go_further(self, fault: Fault) -> list[Event]:
         """Make one move against a fault."""
         rule = self._rules[fault.id]

@@ -1,9 +1,9 @@
 """Supervision (III-C): a game that is run with an eye on what goes wrong, and what then.
 
 `Supervision` stands in for the `Facilitation` that it holds: screens, lines and scripts begin,
-step and answer through it. It looks before and after every behaviour, diagnoses, and recovers
-step by step; while the robot is halted nothing is executed until staff clear the fault. All of it
-is in the log before it is told.
+step and answer through it. `Watch` says before and after every behaviour what is wrong, `Recovery`
+what is done about it; here are the doors by which people act. While the robot is halted nothing is
+executed until staff clear the fault. All of it is in the log before it is told.
 """
 
 from __future__ import annotations
@@ -12,16 +12,13 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from tangy_profiles.behaviour import Behaviour
-from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import (
-    Acted,
+    MOST_STEPS,
     DoneOnce,
     Facilitation,
-    GameEnded,
-    GameEvent,
     Taught,
     Unsure,
 )
@@ -30,10 +27,8 @@ from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verifying import Verifier
 from tangy_tui.monitoring import accepted
-from tangy_tui.monitoring.detection import Detector, together
-from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
+from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import (
-    BORNE,
     OPEN,
     STAFF,
     Fault,
@@ -41,6 +36,7 @@ from tangy_tui.monitoring.fault import (
 )
 from tangy_tui.monitoring.recovery import Event as Event
 from tangy_tui.monitoring.recovery import Recovery
+from tangy_tui.monitoring.watch import Watch
 from tangy_tui.world import World
 
 MOST_CLEARINGS = 5
@@ -79,7 +75,6 @@ class Supervision:
         """
         game.looked_over = True
         self.game = game
-        self.book = book
         self.robot = robot
         self._idle = 0
         self._to_come = tuple(to_come)
@@ -87,9 +82,13 @@ class Supervision:
         self._effects_of = effects_of
         self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
         self._recovery = Recovery(game, self._detector, robot, store, name)
-        self._seen: Evidence | None = None
-        self._acted: dict[str, Acted] = {}  # after which behaviour a fault was noticed
+        self._watch = Watch(game, book, self._detector, self._recovery)
         self._clearings: Counter[str] = Counter()
+
+    @property
+    def book(self) -> FaultBook:
+        """The fault rules."""
+        return self._watch.book
 
     @property
     def faults(self) -> list[Fault]:
@@ -153,11 +152,9 @@ class Supervision:
         """Begin the next game, in which nothing is known to be wrong."""
         told: list[Event] = list(self.game.begin())
         self._recovery.begin()
-        self._seen = None
-        self._acted.clear()
+        self._watch.begin()
         self._clearings.clear()
         self._idle = 0
-        self._detector.begin()
         if self._to_come:
             self.note(f"faults are to be brought about: {', '.join(self._to_come)}", "")
         return told
@@ -177,28 +174,19 @@ class Supervision:
             told += self._recovery.go_further(fault)
             return told + self._end_if_hopeless()
         self._idle = 0
+        if self.steps >= MOST_STEPS:
+            return told + self._stop(f"The game did not end within {MOST_STEPS} steps.")
         if not self.game.asks:
-            told += self._foresee()
-        return told + self._after(self.game.step())
+            told += self._watch.foresee()
+        told += self._watch.after(self.game.step())
+        return told + self._end_if_hopeless()
 
     def look(self) -> list[Event]:
         """Look at the devices, without doing anything: tell what is new there.
 
         It may be called as often as one likes, also while the robot is halted or asks.
         """
-        if self.over:
-            return []
-        evidence = self._detector.watch(self.world.health())
-        if evidence is self._seen:
-            return []
-        self._seen = evidence
-        told: list[Event] = []
-        for fault in self._recovery.there:
-            reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
-            if reported and self._recovery.rule(fault).matched(evidence) is None:
-                told += self._recovery.move(fault, Move("ended", self.seconds))
-        told += self._take(diagnose(self.book, evidence), None)
-        return told + self._end_if_hopeless()
+        return self._watch.look() + self._end_if_hopeless()
 
     @property
     def status(self) -> tuple[str, str]:
@@ -218,7 +206,7 @@ class Supervision:
     @property
     def devices(self) -> Evidence:
         """What the devices give as evidence now."""
-        return self._detector.watch(self.world.health())
+        return self._watch.devices
 
     @property
     def waiting(self) -> list[Fault]:
@@ -279,10 +267,10 @@ class Supervision:
         taught = any(isinstance(event, Taught) for event in events)
         if taught or any(isinstance(event, DoneOnce) for event in events):
             told += self._answered(question, Move("taught", self.seconds, by=teacher))
-        found = self._after(events)  # by what was expected before the answer was learnt
+        found = self._watch.after(events)  # by what was expected before the answer was learnt
         if taught:
             self._detector.effects = self._effects_of(self.policy)
-        return found + told
+        return found + told + self._end_if_hopeless()
 
     def accept(self, by: str) -> list[Event]:
         """Let a teacher say that what happened is all right; it is expected from now on."""
@@ -291,7 +279,8 @@ class Supervision:
         if question is None or fault is None or not self.acceptable:
             return told
         with self._store.transaction():
-            accepted.accept(self._store, self.world.activity, fault, self._acted[fault.id], by)
+            acted = self._watch.acted[fault.id]
+            accepted.accept(self._store, self.world.activity, fault, acted, by)
             told += self._answered(question, Move("accepted", self.seconds, by=by))
         self.game.withdraw()
         self._detector.effects = self._effects_of(self.policy)
@@ -302,7 +291,7 @@ class Supervision:
         """Whether what Tangy asks about can be said to be all right: no rule has a cause for it."""
         fault = self._asked_about(self.question)
         unexplained = fault is not None and fault.code == self.book.fallback.code
-        return unexplained and fault is not None and fault.id in self._acted
+        return unexplained and fault is not None and fault.id in self._watch.acted
 
     def give_up(self) -> list[Event]:
         """End a game in which Tangy asks or is halted, and nobody helps."""
@@ -337,60 +326,7 @@ class Supervision:
         times = f"It was cleared {MOST_CLEARINGS} times and came back."
         return told + self._stop(f"Tangy was halted. {fault.unnamed} {times}")
 
-    # ------------------------------------------------------------------ seeing and explaining
-
-    def _after(self, events: Sequence[GameEvent]) -> list[Event]:
-        """Hold what was done against what was to be expected."""
-        told: list[Event] = []
-        for event in events:
-            if isinstance(event, GameEnded):
-                told += self._recovery.leave_open()
-            told.append(event)
-            if isinstance(event, Acted):
-                self._recovery.seconds += event.outcome.seconds
-                execution, mismatches = self._detector.compare(event)
-                devices = self._detector.watch(self.world.health())
-                known, self._seen = self._seen, devices
-                if execution or devices is not known:
-                    evidence = together(devices, execution)
-                    told += self._take(diagnose(self.book, evidence, mismatches), event)
-            elif isinstance(event, Unsure) and not event.fault:
-                found = diagnose(self.book, {"situation.shown": False})
-                told += self._take(found, None)
-                for fault in self.waiting[:1]:
-                    told += self._recovery.move(fault, Move("teacher asked", self.seconds))
-        if not self.over and self.world.over:
-            told += self._recovery.leave_open() + list(self.game.finish())
-        return told + self._end_if_hopeless()
-
-    def _foresee(self) -> list[Event]:
-        """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
-        decision = self.policy.decide(self.world.observe().situation)
-        if decision.sure:
-            return []
-        return self._take(diagnose(self.book, {"situation.shown": False}), None)
-
-    def _take(self, found: Sequence[Diagnosis], acted: Acted | None) -> list[Event]:
-        """Keep the diagnoses that are new; halt at once if one is critical."""
-        told: list[Event] = []
-        for diagnosis in found:
-            by_device = bool(diagnosis.rule.device)
-            person = acted.state.attended if acted is not None and not by_device else None
-            if self._recovery.knows(diagnosis, person):
-                continue
-            try:
-                told += self._recovery.keep(diagnosis, acted, person)
-                if acted is not None and diagnosis.mismatches:
-                    self._acted[self.faults[-1].id] = acted
-            except TangyError:
-                self._seen = None  # so that the next look finds it again
-                raise
-        if told and not self._recovery.ended:
-            told += self._recovery.halt_if_critical()
-            for fault in self.waiting[1:]:
-                if not any(move.kind == "kept" for move in fault.moves):
-                    told += self._recovery.move(fault, Move("kept", self.seconds))
-        return told
+    # -------------------------------------------------------------------------- the teacher
 
     def _asked_about(self, question: Unsure | None) -> Fault | None:
         """Return the fault about which Tangy asks a teacher."""

@@ -262,7 +262,9 @@ def check_log(store: Store) -> None:
         game = event.body["game"]
         if event.kind == BEGUN:
             going.add(game)
-        elif event.kind == ENDED:
+        else:
+            assert game in going, "something was logged of a game after its end"
+        if event.kind == ENDED:
             going.discard(game)
             halted.discard(game)
         elif event.kind == STEP:

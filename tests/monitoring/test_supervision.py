@@ -134,7 +134,7 @@ def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(
     rules = load_faults(load_robot())
     left = tuple(rule for rule in rules.rules if rule.device != "camera")
     game = supervise(seed=3, asks=False)
-    game.book = replace(rules, rules=left)
+    game._watch.book = replace(rules, rules=left)
     game.begin()
     odd = tuple(r._replace(state="ERROR") if r.device == "camera" else r for r in WELL)
     monkeypatch.setattr(world_of(game), "health", lambda: odd)

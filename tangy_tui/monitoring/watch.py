@@ -1,0 +1,116 @@
+"""Watching a game (III-C): what is seen is held against what was to be expected, and explained.
+
+Detection and diagnosis go together here: after each behaviour, and whenever the devices report
+something else. What is new becomes a fault, with which `Recovery` then deals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.faults import Evidence, FaultBook
+from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent, Unsure
+from tangy_tui.monitoring.detection import Detector, together
+from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
+from tangy_tui.monitoring.fault import BORNE, Move
+from tangy_tui.monitoring.recovery import Event, Recovery
+
+NOT_SHOWN: Evidence = {"situation.shown": False}
+"""The evidence that nobody has shown what to do in a situation."""
+
+
+class Watch:
+    """Finds the faults of a game. `begin` each game."""
+
+    def __init__(
+        self, game: Facilitation, book: FaultBook, detector: Detector, recovery: Recovery
+    ) -> None:
+        self.book = book
+        self.acted: dict[str, Acted] = {}
+        """After which behaviour a fault was noticed, by its id."""
+        self._game = game
+        self._detector = detector
+        self._recovery = recovery
+        self._seen: Evidence | None = None
+
+    def begin(self) -> None:
+        """Forget what was seen in the last game."""
+        self.acted.clear()
+        self._seen = None
+        self._detector.begin()
+
+    @property
+    def devices(self) -> Evidence:
+        """What the devices give as evidence now."""
+        return self._detector.watch(self._game.world.health())
+
+    def look(self) -> list[Event]:
+        """Look at the devices, without doing anything: tell what is new there."""
+        if self._game.over:
+            return []
+        evidence = self.devices
+        if evidence is self._seen:
+            return []
+        self._seen = evidence
+        told: list[Event] = []
+        for fault in self._recovery.there:
+            reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
+            if reported and self._recovery.rule(fault).matched(evidence) is None:
+                told += self._recovery.move(fault, Move("ended", self._recovery.seconds))
+        return told + self._take(diagnose(self.book, evidence), None)
+
+    def after(self, events: Sequence[GameEvent]) -> list[Event]:
+        """Hold what was done against what was to be expected; end a game that came to its end."""
+        told: list[Event] = []
+        for event in events:
+            told.append(event)
+            if isinstance(event, Acted):
+                told += self._compare(event)
+            elif isinstance(event, Unsure) and not event.fault:
+                told += self._take(diagnose(self.book, NOT_SHOWN), None)
+                for fault in self._recovery.waiting[:1]:
+                    told += self._recovery.move(
+                        fault, Move("teacher asked", self._recovery.seconds)
+                    )
+        if not self._game.over and self._game.world.over:
+            told += self._recovery.leave_open() + list(self._game.finish())
+        return told
+
+    def foresee(self) -> list[Event]:
+        """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
+        decision = self._game.policy.decide(self._game.world.observe().situation)
+        if decision.sure:
+            return []
+        return self._take(diagnose(self.book, NOT_SHOWN), None) + self._recovery.leave_open()
+
+    def _compare(self, acted: Acted) -> list[Event]:
+        self._recovery.seconds += acted.outcome.seconds
+        execution, mismatches = self._detector.compare(acted)
+        known, self._seen = self._seen, self.devices
+        if not execution and self._seen is known:
+            return []
+        evidence = together(self._seen, execution)
+        return self._take(diagnose(self.book, evidence, mismatches), acted)
+
+    def _take(self, found: Sequence[Diagnosis], acted: Acted | None) -> list[Event]:
+        """Keep the diagnoses that are new; halt at once if one is critical."""
+        told: list[Event] = []
+        for diagnosis in found:
+            by_device = bool(diagnosis.rule.device)
+            person = acted.state.attended if acted is not None and not by_device else None
+            if self._recovery.knows(diagnosis, person):
+                continue
+            try:
+                told += self._recovery.keep(diagnosis, acted, person)
+            except TangyError:
+                self._seen = None  # so that the next look finds it again
+                raise
+            if acted is not None and diagnosis.mismatches:
+                self.acted[self._recovery.faults[-1].id] = acted
+        if told and not self._recovery.ended:
+            told += self._recovery.halt_if_critical()
+            for fault in self._recovery.waiting[1:]:
+                if not any(move.kind == "kept" for move in fault.moves):
+                    told += self._recovery.move(fault, Move("kept", self._recovery.seconds))
+        return told
