@@ -177,7 +177,7 @@ class House:
         Raises:
             TangyError: one of the injections is none, or the fault rules have a mistake.
         """
-        from tangy_profiles.faults import load_faults
+        from tangy_profiles.fault_file import load_faults
         from tangy_sim.faulty import FaultyWorld
         from tangy_sim.injection import read_injection
         from tangy_tui.monitoring.accepted import expected_effects

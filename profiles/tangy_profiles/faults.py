@@ -7,19 +7,15 @@ reads the evidence by them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.resources import files
-from pathlib import Path
-from string import Formatter
 from types import MappingProxyType
 from typing import NamedTuple
 
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.health import STATES, Fact
-from tangy_profiles.reading import Table, nearest, plain, read_toml
-from tangy_profiles.robot import Robot
+from tangy_profiles.health import Fact
+from tangy_profiles.reading import nearest
 from tangy_profiles.state import VARIABLES
 
 CRITICAL, NON_CRITICAL = "critical", "non-critical"
@@ -61,8 +57,6 @@ SLOTS = ("name", "object", "why")
 
 Evidence = Mapping[str, Fact]
 """Everything known at one moment, by dotted key: `laser.age`, `mismatch.card`, ..."""
-
-_TESTS = ("is", "not", "above", "below", "at_least")
 
 
 class Remedy(NamedTuple):
@@ -206,202 +200,3 @@ class FaultBook:
                 return rule
         codes = [rule.code for rule in self.rules]
         raise ProfileError(f"There is no fault {code!r}: {nearest(code, codes)}")
-
-
-def load_faults(robot: Robot, path: Path | None = None) -> FaultBook:
-    """Load the fault rules that ship, or a file of the same form, for a robot.
-
-    Raises:
-        ProfileError: one line that says file, key, value and the nearest valid word.
-    """
-    book, mistakes = check_faults(robot, path)
-    if book is None:
-        raise ProfileError(mistakes[0])
-    return book
-
-
-def check_faults(robot: Robot, path: Path | None = None) -> tuple[FaultBook | None, list[str]]:
-    """Read fault rules as `load_faults` does, and return what is wrong, a line for each entry.
-
-    Without mistakes there is a book; with any there is none.
-    """
-    path = path or Path(str(files("tangy_profiles"))) / "faults.toml"
-    known = evidence_keys(robot)
-    rules: list[FaultRule] = []
-    mistakes: list[str] = []
-    read = True
-    try:
-        top = read_toml(path)
-        for entry in top.tables("faults"):
-            read = False
-            try:
-                rule = _read_rule(entry, robot, known)
-                _check_order(entry, rule, rules)
-                entry.close()
-            except ProfileError as error:
-                mistakes.append(str(error))
-            else:
-                rules.append(rule)
-                read = True
-        top.close()
-    except ProfileError as error:
-        mistakes.append(str(error))
-        return None, mistakes
-    if read and not (rules and rules[-1].fallback):
-        mistakes.append(
-            f"{plain(path.name)}: the last of the faults must have `fallback = true`: it is what "
-            "is diagnosed when no other rule explains what was seen."
-        )
-    return (None if mistakes else FaultBook(tuple(rules), path.name)), mistakes
-
-
-def evidence_keys(robot: Robot) -> dict[str, str]:
-    """Return every key that a rule may look at, with what it is."""
-    keys = {**CONTEXT, **SYMPTOMS}
-    for device in robot.devices.values():
-        keys[f"{device.name}.state"] = f"{device.label}: OK, WARN, STALE or ERROR"
-        keys[f"{device.name}.age"] = f"{device.label}: s since the newest data"
-        for fact, measure in device.facts.items():
-            keys[f"{device.name}.{fact}"] = f"{device.label}: {measure.says}"
-    return keys
-
-
-def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRule:
-    code = entry.text("code")
-    if not code.replace("-", "").isalnum() or code != code.lower():
-        raise entry.wrong("code", "must be lower-case words with hyphens.")
-    fallback = entry.flag("fallback", False)
-    criticality = entry.choice("criticality", (CRITICAL, NON_CRITICAL))
-    recovery = entry.words("recovery", RECOVERIES)
-    if not recovery or len(set(recovery)) < len(recovery):
-        raise entry.wrong("recovery", "must name one or more recoveries, each once.")
-    if (criticality == CRITICAL) != (recovery[0] == "expert"):
-        raise entry.wrong(
-            "recovery",
-            'must begin with "expert" for a critical fault, and with another one otherwise.',
-        )
-    if "expert" in recovery[:-1]:
-        raise entry.wrong("recovery", "cannot go on after the expert: nobody comes after that.")
-    rule = FaultRule(
-        code=code,
-        name=_text(entry, "name"),
-        criticality=criticality,
-        recovery=recovery,
-        console=_text(entry, "console"),
-        advice=_texts(entry, "advice"),
-        when=() if fallback else _alternatives(entry, known, robot),
-        also=entry.words("also", known, ()),
-        device=entry.choice("device", (*robot.devices, ""), ""),
-        tries=entry.whole("tries", 1, 10, 1),
-        remedy=entry.choice("remedy", OWN_REMEDIES, ""),
-        solved=entry.choice("solved", SOLVED, SOLVED[0]),
-        bearable=entry.flag("bearable", False),
-        aloud=_text(entry, "aloud", optional=True),
-        image=_text(entry, "image", optional=True),
-        fallback=fallback,
-    )
-    if not rule.advice:
-        raise entry.wrong("advice", "must tell staff what to do, in one step or more.")
-    if "user" in recovery and not (rule.aloud and rule.image):
-        raise entry.wrong("aloud", "and `image` must say what a user is asked to do.")
-    if rule.when and not rule.symptoms.difference(rule.also):
-        raise entry.wrong("when", "must look at a symptom, not only at what was done.")
-    return rule
-
-
-def _alternatives(
-    entry: Table, known: Mapping[str, str], robot: Robot
-) -> tuple[tuple[Condition, ...], ...]:
-    found: list[tuple[Condition, ...]] = []
-    for alternative in entry.tables("when"):
-        conditions: list[Condition] = []
-        for key in alternative:
-            if key not in known:
-                raise alternative.wrong(key, f"is no evidence; {nearest(key, known)}")
-            test = alternative.table(key)
-            words = list(test)
-            if len(words) != 1 or words[0] not in _TESTS:
-                raise alternative.wrong(key, f"must hold one of: {', '.join(_TESTS)}.")
-            condition = Condition(key, words[0], _value(test, words[0]))
-            if problem := _never(condition, robot):
-                raise test.wrong(words[0], problem)
-            conditions.append(condition)
-        if not conditions:
-            raise entry.wrong("when", "holds an alternative without a condition.")
-        found.append(tuple(conditions))
-    if not found:
-        raise entry.wrong("when", "must hold at least one alternative.")
-    return tuple(found)
-
-
-def _never(condition: Condition, robot: Robot) -> str:
-    """Say why a condition on what a device reports can never be met as meant; "" if it can."""
-    head, _, fact = condition.key.partition(".")
-    device = robot.devices.get(head)
-    if device is None or fact == "age":
-        return ""
-    if fact == "state":
-        known = condition.value in STATES and condition.test in ("is", "not")
-        return "" if known else f"is no state; {nearest(str(condition.value).upper(), STATES)}"
-    measure = device.facts[fact]
-    if condition.test not in ("is", "not") and measure.high is None:
-        return "compares what is no number: use is or not."
-    return measure.wrong(condition.value)
-
-
-def _value(test: Table, word: str) -> Fact:
-    if word in ("is", "not"):
-        return test.word_or_number(word)
-    return test.number(word)
-
-
-def _text(entry: Table, key: str, *, optional: bool = False) -> str:
-    text = entry.text(key, "" if optional else None)
-    _check_slots(entry, key, text)
-    return text
-
-
-def _texts(entry: Table, key: str) -> tuple[str, ...]:
-    texts = entry.words(key)
-    for text in texts:
-        _check_slots(entry, key, text)
-    return texts
-
-
-def _check_slots(entry: Table, key: str, text: str) -> None:
-    try:
-        slots = [part[1:] for part in Formatter().parse(text) if part[1] is not None]
-    except ValueError:
-        raise entry.wrong(key, "has an unpaired brace.") from None
-    for slot, form, conversion in slots:
-        if slot not in SLOTS:
-            raise entry.wrong(key, f"cannot fill in {{{slot}}}; {nearest(slot or '', SLOTS)}")
-        if form or conversion:
-            raise entry.wrong(key, f"must hold just {{{slot}}}, without ':' or '!'.")
-
-
-def _check_order(entry: Table, rule: FaultRule, earlier: Sequence[FaultRule]) -> None:
-    """Refuse a rule that can never be reached.
-
-    Raises:
-        ProfileError: naming the rule that always matches first.
-    """
-    if any(other.code == rule.code for other in earlier):
-        raise entry.wrong("code", "was used before: every fault has its own.")
-    if earlier and earlier[-1].fallback:
-        raise entry.wrong("code", f"comes after {earlier[-1].code!r}, which explains everything.")
-    for conditions in rule.when:
-        for other in earlier:
-            if conditions and _hidden(rule, conditions, other):
-                raise entry.wrong(
-                    "when", f"can never be reached: {other.code!r} matches first, and explains it."
-                )
-
-
-def _hidden(rule: FaultRule, conditions: Sequence[Condition], other: FaultRule) -> bool:
-    """Say whether whenever the conditions hold, an earlier rule explains all their symptoms."""
-    mine = {condition.key for condition in conditions if condition.key not in CONTEXT}
-    return mine <= other.symptoms and any(
-        all(any(mine.implies(theirs) for mine in conditions) for theirs in alternative)
-        for alternative in other.when
-    )

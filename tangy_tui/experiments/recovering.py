@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
-from tangy_profiles.faults import load_faults
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import KINDS
 from tangy_tui.experiments import comparison, published

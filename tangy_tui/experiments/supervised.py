@@ -14,7 +14,8 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.faults import FaultBook, load_faults
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import FaultBook
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.store import Store

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.faults import load_faults
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_policy import policy_for_drill

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule, check_faults
+from tangy_profiles.fault_file import check_faults
+from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule
 from tangy_profiles.robot import Robot
 from tangy_sim.injection import KINDS
 from tangy_tui.monitoring.drill_rounds import round_kinds

@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tangy_profiles.behaviour import Behaviour
-from tangy_profiles.faults import load_faults
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import (
     ASKING,

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tangy_profiles.faults import load_faults
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import KINDS
 from tangy_tui.experiments import published, recovering

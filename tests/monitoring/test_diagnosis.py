@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_profiles.faults import FaultBook, load_faults
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import FaultBook
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.body import WELL, readings

@@ -11,7 +11,8 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.faults import RECOVERIES, load_faults
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import RECOVERIES
 from tangy_profiles.person import Person
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_profiles.faults import load_faults
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.injection import KINDS

@@ -8,7 +8,8 @@ from unittest.mock import Mock
 import pytest
 
 from tangy_profiles.errors import StoreError, TangyError
-from tangy_profiles.faults import Remedy, load_faults
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import Remedy
 from tangy_profiles.robot import load_robot
 from tangy_sim import faulty
 from tangy_sim.body import WELL

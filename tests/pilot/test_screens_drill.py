@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 from textual.app import App
 
-from tangy_profiles.faults import FaultBook, load_faults
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import FaultBook
 from tangy_profiles.store import Store
 from tangy_tui.house import House
 from tangy_tui.monitoring.drill import Drill

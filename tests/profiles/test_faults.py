@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 import tangy_profiles
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.faults import Condition, FaultBook, check_faults, load_faults
+from tangy_profiles.fault_file import check_faults, load_faults
+from tangy_profiles.faults import Condition, FaultBook
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
 
