@@ -7,7 +7,6 @@ behaviour. Typed and spoken words come through this one door, so both are unders
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,8 +15,19 @@ from types import MappingProxyType
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.person import Person
+from tangy_tui.learning.words import (
+    FILLERS,
+    Words,
+    bare,
+    clean,
+    in_order,
+    likeness,
+    run_together,
+    spoken,
+    stem,
+    words_of,
+)
 
-LONGEST_TEXT = 200  # characters of a command that are looked at
 MOST_ALTERNATIVES = 3
 
 KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phrase of theirs
@@ -30,24 +40,8 @@ ALTERNATIVE_AT_LEAST = 0.25
 UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
 SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
 
-FILLERS = frozenset(
-    (
-        *("a", "ah", "an", "and", "can", "could", "er", "hey", "just", "now", "ok", "okay"),
-        *("please", "so", "tangy", "the", "then", "uh", "um", "will", "would", "you"),
-    )
-)
 ARTICLES = frozenset(("a", "an", "the"))
 REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
-NUMBERS = (
-    *("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
-    *("eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen"),
-    *("nineteen", "twenty"),
-)
-
-_WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*|[0-9]+")
-_ACCENTS = re.compile("[\u0300-\u036f]")
-
-Words = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +97,7 @@ class Phrasebook:
         self._numbers = _numbers_of(people)
         self._names = _names_of(people)
         self._nouns = {
-            name: (*_words(name), *_words(" ".join(activity.behaviours[name].phrases[:1])))[-1]
+            name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
             for name in self._to_people
         }
         self._phrases: dict[Words, _Phrase] = {}
@@ -112,7 +106,7 @@ class Phrasebook:
             self._add_phrases(behaviour)
         self._untold = len(self._phrases)
         for behaviour in activity.behaviours.values():
-            self._add(_words(behaviour.name), behaviour.name, None, len(behaviour.phrases) + 1)
+            self._add(words_of(behaviour.name), behaviour.name, None, len(behaviour.phrases) + 1)
         for behaviour in activity.behaviours.values():
             self._add_keywords(behaviour)
             if behaviour.effect == "go to user":
@@ -121,11 +115,11 @@ class Phrasebook:
             {
                 form: phrase.behaviour
                 for phrase in self._phrases.values()
-                for form in (phrase.shown, _spoken(phrase.words))
+                for form in (phrase.shown, spoken(phrase.words))
             }
         )
         self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
-        self._joined = _of_one_meaning(self._phrases.values(), lambda p: _run_together(p.bare))
+        self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
         self._weights = self._word_weights()
 
     def understand(self, text: str) -> Command | None:
@@ -135,8 +129,8 @@ class Phrasebook:
         its phrases the rest of the text is; then comes the nearest phrase, if it is near enough.
         Words that look like typing slips of known ones are mended, which costs confidence too.
         """
-        heard = _clean(text)
-        words = _words(heard)
+        heard = clean(text)
+        words = words_of(heard)
         if (exact := self._exact(words)) is not None:
             return self._command(exact, 1.0, heard, words)
         if self._refuses(words) or self._stranger(words) is not None:
@@ -150,14 +144,14 @@ class Phrasebook:
 
     def stranger(self, text: str) -> str | None:
         """Return whom a text goes to if that is nobody here: "user 7", or a name alone."""
-        words = _words(_clean(text))
+        words = words_of(clean(text))
         if self._exact(words) is not None or self._refuses(words):
             return None
         return self._stranger(words)
 
     def suggestions(self, text: str) -> tuple[str, ...]:
         """Return up to three phrases that a text comes nearest to, of different behaviours."""
-        words, _ = self._mend(_words(_clean(text)))
+        words, _ = self._mend(words_of(clean(text)))
         near = [phrase.shown for likeness, phrase in self._ranking(words) if likeness > 0]
         return tuple(near[:MOST_ALTERNATIVES])
 
@@ -167,11 +161,11 @@ class Phrasebook:
         Case and spaces are of no account. Numbers are completed as digits, unless the prefix
         already has a part of a number in words.
         """
-        begun = re.sub(r"\s+", " ", _clean(prefix, strip=False).lstrip()).casefold()
+        begun = re.sub(r"\s+", " ", clean(prefix, strip=False).lstrip()).casefold()
         ranked = sorted(self._phrases.values(), key=lambda phrase: phrase.rank)
         shown = dict.fromkeys(p.shown for p in ranked if p.shown.startswith(begun))
         if not shown:
-            written = (_spoken(phrase.words) for phrase in ranked)
+            written = (spoken(phrase.words) for phrase in ranked)
             shown = dict.fromkeys(form for form in written if form.startswith(begun))
         return tuple(shown)
 
@@ -182,7 +176,7 @@ class Phrasebook:
         """
         listed = list(self._phrases.values())
         said = [p for place, p in enumerate(listed) if place < self._untold or p.user is not None]
-        return tuple(dict.fromkeys(_spoken(phrase.words) for phrase in said))
+        return tuple(dict.fromkeys(spoken(phrase.words) for phrase in said))
 
     def _add(self, words: Words, behaviour: str, user: str | None, place: int) -> None:
         """Enter a phrase; what was entered first keeps its meaning."""
@@ -191,27 +185,27 @@ class Phrasebook:
 
     def _entry(self, words: Words, behaviour: str, user: str | None, place: int) -> _Phrase:
         rank = (place, self._behaviours.index(behaviour))
-        return _Phrase(words, _bare(words), behaviour, user, rank)
+        return _Phrase(words, bare(words), behaviour, user, rank)
 
     def _add_phrases(self, behaviour: Behaviour) -> None:
         for place, text in enumerate(behaviour.phrases):
-            self._add(_words(text), behaviour.name, None, place)
-        self._add(_words(behaviour.question), behaviour.name, None, len(behaviour.phrases))
+            self._add(words_of(text), behaviour.name, None, place)
+        self._add(words_of(behaviour.question), behaviour.name, None, len(behaviour.phrases))
 
     def _add_people(self, behaviour: Behaviour) -> None:
         """Put people in the place of the last word of each phrase: "go to [the] user"."""
         for place, text in enumerate(behaviour.phrases):
-            *stem, noun = _words(text)
-            while stem and stem[-1] in ARTICLES:
-                stem.pop()
+            *verb, noun = words_of(text)
+            while verb and verb[-1] in ARTICLES:
+                verb.pop()
             for number, user in self._numbers.items():
-                self._add((*stem, noun, number), behaviour.name, user, place)
+                self._add((*verb, noun, number), behaviour.name, user, place)
             for name, user in self._names.items():
-                self._add((*stem, *name), behaviour.name, user, place)
+                self._add((*verb, *name), behaviour.name, user, place)
 
     def _add_keywords(self, behaviour: Behaviour) -> None:
         for place, entry in enumerate(behaviour.keywords):
-            words = _words(" ".join(entry))
+            words = words_of(" ".join(entry))
             forms: list[tuple[Words, str | None]] = [(words, None)]
             if behaviour.effect == "go to user":
                 forms += [((*words, number), user) for number, user in self._numbers.items()]
@@ -219,7 +213,7 @@ class Phrasebook:
             self._keywords += [self._entry(w, behaviour.name, user, place) for w, user in forms]
 
     def _exact(self, words: Words) -> _Phrase | None:
-        return self._phrases.get(words) or self._bare.get(" ".join(_bare(words)))
+        return self._phrases.get(words) or self._bare.get(" ".join(bare(words)))
 
     def _refuses(self, words: Words) -> bool:
         return any(word in REFUSALS and word not in self._weights for word in words)
@@ -240,7 +234,7 @@ class Phrasebook:
             ):
                 return None
             return f"{self._nouns[found.behaviour]} {numbers[0]}"
-        said = _bare(mended)
+        said = bare(mended)
         if not said or said[-1] in self._weights or said[-1] not in words:
             return None
         *way, name = said
@@ -269,7 +263,7 @@ class Phrasebook:
         trust = 1.0
         for word in words:
             if word not in self._weights and word not in FILLERS:
-                like, known = max((_likeness(word, known), known) for known in self._weights)
+                like, known = max((likeness(word, known), known) for known in self._weights)
                 if like >= SAME_WORD:
                     trust = min(trust, MENDED * like)
                     word = known
@@ -278,7 +272,7 @@ class Phrasebook:
 
     def _find(self, words: Words, mended: Words) -> tuple[_Phrase | None, float]:
         """Return what words mean that are no phrase as they stand, and how sure that is."""
-        mistyped = self._exact(mended) or self._joined.get(_run_together(_bare(words)))
+        mistyped = self._exact(mended) or self._joined.get(run_together(bare(words)))
         if mistyped is not None:
             return mistyped, 1.0 if mended != words else MENDED
         ranked = self._ranking(mended)
@@ -296,11 +290,11 @@ class Phrasebook:
 
     def _point(self, words: Words) -> _Phrase | None:
         """Return the keywords that were heard, if they all mean the same."""
-        found = [entry for entry in self._keywords if _in_order(entry.words, words)]
+        found = [entry for entry in self._keywords if in_order(entry.words, words)]
         kept = [
             entry
             for entry in found
-            if not any(o.words != entry.words and _in_order(entry.words, o.words) for o in found)
+            if not any(o.words != entry.words and in_order(entry.words, o.words) for o in found)
         ]
         return kept[0] if len({(e.behaviour, e.user) for e in kept}) == 1 else None
 
@@ -324,7 +318,7 @@ class Phrasebook:
 
     def _ranking(self, words: Words) -> list[tuple[float, _Phrase]]:
         """Return each behaviour's phrase that is most like the words, the likest first."""
-        said = _bare(words)
+        said = bare(words)
         best: dict[str, tuple[float, _Phrase]] = {}
         for phrase in self._phrases.values():
             likeness = self._phrase_likeness(said, phrase.bare) if said else 0.0
@@ -342,7 +336,7 @@ class Phrasebook:
         for word, cost in zip(said, spent, strict=True):
             last, row = row, [row[0] + cost]
             for place, (known, weight) in enumerate(zip(phrase, told, strict=True)):
-                swap = 0.0 if _stem(word) == _stem(known) else cost + weight
+                swap = 0.0 if stem(word) == stem(known) else cost + weight
                 row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
         return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
 
@@ -361,78 +355,6 @@ def _of_one_meaning(
     }
 
 
-def _likeness(said: str, known: str) -> float:
-    """Return how like a typing slip of a known word this is: from 0 to 1.
-
-    Short words are taken for slips only of words with the same letters, or one more or less: one
-    letter exchanged in "go" or "mark" mostly makes another English word.
-    """
-    longest = max(len(said), len(known))
-    if not (said.isalpha() and known.isalpha()) or longest - min(len(said), len(known)) > 2:
-        return 0.0
-    if sorted(said) == sorted(known):
-        return 1 - 1 / (longest + 1)
-    if longest < 4 or (longest == 4 and len(said) == len(known)):
-        return 0.0
-    return 1 - _slips(said, known) / longest
-
-
-def _slips(one: str, other: str) -> int:
-    """Count the letters to insert, drop or replace."""
-    row = list(range(len(other) + 1))
-    for i, letter in enumerate(one, 1):
-        last, row = row, [i]
-        for j, wanted in enumerate(other, 1):
-            row.append(min(last[j] + 1, row[-1] + 1, last[j - 1] + (letter != wanted)))
-    return row[-1]
-
-
-def _clean(text: str, *, strip: bool = True) -> str:
-    """Cap a text and take out what cannot be shown: controls, bidi marks, lone surrogates."""
-    spaced = (" " if char.isspace() else char for char in text[:LONGEST_TEXT])
-    shown = "".join(char for char in spaced if not unicodedata.category(char).startswith("C"))
-    return re.sub(" +", " ", shown).strip() if strip else shown
-
-
-def _words(text: str) -> Words:
-    """Split into lower-case words: accents and punctuation dropped, number words as digits."""
-    folded = unicodedata.normalize("NFKD", text[:LONGEST_TEXT]).casefold().replace("\u2019", "'")
-    plain = unicodedata.normalize("NFC", _ACCENTS.sub("", folded))
-    return tuple(_digits(word) for word in _WORD.findall(plain[:LONGEST_TEXT]))
-
-
-def _digits(word: str) -> str:
-    """Write a number as digits, however it is written; other words stay as they are."""
-    if word.isascii() and word.isdigit():
-        return str(int(word))
-    return str(NUMBERS.index(word)) if word in NUMBERS else word
-
-
-def _spoken(words: Words) -> str:
-    """Write words as they are said, numbers up to twenty in words."""
-    return " ".join(
-        NUMBERS[int(word)] if word.isdigit() and int(word) < len(NUMBERS) else word
-        for word in words
-    )
-
-
-def _run_together(words: Words) -> str:
-    return _spoken(words).replace(" ", "")
-
-
-def _bare(words: Words) -> Words:
-    return tuple(word for word in words if word not in FILLERS)
-
-
-def _stem(word: str) -> str:
-    return word[:-1] if len(word) > 3 and word.endswith("s") else word
-
-
-def _in_order(wanted: Words, words: Words) -> bool:
-    rest = iter(words)
-    return all(word in rest for word in wanted)
-
-
 def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
     """Return ids by number: the number that the ids end with, else the place in the list."""
     ends = [re.search("[0-9]{1,2}$", person.id) for person in people]
@@ -446,5 +368,5 @@ def _names_of(people: Sequence[Person]) -> dict[Words, str]:
     """Return ids by name; a name that two people share, or that has no word, is left out."""
     named: dict[Words, list[str]] = defaultdict(list)
     for person in people:
-        named[_words(_clean(person.name))].append(person.id)
-    return {name: ids[0] for name, ids in named.items() if _bare(name) and len(ids) == 1}
+        named[words_of(clean(person.name))].append(person.id)
+    return {name: ids[0] for name, ids in named.items() if bare(name) and len(ids) == 1}

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import Person, load_people
-from tangy_tui.learning.commands import FILLERS, KEYWORDS_AT_LEAST, LONGEST_TEXT, Phrasebook
+from tangy_tui.learning.commands import KEYWORDS_AT_LEAST, Phrasebook
+from tangy_tui.learning.words import FILLERS, LONGEST_TEXT
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 NAMED = Phrasebook(
