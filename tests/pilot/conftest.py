@@ -16,10 +16,11 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from time import monotonic, process_time
 from typing import Any
 
@@ -33,12 +34,16 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
+from tangy_tui.house import House
+from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.terminal import TerminalKind
+from tests.interaction.gaps import learnt
 
 SMALL = (80, 24)
 LARGE = (160, 45)
@@ -244,3 +249,18 @@ def picture(
         assert draw(app) == pictures
 
     return compare
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    """A house with a data folder of its own, in which nothing was learnt yet."""
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def policy(house: House, cover: Callable[[str, int, int], tuple[Demonstration, ...]]) -> Policy:
+    """A policy that knows all that comes about, learnt by few trees."""
+    settings = ForestSettings(trees=5)
+    return learnt(house.store, house.activity, cover("bingo", 1, 4), settings)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from tangy_tui.house import House
@@ -13,14 +10,6 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house in which nothing was taught yet."""
-    made = House(tmp_path / "data")
-    yield made
-    made.close()
 
 
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])

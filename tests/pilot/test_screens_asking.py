@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -37,14 +36,6 @@ Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 
 FEW = ForestSettings(trees=5)
 TINY = (60, 18)
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with a data folder of its own."""
-    opened = House(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 def gap(house: House) -> Situation:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from time import monotonic
 from typing import Any
 
@@ -43,14 +42,6 @@ def learnt(tmp_path_factory: pytest.TempPathFactory) -> Learnt:
         return policy_for_drill(house.store, house.activity)
     finally:
         house.close()
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house in which nothing was learnt yet."""
-    opened = House(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 @pytest.fixture

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
-
 import pytest
 
-from tangy_profiles.demonstration import Demonstration
 from tangy_sim.injection import KINDS
 from tangy_tui.house import House
-from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
@@ -21,9 +17,8 @@ from tangy_tui.ui.widgets.fault_list import SHORTEST_LAST, FaultList, columns_fo
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
-from tests.interaction.gaps import learnt
 from tests.pilot.conftest import SMALL, Run
-from tests.pilot.test_screens_faults import (
+from tests.pilot.faults import (
     MIDDLE,
     TINY,
     game_of,
@@ -34,23 +29,6 @@ from tests.pilot.test_screens_faults import (
     sentences,
     until,
 )
-
-Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
-FEW = ForestSettings(trees=5)
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with a data folder of its own."""
-    opened = House(tmp_path / "data")
-    yield opened
-    opened.close()
-
-
-@pytest.fixture
-def policy(house: House, cover: Cover) -> Policy:
-    """A policy that knows all that comes about."""
-    return learnt(house.store, house.activity, cover("bingo", 1, 4), FEW)
 
 
 async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(

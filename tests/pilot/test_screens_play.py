@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 from textual.app import App
@@ -28,14 +27,6 @@ from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.status_line import StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with a data folder of its own."""
-    opened = House(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 @pytest.fixture

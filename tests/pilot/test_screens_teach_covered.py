@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
 from threading import Event
 
 import pytest
@@ -23,14 +21,6 @@ from tests.pilot.conftest import Run, StillClock, screen_text
 
 FAST = 1000.0
 NO_HELP = Help("nothing", (), (), ())
-
-
-@pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with a data folder of its own."""
-    opened = House(tmp_path / "data")
-    yield opened
-    opened.close()
 
 
 def program(
