@@ -17,6 +17,7 @@ from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
 from tangy_sim.faulty import FaultyWorld
+from tangy_sim.injection import KINDS
 from tangy_tui.house import House
 from tangy_tui.monitoring.fault import (
     ENDINGS,
@@ -318,7 +319,9 @@ class FaultConsole:
             for kind, came in self._asked_for.items()
             if kind not in world.present and all(kind != late for _, late in world.came[came:])
         ]
-        dialog = InjectDialog(world.present, to_come)
+        book = self.supervision.book
+        called = {name: book.rule(kind.code).name for name, kind in KINDS.items()}
+        dialog = InjectDialog(world.present, to_come, called)
         kind = await self._screen.app.push_screen_wait(dialog)
         if kind is None or self.refuses():
             return "", False

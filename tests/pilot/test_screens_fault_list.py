@@ -225,11 +225,13 @@ async def test_what_is_still_to_come_can_be_lifted(run: Run, house: House, polic
 
 
 async def test_all_kinds_can_be_chosen(run: Run) -> None:
-    dialog = InjectDialog((), ())
+    dialog = InjectDialog((), (), {"camera-occluded": "Camera covered"})
     async with run(size=SMALL) as pilot:
         pilot.app.push_screen(dialog)
         await pilot.pause()
         assert [kind.name for kind in dialog._kinds] == list(KINDS)
+        pilot.type(*"covered")  # what the console calls the fault, which the kind's name is not
+        await until(pilot, lambda: [kind.name for kind in dialog._kinds] == ["camera-occluded"])
 
 
 async def test_no_fault_can_be_brought_about_in_the_demo(

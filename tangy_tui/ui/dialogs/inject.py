@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import ClassVar
 
 from rich.cells import cell_len
@@ -40,11 +40,22 @@ class InjectDialog(Dialog[str | None]):
         "is put right by choosing it again. Esc shows all, and then goes back."
     )
 
-    def __init__(self, there: Collection[str], to_come: Collection[str]) -> None:
-        """Make the dialog; `there` and `to_come` are the kinds that can be lifted."""
+    def __init__(
+        self, there: Collection[str], to_come: Collection[str], called: Mapping[str, str]
+    ) -> None:
+        """Make the dialog.
+
+        Args:
+            there, to_come: the kinds that can be lifted.
+            called: what the console calls the fault of each kind; it can be searched for, too.
+        """
         super().__init__(None)
         self._there = frozenset(there)
         self._to_come = frozenset(to_come)
+        self._found_by = {
+            kind.name: f"{kind.name} {kind.words} {called.get(kind.name, '')}".lower()
+            for kind in KINDS.values()
+        }
         self._typed = ""
         self._kinds: tuple[Kind, ...] = ()
 
@@ -63,7 +74,7 @@ class InjectDialog(Dialog[str | None]):
         words = self._typed.lower().split()
         order = sorted(KINDS.values(), key=lambda kind: not self._lifts(kind))
         self._kinds = tuple(
-            kind for kind in order if all(w in f"{kind.name} {kind.words}" for w in words)
+            kind for kind in order if all(w in self._found_by[kind.name] for w in words)
         )
         kinds = self.query_one(ChoiceList)
         kinds.styles.height = max(1, len(self._kinds))
