@@ -1,0 +1,170 @@
+"""WAV files of any usual kind, turned into what the decoder hears: 16 kHz, one channel, s16le."""
+
+from __future__ import annotations
+
+import stat
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Samples = NDArray[np.float64]
+
+RATE = 16_000  # samples a second
+LARGEST_WAV = 100_000_000  # bytes: 17 minutes of 48 kHz stereo
+KERNEL = 16  # zero crossings of the resampling kernel to each side
+HOW_TO_RECORD = "record one with: arecord -f S16_LE -r 16000 -c 1 FILE.wav"
+CODECS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "ADPCM", 0x31: "GSM", 0x55: "MP3"}
+
+
+class SoundError(TangyError):
+    """A source gives no sound that can be used; one sentence that names it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """How a WAV file writes its samples."""
+
+    codec: int  # 1 integers, 3 floating point
+    channels: int
+    rate: int
+    bits: int
+
+    @property
+    def native(self) -> bool:
+        return (self.codec, self.channels, self.rate, self.bits) == (1, 1, RATE, 16)
+
+
+def read_wav(path: Path) -> bytes:
+    """Read a WAV file of any usual kind as 16 kHz mono samples (s16le).
+
+    Raises:
+        SoundError: the file is missing, too large, not a WAV, or of a kind that is not read.
+    """
+    name = plain(str(path))
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise SoundError(f"{name}: is not a file.")
+        if path.stat().st_size > LARGEST_WAV:
+            raise SoundError(f"{name}: is larger than {LARGEST_WAV:,} bytes.")
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise SoundError(f"{name}: there is no such file.") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "the name is not valid"
+        raise SoundError(f"{name}: cannot be read ({reason}).") from None
+    return decode_wav(content, name)
+
+
+def decode_wav(content: bytes, name: str) -> bytes:
+    """Turn the content of a WAV file into 16 kHz mono samples (s16le).
+
+    Raises:
+        SoundError: as for `read_wav`.
+    """
+    found = read_header(content, name)
+    if found is None:
+        raise SoundError(f"{name}: breaks off before its samples begin.")
+    form, start, size = found
+    sound = content[start : start + size]
+    if form.native:
+        sound = sound[: len(sound) // 2 * 2]
+    else:
+        sound = _to_pcm(_resampled(_mono(sound, form), form.rate))
+    if not sound:
+        raise SoundError(f"{name}: holds no samples.")
+    return sound
+
+
+def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:
+    """Return the format, and where the samples start and how many bytes they are.
+
+    None if the content breaks off before the samples begin.
+    """
+    if content[:4] != b"RIFF"[: len(content)] or content[8:12] not in (b"WAVE", b""):
+        raise SoundError(f"{name}: is not a WAV file; {HOW_TO_RECORD}.")
+    place, form = 12, None
+    while place + 8 <= len(content):
+        chunk, size = struct.unpack_from("<4sI", content, place)
+        place += 8
+        if chunk == b"data":
+            if form is None:
+                raise SoundError(f"{name}: does not say how its samples are written.")
+            return form, place, size
+        if chunk == b"fmt ":
+            if place + min(size, 40) > len(content):
+                return None
+            form = _format(content[place : place + min(size, 40)], name)
+        place += size + size % 2
+    return None
+
+
+def _format(chunk: bytes, name: str) -> Format:
+    if len(chunk) < 16:
+        raise SoundError(f"{name}: does not say how its samples are written.")
+    codec, channels, rate, _, _, bits = struct.unpack_from("<HHIIHH", chunk)
+    if codec == 0xFFFE and len(chunk) >= 26:
+        (codec,) = struct.unpack_from("<H", chunk, 24)
+    form = Format(codec, channels, rate, bits)
+    if (codec, bits) not in {(1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64)}:
+        kind = CODECS.get(codec, f"{bits}-bit" if codec in (1, 3) else f"kind {codec}")
+        raise SoundError(f"{name}: its samples are {kind}, which is not read; {HOW_TO_RECORD}.")
+    if not 1 <= channels <= 8 or not 4_000 <= rate <= 192_000:
+        raise SoundError(f"{name}: {channels} channels of {rate:,} samples a second are not read.")
+    return form
+
+
+def _mono(sound: bytes, form: Format) -> Samples:
+    """Return the samples from -1 to 1, the channels averaged."""
+    import numpy as np
+
+    width = form.bits // 8
+    sound = sound[: len(sound) // (width * form.channels) * width * form.channels]
+    values: NDArray[Any]
+    if form.codec == 3:
+        values = np.nan_to_num(np.frombuffer(sound, f"<f{width}").astype(np.float64))
+    elif width == 1:
+        values = (np.frombuffer(sound, np.uint8) - 128.0) / 128
+    elif width == 3:
+        wide = np.zeros((len(sound) // 3, 4), np.uint8)
+        wide[:, 1:] = np.frombuffer(sound, np.uint8).reshape(-1, 3)
+        values = wide.view("<i4")[:, 0] / 2.0**31
+    else:
+        values = np.frombuffer(sound, f"<i{width}") / 2.0 ** (form.bits - 1)
+    mono: Samples = np.clip(values, -1, 1).reshape(-1, form.channels).mean(axis=1)
+    return mono
+
+
+def _resampled(samples: Samples, rate: int) -> Samples:
+    """Bring samples to 16 kHz with a windowed sinc, which cuts off what 16 kHz cannot hold."""
+    import numpy as np
+
+    if rate == RATE or not len(samples):
+        return samples
+    step = rate / RATE
+    cut = 0.95 * min(1.0, 1 / step)
+    reach = int(np.ceil(KERNEL / cut))
+    offsets = np.arange(-reach, reach + 1)
+    padded = np.pad(samples, reach + 1)
+    made = np.empty(int(len(samples) / step))
+    for first in range(0, len(made), RATE):  # a second at a time keeps the table small
+        places = np.arange(first, min(first + RATE, len(made))) * step
+        near = np.rint(places).astype(np.int64)
+        distance = (offsets[None, :] + (near - places)[:, None]) * cut
+        window = np.cos(np.pi / 2 * np.clip(distance / KERNEL, -1, 1)) ** 2
+        taken = padded[near[:, None] + offsets[None, :] + reach + 1]
+        made[first : first + len(places)] = (taken * np.sinc(distance) * window).sum(axis=1) * cut
+    return made
+
+
+def _to_pcm(samples: Samples) -> bytes:
+    import numpy as np
+
+    return np.clip(np.rint(samples * 32_767), -32_768, 32_767).astype("<i2").tobytes()
