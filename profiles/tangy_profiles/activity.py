@@ -19,6 +19,7 @@ from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import PAPER, Persuading, read_persuading
+from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.state import Situation
 
@@ -61,6 +62,8 @@ class Activity:
     persuasion: Persuading = PAPER
     object: str = "card"
     """What people handle, as they call it."""
+    pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """How words of the phrases are pronounced, in place of what the dictionary says of them."""
 
     @cached_property
     def unread(self) -> str:
@@ -222,6 +225,9 @@ def read_activity(path: Path) -> Activity:
         source=path.name,
         persuasion=read_persuading(top.table("persuasion", optional=True)),
         object=top.text("object", "card"),
+        pronunciations=MappingProxyType(
+            read_pronunciations(top.table("pronunciations", optional=True))
+        ),
     )
     top.close()
     for situation in activity.expected:

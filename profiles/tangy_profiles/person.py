@@ -1,4 +1,4 @@
-"""The people who take part: an id that never changes, and a name that may."""
+"""The people who take part: an id that never changes, and what may: a name, how it is said."""
 
 from __future__ import annotations
 
@@ -9,16 +9,26 @@ from pathlib import Path
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import read_toml
 from tangy_profiles.state import FRONT
+from tangy_profiles.voice import VoicePreference
 
 MOST_PEOPLE = 8
+AS_EVERYBODY = VoicePreference()
 
 
 @dataclass(frozen=True)
 class Person:
-    """One participant. The log knows only the id; the name is kept apart and can be forgotten."""
+    """One participant. The log knows only the id; the rest is kept apart and can be forgotten.
+
+    `pronunciation` is that of the name, in ARPAbet, a comma between words; None: as the name is
+    mostly said. `voice` is how the person likes to be spoken to. `seats` are the ways to call the
+    seat, as the room has them ("seat 2", "window seat").
+    """
 
     id: str
     name: str
+    pronunciation: str | None = None
+    voice: VoicePreference = AS_EVERYBODY
+    seats: tuple[str, ...] = ()
 
 
 def load_people(count: int, path: Path | None = None) -> tuple[Person, ...]:

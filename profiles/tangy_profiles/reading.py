@@ -150,6 +150,12 @@ class Table:
                 raise self.wrong(key, f"{value!r} is not known; {nearest(value, allowed)}")
         return tuple(values)
 
+    def texts(self, key: str) -> tuple[str, ...]:
+        """Take one text, or a list of them."""
+        if isinstance(self._values.get(key), str):
+            return (self.text(key),)
+        return self.words(key)
+
     def choice(self, key: str, known: Iterable[str], default: str | None = None) -> str:
         """Take one word out of `known`."""
         value = self.text(key, default)

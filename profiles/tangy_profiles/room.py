@@ -5,14 +5,16 @@ x runs along the front wall from the left, y from the front wall towards the sea
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from math import hypot
 from pathlib import Path
 
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.reading import nearest, read_toml
+from tangy_profiles.person import Person
+from tangy_profiles.reading import Table, nearest, read_toml
 from tangy_profiles.state import FRONT
 
 
@@ -34,7 +36,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Room:
-    """A room; `table` is left, near, right, far; `reach` is how far off it cards are read."""
+    """A room; `table` is left, near, right, far; `reach` is how far off it cards are read.
+
+    `seat_word` is what a seat is called here, before its number ("seat 2") and after its name
+    ("window seat"); `seat_names` has the name of each seat, "" for one without.
+    """
 
     name: str
     title: str
@@ -44,6 +50,8 @@ class Room:
     table: tuple[float, float, float, float]
     reach: float
     seats: tuple[Point, ...]
+    seat_word: str = ""
+    seat_names: tuple[str, ...] = ()
 
     def seated(self, count: int) -> tuple[Point, ...]:
         """Return a seat for each of `count` people: the room's own, or as many spread evenly."""
@@ -52,6 +60,23 @@ class Room:
         left, _, right, _ = self.table
         y = self.seats[0].y
         return tuple(Point(left + (right - left) * (i + 0.5) / count, y) for i in range(count))
+
+    def placed(self, people: Sequence[Person]) -> tuple[Person, ...]:
+        """Return the people with the ways to call their seats, which they take in this order.
+
+        A seat has its name only while each person sits in one of the room's own seats.
+        """
+        own = len(people) == len(self.seat_names)
+        return tuple(
+            replace(person, seats=self._ways(place, self.seat_names[place] if own else ""))
+            for place, person in enumerate(people)
+        )
+
+    def _ways(self, place: int, name: str) -> tuple[str, ...]:
+        ways = [f"{self.seat_word} {place + 1}"] if self.seat_word else []
+        if name:
+            ways.append(f"{name} {self.seat_word}".strip())
+        return tuple(ways)
 
     def stand(self, place: str, people: Sequence[str]) -> Point:
         """Return where the robot stands: at the front, or across the table from a person."""
@@ -77,12 +102,15 @@ def load_room(name: str = "common-room") -> Room:
     front_x, front_y = top.numbers("front", 2, 0, max(width, depth))
     left, near, right, far = top.numbers("table", 4, 0, max(width, depth))
     reach = top.number("reach", 0.2, 3)
-    seats = []
+    seats, names = [], []
     for entry in top.tables("seats"):
         seats.append(Point(entry.number("x", 0, width), entry.number("y", 0, depth)))
+        names.append(_words(entry, "name"))
         entry.close()
     if not seats:
         raise top.wrong("seats", "must hold at least one seat.")
+    if len(set(filter(None, names))) < len(list(filter(None, names))):
+        raise top.wrong("seats", "two of them have the same name.")
     if not (left < right <= width and near < far <= depth):
         raise top.wrong("table", "must be [left, near, right, far] within the room.")
     if front_x > width or front_y + reach > near or near - reach < 0:
@@ -96,6 +124,16 @@ def load_room(name: str = "common-room") -> Room:
         (left, near, right, far),
         reach,
         tuple(seats),
+        _words(top, "seat_word"),
+        tuple(names),
     )
     top.close()
     return room
+
+
+def _words(table: Table, key: str) -> str:
+    """Take lower-case words, as they are spoken; "" where there are none."""
+    words = table.text(key, "")
+    if words and not re.fullmatch(r"[a-z']+( [a-z']+)*", words):
+        raise table.wrong(key, "must be lower-case words, as they are spoken.")
+    return words

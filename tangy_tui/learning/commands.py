@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.person import Person
+from tangy_tui.learning.phrases import Phrase, Phrases
 from tangy_tui.learning.words import (
     FILLERS,
     Words,
@@ -23,7 +23,6 @@ from tangy_tui.learning.words import (
     in_order,
     likeness,
     run_together,
-    spoken,
     stem,
     words_of,
 )
@@ -40,7 +39,6 @@ ALTERNATIVE_AT_LEAST = 0.25
 UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
 SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
 
-ARTICLES = frozenset(("a", "an", "the"))
 REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
 
 
@@ -60,67 +58,36 @@ class Command:
     alternatives: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _Phrase:
-    """One way to ask for a behaviour, or the keywords of one; numbers stand as digits.
-
-    `bare` are the words without fillers; `rank` orders what is equally good.
-    """
-
-    words: Words
-    bare: Words
-    behaviour: str
-    user: str | None
-    rank: tuple[int, int]
-
-    @property
-    def shown(self) -> str:
-        return " ".join(self.words)
-
-
 class Phrasebook:
-    """Every phrase and keyword of an activity, with the people who take part in it.
+    """What is meant by a text, out of every phrase and keyword of an activity (see `phrases`).
 
-    Behaviours that go to a person can be asked for with that person's number or name ("go to user
-    2", "go to user two", "go to rosa"). The number is the one their id ends with, or their place
-    in the list where the ids have none.
+    `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
+    the ids of those who can be gone to.
     """
 
     phrases: Mapping[str, str]
     people: tuple[str, ...]
-    """The ids of those who can be gone to."""
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
-        self._behaviours = tuple(activity.behaviours)
+        """Make the phrasebook of an activity for the people who take part in it."""
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
         self.people = tuple(person.id for person in people)
-        self._numbers = _numbers_of(people)
-        self._names = _names_of(people)
         self._nouns = {
             name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
             for name in self._to_people
         }
-        self._phrases: dict[Words, _Phrase] = {}
-        self._keywords: list[_Phrase] = []
-        for behaviour in activity.behaviours.values():
-            self._add_phrases(behaviour)
-        self._untold = len(self._phrases)
-        for behaviour in activity.behaviours.values():
-            self._add(words_of(behaviour.name), behaviour.name, None, len(behaviour.phrases) + 1)
-        for behaviour in activity.behaviours.values():
-            self._add_keywords(behaviour)
-            if behaviour.effect == "go to user":
-                self._add_people(behaviour)
+        self._table = Phrases(activity, people)
+        self._phrases, self._keywords = self._table.by_words, self._table.keywords
         self.phrases = MappingProxyType(
             {
                 form: phrase.behaviour
-                for phrase in self._phrases.values()
-                for form in (phrase.shown, spoken(phrase.words))
+                for phrase in self._table.all()
+                for form in (phrase.shown, phrase.said)
             }
         )
         self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
         self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
-        self._weights = self._word_weights()
+        self._weights = self._table.word_weights()
 
     def understand(self, text: str) -> Command | None:
         """Find the behaviour that a text asks for.
@@ -138,7 +105,7 @@ class Phrasebook:
         mended, trust = self._mend(words)
         found, confidence = self._find(words, mended)
         confidence *= trust
-        if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(words, found):
+        if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(mended, found):
             return None
         return self._command(found, confidence, heard, mended)
 
@@ -162,57 +129,24 @@ class Phrasebook:
         already has a part of a number in words.
         """
         begun = re.sub(r"\s+", " ", clean(prefix, strip=False).lstrip()).casefold()
-        ranked = sorted(self._phrases.values(), key=lambda phrase: phrase.rank)
-        shown = dict.fromkeys(p.shown for p in ranked if p.shown.startswith(begun))
-        if not shown:
-            written = (spoken(phrase.words) for phrase in ranked)
-            shown = dict.fromkeys(form for form in written if form.startswith(begun))
-        return tuple(shown)
+        return self._table.complete(begun)
 
     def spoken(self) -> tuple[str, ...]:
         """Return the phrases as they are said, numbers in words: what a recogniser listens for.
 
         The plain name of a behaviour is not among them unless the activity lists it as a phrase.
         """
-        listed = list(self._phrases.values())
-        said = [p for place, p in enumerate(listed) if place < self._untold or p.user is not None]
-        return tuple(dict.fromkeys(spoken(phrase.words) for phrase in said))
+        return tuple(dict.fromkeys(phrase.said for phrase in self._table.all() if phrase.heard))
 
-    def _add(self, words: Words, behaviour: str, user: str | None, place: int) -> None:
-        """Enter a phrase; what was entered first keeps its meaning."""
-        if words and words not in self._phrases:
-            self._phrases[words] = self._entry(words, behaviour, user, place)
+    def pronunciations(self) -> dict[str, tuple[str, ...]]:
+        """Return how words are said (ARPAbet) in place of what a dictionary says of them.
 
-    def _entry(self, words: Words, behaviour: str, user: str | None, place: int) -> _Phrase:
-        rank = (place, self._behaviours.index(behaviour))
-        return _Phrase(words, bare(words), behaviour, user, rank)
+        They are those of the activity and of the names of people. A name that is a word of the
+        phrases as well keeps beside its own what the activity or the dictionary says of it.
+        """
+        return dict(self._table.pronunciations)
 
-    def _add_phrases(self, behaviour: Behaviour) -> None:
-        for place, text in enumerate(behaviour.phrases):
-            self._add(words_of(text), behaviour.name, None, place)
-        self._add(words_of(behaviour.question), behaviour.name, None, len(behaviour.phrases))
-
-    def _add_people(self, behaviour: Behaviour) -> None:
-        """Put people in the place of the last word of each phrase: "go to [the] user"."""
-        for place, text in enumerate(behaviour.phrases):
-            *verb, noun = words_of(text)
-            while verb and verb[-1] in ARTICLES:
-                verb.pop()
-            for number, user in self._numbers.items():
-                self._add((*verb, noun, number), behaviour.name, user, place)
-            for name, user in self._names.items():
-                self._add((*verb, *name), behaviour.name, user, place)
-
-    def _add_keywords(self, behaviour: Behaviour) -> None:
-        for place, entry in enumerate(behaviour.keywords):
-            words = words_of(" ".join(entry))
-            forms: list[tuple[Words, str | None]] = [(words, None)]
-            if behaviour.effect == "go to user":
-                forms += [((*words, number), user) for number, user in self._numbers.items()]
-                forms += [((*words[:-1], *name), user) for name, user in self._names.items()]
-            self._keywords += [self._entry(w, behaviour.name, user, place) for w, user in forms]
-
-    def _exact(self, words: Words) -> _Phrase | None:
+    def _exact(self, words: Words) -> Phrase | None:
         return self._phrases.get(words) or self._bare.get(" ".join(bare(words)))
 
     def _refuses(self, words: Words) -> bool:
@@ -226,14 +160,18 @@ class Phrasebook:
         numbers = [word for word in words if word.isdigit()]
         if numbers:
             found, confidence = self._find(words, mended)
+            seat = self._seat_in(mended)
             if (
                 found is None
                 or found.behaviour not in self._to_people
                 or confidence < ALTERNATIVE_AT_LEAST
-                or any(number in self._numbers for number in numbers)
+                or any(
+                    (*seat, n) in self._table.seats if seat else n in self._table.numbers
+                    for n in numbers
+                )
             ):
                 return None
-            return f"{self._nouns[found.behaviour]} {numbers[0]}"
+            return f"{' '.join(seat) or self._nouns[found.behaviour]} {numbers[0]}"
         said = bare(mended)
         if not said or said[-1] in self._weights or said[-1] not in words:
             return None
@@ -245,14 +183,6 @@ class Phrasebook:
                 if len(way) > 1 and tuple(way) == phrase.bare[:-1]:
                     return name
         return None
-
-    def _word_weights(self) -> dict[str, float]:
-        """Weigh every word of the phrasebook: the more behaviours share it, the less it tells."""
-        users: dict[str, set[str]] = defaultdict(set)
-        for phrase in (*self._phrases.values(), *self._keywords):
-            for word in phrase.words:
-                users[word].add(phrase.behaviour)
-        return {word: 1 / len(behaviours) for word, behaviours in users.items()}
 
     def _weight(self, word: str) -> float:
         return self._weights.get(word, UNKNOWN_WORD)
@@ -270,7 +200,7 @@ class Phrasebook:
             mended.append(word)
         return tuple(mended), trust
 
-    def _find(self, words: Words, mended: Words) -> tuple[_Phrase | None, float]:
+    def _find(self, words: Words, mended: Words) -> tuple[Phrase | None, float]:
         """Return what words mean that are no phrase as they stand, and how sure that is."""
         mistyped = self._exact(mended) or self._joined.get(run_together(bare(words)))
         if mistyped is not None:
@@ -288,7 +218,7 @@ class Phrasebook:
         lead = likeness - (ranked[1][0] if len(ranked) > 1 else 0.0)
         return best, NEAREST_AT_BEST * likeness * (0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD))
 
-    def _point(self, words: Words) -> _Phrase | None:
+    def _point(self, words: Words) -> Phrase | None:
         """Return the keywords that were heard, if they all mean the same."""
         found = [entry for entry in self._keywords if in_order(entry.words, words)]
         kept = [
@@ -298,15 +228,23 @@ class Phrasebook:
         ]
         return kept[0] if len({(e.behaviour, e.user) for e in kept}) == 1 else None
 
-    def _numbers_fit(self, words: Words, found: _Phrase) -> bool:
+    def _numbers_fit(self, words: Words, found: Phrase) -> bool:
         """Refuse to go to anybody when a number was said that is not that person's."""
         if found.behaviour not in self._to_people:
             return True
-        own = {number for number, id in self._numbers.items() if id == found.user}
-        own |= {word for name, id in self._names.items() if id == found.user for word in name}
+        table = self._table
+        own = {word for name, id in table.names.items() if id == found.user for word in name}
+        if self._seat_in(words):
+            own |= {word for seat, id in table.seats.items() if id == found.user for word in seat}
+        else:
+            own |= {number for number, id in table.numbers.items() if id == found.user}
         return own.issuperset(word for word in words if word.isdigit())
 
-    def _command(self, found: _Phrase, confidence: float, heard: str, words: Words) -> Command:
+    def _seat_in(self, words: Words) -> Words:
+        """Return what a seat is called, where words name one; its number is then no person's."""
+        return next((noun for noun in self._table.seat_nouns if in_order(noun, words)), ())
+
+    def _command(self, found: Phrase, confidence: float, heard: str, words: Words) -> Command:
         others = [
             phrase.behaviour
             for likeness, phrase in self._ranking(words)
@@ -316,10 +254,10 @@ class Phrasebook:
         alternatives = tuple(others[:MOST_ALTERNATIVES])
         return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
 
-    def _ranking(self, words: Words) -> list[tuple[float, _Phrase]]:
+    def _ranking(self, words: Words) -> list[tuple[float, Phrase]]:
         """Return each behaviour's phrase that is most like the words, the likest first."""
         said = bare(words)
-        best: dict[str, tuple[float, _Phrase]] = {}
+        best: dict[str, tuple[float, Phrase]] = {}
         for phrase in self._phrases.values():
             likeness = self._phrase_likeness(said, phrase.bare) if said else 0.0
             if likeness > best.get(phrase.behaviour, (0.0, phrase))[0]:
@@ -341,11 +279,9 @@ class Phrasebook:
         return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
 
 
-def _of_one_meaning(
-    phrases: Iterable[_Phrase], key: Callable[[_Phrase], str]
-) -> dict[str, _Phrase]:
+def _of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:
     """Return the phrases by a key, where all phrases with that key mean the same."""
-    found: dict[str, list[_Phrase]] = defaultdict(list)
+    found: dict[str, list[Phrase]] = defaultdict(list)
     for phrase in phrases:
         found[key(phrase)].append(phrase)
     return {
@@ -353,20 +289,3 @@ def _of_one_meaning(
         for form, same in found.items()
         if form and len({(phrase.behaviour, phrase.user) for phrase in same}) == 1
     }
-
-
-def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
-    """Return ids by number: the number that the ids end with, else the place in the list."""
-    ends = [re.search("[0-9]{1,2}$", person.id) for person in people]
-    numbers = [str(int(end.group())) for end in ends if end]
-    if len(set(numbers)) < len(people):
-        numbers = [str(place) for place in range(1, len(people) + 1)]
-    return {number: person.id for number, person in zip(numbers, people, strict=True)}
-
-
-def _names_of(people: Sequence[Person]) -> dict[Words, str]:
-    """Return ids by name; a name that two people share, or that has no word, is left out."""
-    named: dict[Words, list[str]] = defaultdict(list)
-    for person in people:
-        named[words_of(clean(person.name))].append(person.id)
-    return {name: ids[0] for name, ids in named.items() if bare(name) and len(ids) == 1}
