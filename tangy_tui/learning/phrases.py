@@ -122,8 +122,8 @@ class Phrases:
             for seat, user in self.seats.items():
                 the = () if seat[-1].isdigit() else ("the",)
                 self._add((*verb, *the, *seat), behaviour.name, user, place)
-            for noun in self.seat_nouns:  # or "go to seat" would be taken for that of the first
-                self._add((*verb, *noun), behaviour.name, None, place, heard=False)
+            for seat_noun in self.seat_nouns:  # else "go to seat" were the first one
+                self._add((*verb, *seat_noun), behaviour.name, None, place, heard=False)
 
     def _add_keywords(self, behaviour: Behaviour) -> None:
         for place, entry in enumerate(behaviour.keywords):
