@@ -1,0 +1,113 @@
+"""A source of sound: what every one of them promises, wherever its sound comes from.
+
+Sound is 16-bit little-endian samples, 16,000 a second, one channel: what the acoustic model of
+III-A-1 was trained on.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator, AsyncIterator, Callable
+
+Chunks = AsyncGenerator[bytes, None]
+
+
+def _nobody(sentence: str) -> None:
+    """Tell nobody."""
+
+
+class Source:
+    """Chunks of sound, of any even size: `async for chunk in source`. Close it in the end.
+
+    It listens from the first chunk that is asked for until it is closed. A recording comes in one
+    chunk; what is live comes as it is spoken, and waits for whoever takes it.
+    """
+
+    def __init__(self, name: str, *, live: bool) -> None:
+        self.name = name
+        """As it was given: FILE.wav, -, arecord, socket."""
+        self.live = live
+        """Whether somebody is speaking now, rather than on a recording."""
+        self.tell: Callable[[str], None] = _nobody
+        """Is called with a sentence when something must be said about the source."""
+        self._taken: asyncio.Queue[bytes] = asyncio.Queue(1)
+        self._task: asyncio.Task[None] | None = None
+        self._error: BaseException | None = None
+        self._closed = False
+
+    def __aiter__(self) -> AsyncIterator[bytes]:
+        return self
+
+    async def __anext__(self) -> bytes:
+        """Return the next chunk.
+
+        Raises:
+            SoundError: once, when it cannot go on.
+        """
+        if self._task is None and not self._closed:
+            self._task = asyncio.create_task(self._listen())
+            self._task.add_done_callback(self._over)
+        while not self._closed and self._task is not None:
+            if self._task.done() and self._taken.empty():
+                break
+            chunk = await self._taken.get()
+            if chunk:
+                return chunk
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+        raise StopAsyncIteration
+
+    async def close(self) -> None:
+        """Stop listening for good, and end what records; whoever waits for a chunk gets none."""
+        self._closed = True
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.wait({self._task})
+        self._release()
+
+    def _sound(self) -> Chunks:
+        """Give the sound; each kind of source does it in its own way."""
+        raise NotImplementedError
+
+    def _release(self) -> None:
+        """Give back what was taken when the source was opened."""
+
+    async def _listen(self) -> None:
+        async with contextlib.aclosing(self._sound()) as chunks:
+            async for chunk in chunks:
+                if chunk:
+                    await self._taken.put(chunk)
+
+    def _over(self, task: asyncio.Task[None]) -> None:
+        self._error = None if task.cancelled() else task.exception()
+        if self._taken.empty():
+            self._taken.put_nowait(b"")  # wakes whoever waits
+
+
+class Recording(Source):
+    """Sound that is there already, as a whole."""
+
+    def __init__(self, name: str, pcm: bytes) -> None:
+        super().__init__(name, live=False)
+        self._pcm = pcm
+
+    async def _sound(self) -> Chunks:
+        yield self._pcm
+
+
+class WholeSamples:
+    """Joins what arrives in pieces of any size to pieces of whole samples."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def of(self, chunk: bytes) -> bytes:
+        """Return what is complete with this piece."""
+        if not self._rest and len(chunk) % 2 == 0:
+            return chunk
+        chunk = self._rest + chunk
+        whole = len(chunk) // 2 * 2
+        self._rest = chunk[whole:]
+        return chunk[:whole]
