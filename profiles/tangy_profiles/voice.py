@@ -9,7 +9,7 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import plain
 
 SLOWEST, FASTEST = 80, 260  # words a minute
-NAME = re.compile(r"[a-z][a-z0-9-]{0,39}(\+[A-Za-z][A-Za-z0-9_-]{0,39})?", re.ASCII)
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,39}(\+[A-Za-z0-9][A-Za-z0-9_-]{0,39})?", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,124 @@
+"""Numbers as a caller says them: slowly, with pauses, twice, the second time digit by digit.
+
+Fifteen and fifty sound alike in a room full of people; "one five" and "five zero" do not. What is
+on the screen stays as the activity writes it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from xml.sax.saxutils import escape
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.cards import Deck
+
+SLOWER = (
+    75  # per cent of the rate of the rest; the synthesiser goes no slower than 80 words a minute
+)
+BEFORE, AFTER = 400, 600  # ms of pause before and after a call
+BETWEEN = "[ \u00a0\u2010\u2011-]?"  # what may stand between letter and number
+
+_UNSPEAKABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufffd]")
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of what is said; a call is said slowly, with a pause before and after it."""
+
+    text: str
+    call: bool = False
+
+
+def as_called(text: str, deck: Deck | None) -> tuple[Piece, ...]:
+    """Split a text into what is said plainly and the calls in it, as a caller says them.
+
+    A call is a letter of the deck with a number of its column ("X 17", "X-17"). The first time in
+    a text it is said as one number, from then on digit by digit; one that stands there only once
+    is said twice.
+    """
+    text = " ".join(_UNSPEAKABLE.sub(" ", text).split())
+    if deck is None:
+        return (Piece(text),) if text else ()
+    pattern = _pattern(deck)
+    found = [label for match in pattern.finditer(text) if (label := _label(match, deck))]
+    return tuple(_pieces(text, pattern, deck, found))
+
+
+def in_words(pieces: tuple[Piece, ...]) -> str:
+    """Write what is said as a text."""
+    return " ".join(piece.text for piece in pieces)
+
+
+def marked_up(pieces: tuple[Piece, ...]) -> str:
+    """Write what is said for a synthesiser (SSML)."""
+    written: list[str] = []
+    called = False
+    for piece in pieces:
+        # Double brackets would be read as sounds, even within the mark-up.
+        said = escape(piece.text.replace("[[", "[ ["))
+        if piece.call:
+            before = "" if called or not written else f'<break time="{BEFORE}ms"/>'
+            # As a sentence of its own: otherwise the pause is shortened, or the rest slow as well.
+            said = f'{before}<s><prosody rate="{SLOWER}%">{said}</prosody></s>'
+            said += f'<break time="{AFTER}ms"/>'
+        called = piece.call
+        written.append(said)
+    return f"<speak>{' '.join(written)}</speak>" if written else ""
+
+
+def calls(activity: Activity) -> tuple[str, ...]:
+    """Return every text that is known before a game: those in which nobody is spoken to by name.
+
+    Those come first that are said to everybody in the plain strategy: a game begins with them.
+    """
+    plain_first = sorted(activity.strategies, key=lambda s: s != activity.plain_strategy)
+    texts: list[str] = []
+    for strategy in plain_first:
+        for behaviour in activity.behaviours.values():
+            template = behaviour.speech[strategy]
+            if "{name}" in template or "{numbers}" in template:
+                continue
+            if "{call}" in template:
+                texts += [activity.fill(template, "", (n,)) for n in activity.deck.numbers]
+            else:
+                texts.append(activity.fill(template, "", ()))
+    return tuple(dict.fromkeys(texts))
+
+
+def _pieces(text: str, pattern: re.Pattern[str], deck: Deck, found: list[str]) -> Iterator[Piece]:
+    said: set[str] = set()
+    begin = 0
+    for match in pattern.finditer(text):
+        label = _label(match, deck)
+        if not label:
+            continue
+        if before := text[begin : match.start()].strip():
+            yield Piece(before)
+        letter, number = match["letter"], str(int(match["number"]))
+        whole, digits = f"{letter}, {number}.", f"{letter}, {' '.join(number)}."
+        yield Piece(digits if label in said else whole, call=True)
+        if found.count(label) == 1:
+            yield Piece(digits, call=True)
+        said.add(label)
+        begin = match.end()
+    if rest := text[begin:].strip():
+        yield Piece(rest)
+
+
+def _label(match: re.Match[str], deck: Deck) -> str:
+    """Return how the deck writes a call; "" if its column has no such number."""
+    number = int(match["number"])
+    in_column = any(c.letter == match["letter"] and c.low <= number <= c.high for c in deck.columns)
+    return deck.label(number) if in_column else ""
+
+
+@lru_cache(maxsize=8)
+def _pattern(deck: Deck) -> re.Pattern[str]:
+    letters = "|".join(re.escape(c.letter) for c in deck.columns)
+    return re.compile(
+        rf"(?<![\w-])(?P<letter>{letters}){BETWEEN}(?P<number>[0-9]{{1,3}})"
+        r"(?![\w-]|[.,][0-9])[.,;:!?]*"
+    )

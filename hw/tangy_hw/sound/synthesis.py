@@ -1,0 +1,311 @@
+"""From a text to a WAV: espeak-ng in a process of its own, and a cache of what it made before."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import wave
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.voice import VoicePreference
+
+PROGRAM = "espeak-ng"
+USUAL = VoicePreference(rate=140, voice="en-us")  # espeak-ng itself would speak at 175
+ABSENT = f"{PROGRAM} is not installed; what Tangy says is shown as text."
+SECONDS = 10.0  # for a line: 15 ms when nothing else runs
+LONGEST = 5_000  # characters of a text with its mark-up: some five minutes
+MOST_BYTES = 200_000_000  # of the cache; the oldest go first
+HEADER = 44  # bytes before the samples of a WAV as this room writes it
+
+
+class VoiceError(TangyError):
+    """A text cannot be spoken; one sentence that says why."""
+
+
+class Synthesiser:
+    """Makes WAV files of what is to be said, or finds those it made before.
+
+    Its methods wait for a process, and may be called from several threads at once.
+    """
+
+    def __init__(
+        self,
+        folder: Path | None = None,
+        *,
+        which: Callable[[str], str | None] = shutil.which,
+        most_bytes: int = MOST_BYTES,
+        seconds: float = SECONDS,
+    ) -> None:
+        """Look for espeak-ng; nothing is started yet.
+
+        Args:
+            folder: where the WAV files are kept; the user's cache folder if not given.
+            which: finds a program on the path.
+            most_bytes: how large the folder may grow.
+            seconds: after which a line is given up.
+        """
+        self.folder = folder or cache_folder()
+        self._program = which(PROGRAM)
+        self._most = most_bytes
+        self._seconds = seconds
+        self._asking = threading.Lock()  # held while a fact is asked of espeak-ng
+        self._lock = threading.Lock()  # held for moments only
+        self._version: str | None = None
+        self._voices: Mapping[str, str] | None = None
+        self._variants: frozenset[str] | None = None
+        self._bytes: int | None = None
+        self._running: set[subprocess.Popen[bytes]] = set()
+
+    @property
+    def reason(self) -> str:
+        """Why nothing can be spoken here, in one sentence; "" if it can."""
+        return "" if self._program else ABSENT
+
+    @property
+    def version(self) -> str:
+        """The version of espeak-ng.
+
+        Raises:
+            VoiceError: it is not installed, or cannot be run.
+        """
+        with self._asking:
+            if self._version is None:
+                said = self._run(["--version"]).decode(errors="replace")
+                found = re.search(r": *(\S+)", said)
+                self._version = plain(found[1] if found else said.strip())[:40]
+            return self._version
+
+    @property
+    def voices(self) -> Mapping[str, str]:
+        """The voices there are: for each name, whose language it is.
+
+        Raises:
+            VoiceError: as for `version`.
+        """
+        with self._asking:
+            if self._voices is None:
+                self._voices = MappingProxyType(_read_voices(self._run(["--voices"])))
+            return self._voices
+
+    @property
+    def variants(self) -> frozenset[str]:
+        """What can be added to every voice after a plus: other people's throats.
+
+        Raises:
+            VoiceError: as for `version`.
+        """
+        with self._asking:
+            if self._variants is None:
+                found = re.findall(r"!v/(\S+)", self._run(["--voices=variant"]).decode("utf-8"))
+                self._variants = frozenset(found)
+            return self._variants
+
+    def check(self, preference: VoicePreference) -> None:
+        """Check that a voice is there; espeak-ng itself passes over a variant it does not have.
+
+        Raises:
+            VoiceError: there is no such voice; says which is nearest.
+        """
+        name, _, variant = (preference.voice or "").partition("+")
+        listed = "tangy say --voices lists all."
+        if name and name not in self.voices:
+            raise VoiceError(f"There is no voice {name!r}: {_like(name, self.voices)}{listed}")
+        if variant and variant not in self.variants:
+            near = _like(variant, self.variants)
+            raise VoiceError(f"No voice has a variant {variant!r}: {near}{listed}")
+
+    def render(self, marked_up: str, preference: VoicePreference = USUAL) -> Path:
+        """Return a WAV of a text that was marked up, made now or before.
+
+        Raises:
+            VoiceError: espeak-ng is absent or fails, there is no such voice, or nothing can be
+                kept in the folder.
+        """
+        chosen = preference.over(USUAL)
+        path = self.folder / f"{self._key(marked_up, chosen)}.wav"
+        if _is_whole(path):
+            with contextlib.suppress(OSError):
+                os.utime(path)  # what is used is not the oldest
+            return path
+        self.check(chosen)
+        if len(marked_up) > LONGEST:
+            raise VoiceError(f"A text of more than {LONGEST:,} characters is not spoken.")
+        arguments = ["--stdin", "--stdout", "-m", "-z", "-b", "1"]
+        arguments += ["-v", str(chosen.voice), "-s", str(chosen.rate)]
+        self._keep(path, _mended(self._run(arguments, marked_up)))
+        return path
+
+    def end(self) -> None:
+        """End what is being made now."""
+        with self._lock:
+            for process in self._running:
+                _kill(process)
+
+    def clear(self) -> None:
+        """Forget every WAV: names were spoken in them."""
+        for path, _, _ in self._kept():
+            path.unlink(missing_ok=True)
+        with self._lock:
+            self._bytes = None
+
+    def _key(self, marked_up: str, chosen: VoicePreference) -> str:
+        parts = (self.version, str(chosen.voice), str(chosen.rate), marked_up)
+        return hashlib.sha256("\0".join(parts).encode("utf-8", "replace")).hexdigest()[:32]
+
+    def _run(self, arguments: list[str], text: str = "") -> bytes:
+        if self._program is None:
+            raise VoiceError(ABSENT)
+        try:
+            process = subprocess.Popen(  # noqa: S603 - found on the path; the text goes to its stdin
+                [self._program, *arguments],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise VoiceError(f"{PROGRAM} cannot be started ({error.strerror}).") from None
+        with self._lock:
+            self._running.add(process)
+        try:
+            made, said = process.communicate(text.encode("utf-8", "replace"), self._seconds)
+        except subprocess.TimeoutExpired:
+            _kill(process)
+            process.communicate()
+            raise VoiceError(f"{PROGRAM} did not answer in {self._seconds:g} s.") from None
+        finally:
+            with self._lock:
+                self._running.discard(process)
+        if process.returncode:
+            last = plain(said.decode(errors="replace").strip())[-120:]
+            raise VoiceError(f"{PROGRAM} failed: {last or f'status {process.returncode}'}.")
+        return made
+
+    def _keep(self, path: Path, content: bytes) -> None:
+        """Write a file so that it is there as a whole or not at all, and drop the oldest."""
+        try:
+            self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            descriptor, unfinished = tempfile.mkstemp(".tmp", dir=self.folder)
+            try:
+                with os.fdopen(descriptor, "wb") as file:
+                    file.write(content)
+                os.replace(unfinished, path)  # noqa: PTH105 - the one call that swaps a file
+            except BaseException:
+                Path(unfinished).unlink(missing_ok=True)
+                raise
+        except OSError as error:
+            raise VoiceError(
+                plain(f"{self.folder}: what is to be said cannot be kept there ({error.strerror}).")
+            ) from None
+        with self._lock:
+            if self._bytes is None:
+                self._bytes = sum(size for _, size, _ in self._kept())
+            else:
+                self._bytes += len(content)
+            if self._bytes > self._most:
+                self._bytes = self._trim(path)
+
+    def _trim(self, newest: Path) -> int:
+        """Drop the oldest files until a tenth of the room is free; return what is left in bytes."""
+        kept = sorted(self._kept(), key=lambda entry: entry[2])
+        left = sum(size for _, size, _ in kept)
+        for path, size, _ in kept:
+            if left <= 0.9 * self._most:
+                break
+            if path != newest:
+                path.unlink(missing_ok=True)
+                left -= size
+        return left
+
+    def _kept(self) -> list[tuple[Path, int, float]]:
+        """List the files in the folder, with bytes and time; another process may drop some."""
+        kept: list[tuple[Path, int, float]] = []
+        for pattern in ("*.wav", "*.tmp"):
+            for path in self.folder.glob(pattern):
+                with contextlib.suppress(OSError):
+                    status = path.stat()
+                    kept.append((path, status.st_size, status.st_mtime))
+        return kept
+
+
+def cache_folder() -> Path:
+    """Return the folder of the user's cache in which spoken texts are kept."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tangy", appauthor=False) / "voice"
+
+
+def wav_seconds(path: Path) -> float:
+    """Return how long a WAV of this room is, in seconds; 0 if it is none."""
+    try:
+        with wave.open(str(path)) as file:
+            return float(file.getnframes() / file.getframerate())
+    except (OSError, EOFError, wave.Error, ZeroDivisionError):
+        return 0.0
+
+
+def _mended(made: bytes) -> bytes:
+    """Write the true length into a WAV from a pipe, in which it could not be known."""
+    mended = io.BytesIO()
+    try:
+        with wave.open(io.BytesIO(made)) as source, wave.open(mended, "wb") as target:
+            samples = source.readframes(len(made))
+            target.setparams(source.getparams())
+            target.writeframes(samples)
+    except (EOFError, wave.Error):
+        samples = b""
+    if not samples:
+        raise VoiceError(f"{PROGRAM} made no sound of it.")
+    return mended.getvalue()
+
+
+def _is_whole(path: Path) -> bool:
+    """Say whether a file is a WAV of this room, with all its samples."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEADER)
+            size = os.fstat(file.fileno()).st_size
+    except OSError:
+        return False
+    samples = int.from_bytes(head[40:44], "little")
+    right = head[:4] == b"RIFF" and head[8:12] == b"WAVE" and head[36:40] == b"data"
+    return right and samples > 0 and size == HEADER + samples
+
+
+def _read_voices(listed: bytes) -> dict[str, str]:
+    """Read a list of voices: by language, and by the wider languages that a voice stands for.
+
+    Several may stand for one; the one with the lowest number is used, as espeak-ng does.
+    """
+    voices: dict[str, str] = {}
+    wider: dict[str, tuple[int, str]] = {}
+    for line in listed.decode("utf-8", "replace").splitlines()[1:]:
+        words = line.split(maxsplit=4)
+        if len(words) < 5:
+            continue
+        voices[words[1]] = title = plain(words[3].strip("_").replace("_", " "))
+        for language, rank in re.findall(r"\(([\w-]+) (\d+)\)", words[4]):
+            wider[language] = min(wider.get(language, (99, "")), (int(rank), title))
+    return {language: title for language, (_, title) in wider.items()} | voices
+
+
+def _like(word: str, words: Mapping[str, str] | frozenset[str]) -> str:
+    said = nearest(word, words)
+    return f"{said} " if said.startswith("did you mean") else ""
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
