@@ -23,6 +23,7 @@ from tangy_tui.verbs import (
     learn,
     log,
     machine,
+    mic,
     people,
     play,
     teach,
@@ -75,6 +76,7 @@ for verb in VERBS:
     app.command()(verb)
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
+app.add_typer(mic.app, name="mic")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(activity.app, name="activity")
 app.add_typer(log.app, name="log")

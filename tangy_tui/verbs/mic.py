@@ -1,0 +1,124 @@
+"""`tangy mic`: hand a laptop's microphone on to the Tangy that runs on this robot."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data
+
+if TYPE_CHECKING:
+    from tangy_hw.sound.forwarding import Forwarder
+
+LINUX = "arecord -q -t raw -f S16_LE -r 16000 -c 1 | ssh ROBOT tangy mic"
+MACOS = "rec -q -t raw -b 16 -e signed -r 16000 -c 1 - | ssh ROBOT tangy mic"
+
+HELP = f"""Hand a laptop's microphone on to the Tangy that runs here with --mic socket.
+
+Run it from the laptop, beside the connection in which Tangy runs. ROBOT is how you log in there.
+
+\b
+Linux:
+  {LINUX}
+macOS, with sox:
+  {MACOS}
+macOS, with ffmpeg:
+  ffmpeg -loglevel error -f avfoundation -i :default -f s16le -ar 16000 -ac 1 - \\
+    | ssh ROBOT tangy mic
+
+It takes raw samples (16 bits, 16,000 a second, one channel) or a WAV of them, waits for a Tangy
+that does not listen yet, and finds it again when it is started again. Ctrl+C ends it.
+"""
+
+BAR = 30  # columns
+WORDS_SECONDS = 1.0  # between two looks at the meter
+FIRST_WORDS = 4  # looks after connecting, when it is said that all is well
+
+app = typer.Typer(rich_markup_mode=None, help=HELP)
+
+
+@app.callback(invoke_without_command=True)
+def mic(
+    context: typer.Context,
+    data: Data = None,
+    socket: Annotated[
+        Path | None, typer.Option(help="Where Tangy listens, if it was given --mic socket:PATH.")
+    ] = None,
+) -> None:
+    """Hand standard input on, where no verb is given."""
+    if context.invoked_subcommand is None:
+        forward(data, socket)
+    elif (data, socket) != (None, None):
+        verb = context.invoked_subcommand
+        raise TangyError(f"Options of `tangy mic {verb}` stand after {verb}.")
+
+
+def forward(data: Path | None, socket: Path | None) -> None:
+    """Hand standard input on until it ends."""
+    from tangy_hw.sound.forwarding import Forwarder, TakenOver
+    from tangy_hw.sound.piped import open_standard_input
+    from tangy_hw.sound.sources import SOCKET_NAME
+    from tangy_tui.house import data_folder
+
+    if sys.stdin is not None and sys.stdin.isatty():
+        raise TangyError(
+            f"mic: no sound comes in. Linux: `{LINUX}`. macOS: `{MACOS}`. See `tangy mic --help`."
+        )
+    source = open_standard_input("mic", 0, convert=False)
+    forwarder = Forwarder(source, socket or data_folder(data) / SOCKET_NAME, tell=_say)
+    try:
+        asyncio.run(_run(forwarder))
+    except KeyboardInterrupt:
+        pass
+    except TakenOver as error:
+        _say(str(error))
+        raise typer.Exit(1) from None
+    finally:
+        if sys.stderr.isatty():
+            print(file=sys.stderr)
+
+
+async def _run(forwarder: Forwarder) -> None:
+    showing = asyncio.create_task(_show(forwarder))
+    try:
+        await forwarder.run()
+    finally:
+        showing.cancel()
+
+
+async def _show(forwarder: Forwarder) -> None:
+    """Say how loud it is: every second on a terminal, elsewhere when there is something new."""
+    connected, wrong = 0, ""
+    while True:
+        await asyncio.sleep(WORDS_SECONDS)
+        connected += forwarder.connected
+        if sys.stderr.isatty():
+            _draw(forwarder)
+            continue
+        words = forwarder.meter.words(speaking=connected == FIRST_WORDS)
+        kind = words.partition(":")[0].rstrip("0123456789 s")
+        if kind != wrong or connected == FIRST_WORDS:
+            _say(words or "The sound is loud enough.")
+            connected += connected == FIRST_WORDS
+        wrong = kind
+
+
+def _draw(forwarder: Forwarder) -> None:
+    """Draw a bar, and what is wrong beside it, over the last one."""
+    state = "connected" if forwarder.connected else "waiting for Tangy"
+    columns = shutil.get_terminal_size().columns
+    bar = "#" * round(BAR * forwarder.meter.level)
+    line = f"[{bar:<{BAR}}] {forwarder.meter.words(speaking=False) or state}"
+    print(f"\r{plain(line)[: columns - 1]}\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _say(sentence: str) -> None:
+    start = "\r\033[K" if sys.stderr.isatty() else ""
+    print(f"{start}tangy: {plain(sentence)}", file=sys.stderr, flush=True)
