@@ -32,6 +32,9 @@ MIGRATIONS: tuple[str, ...] = (
     CREATE TRIGGER unchanged BEFORE UPDATE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
     CREATE TRIGGER undeleted BEFORE DELETE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
     """,
+    """
+    CREATE TABLE speech (person TEXT PRIMARY KEY, pronunciation TEXT, rate INTEGER, voice TEXT);
+    """,
 )
 """MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
 
@@ -191,7 +194,11 @@ class LogFile:
         version: int = db.execute("PRAGMA user_version").fetchone()[0]
         known = len(MIGRATIONS)
         if version > known or (0 < version < known and not self.writable):
-            whose = "a newer Tangy; update this one" if version > known else "an older Tangy"
+            whose = (
+                "a newer Tangy; update this one"
+                if version > known
+                else "an older Tangy; `tangy teach` updates it"
+            )
             problem = f"was written (as version {version}; this is {known}) by {whose}"
             raise self.wrong(f"{problem}, or choose another folder with --data")
         return version

@@ -1,8 +1,8 @@
 """The append-only event log of one data folder, and what is counted out of it.
 
 One process writes a folder at a time; any number may read beside it (see `log_file`). Names of
-people stand in a table of their own, so that they can be forgotten while the counts that beliefs
-are made of stay.
+people stand in a table of their own, and how they are pronounced and spoken to in another, so that
+they can be forgotten while the counts that beliefs are made of stay.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from typing import Any, NamedTuple, Self
 
 from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.log_file import FILE, LogFile
+from tangy_profiles.phones import read_name_phones
 from tangy_profiles.reading import plain
+from tangy_profiles.voice import VoicePreference
 
 LONGEST_NAME = 40  # characters
 WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up a checkpoint
@@ -207,6 +209,8 @@ class Store:
     def rename(self, person: str, name: str) -> None:
         """Give a person a name, and log that ("renamed"), but not the name.
 
+        How another name was pronounced is forgotten.
+
         Raises:
             TangyError: the name is empty, longer than 40 characters, or not all printable.
         """
@@ -217,8 +221,41 @@ class Store:
         if len(name.strip()) > LONGEST_NAME:
             raise TangyError(f"A name must have at most {LONGEST_NAME} characters.")
         with self.transaction():
+            if self.names().get(person) != name.strip():
+                self._write("UPDATE speech SET pronunciation = NULL WHERE person = ?", (person,))
             self._write("INSERT OR REPLACE INTO name VALUES (?, ?)", (person, name.strip()))
             self.append("renamed", {}, person=person)
+
+    def pronunciations(self) -> dict[str, str]:
+        """Return how the names of people are pronounced, by id, of those who have that noted."""
+        rows = self._rows("SELECT person, pronunciation FROM speech ORDER BY person")
+        return {person: phones for person, phones in rows if phones is not None}
+
+    def pronounce(self, person: str, phones: str | None) -> None:
+        """Note how a person's name is pronounced (None: no more), and log that, but not how.
+
+        Raises:
+            ProfileError: one of the phones is none.
+        """
+        self._note(person, "pronunciation", None if phones is None else read_name_phones(phones))
+
+    def voices(self) -> dict[str, VoicePreference]:
+        """Return how people like to be spoken to, by id, of those who have that noted."""
+        rows = self._rows("SELECT person, rate, voice FROM speech ORDER BY person")
+        return {person: VoicePreference(rate, voice) for person, rate, voice in rows}
+
+    def prefer_voice(self, person: str, preference: VoicePreference) -> None:
+        """Note how a person likes to be spoken to, and log that, but not how."""
+        with self.transaction():
+            self._note(person, "rate", preference.rate)
+            self._note(person, "voice", preference.voice)
+
+    def _note(self, person: str, what: str, value: str | int | None) -> None:
+        """Keep one thing about how to speak of or to a person, where it can be forgotten."""
+        with self.transaction():
+            self._write("INSERT OR IGNORE INTO speech (person) VALUES (?)", (person,))
+            self._write(f"UPDATE speech SET {what} = ? WHERE person = ?", (value, person))  # noqa: S608
+            self.append("speech noted", {"what": what}, person=person)
 
     def check(self) -> list[str]:
         """Read the whole log and return what is wrong with it, a sentence each ([]: nothing)."""
