@@ -55,16 +55,18 @@ def in_words(pieces: tuple[Piece, ...]) -> str:
 def marked_up(pieces: tuple[Piece, ...]) -> str:
     """Write what is said for a synthesiser (SSML)."""
     written: list[str] = []
-    called = False
-    for piece in pieces:
+    for place, piece in enumerate(pieces):
         # Double brackets would be read as sounds, even within the mark-up.
         said = escape(piece.text.replace("[[", "[ ["))
         if piece.call:
-            before = "" if called or not written else f'<break time="{BEFORE}ms"/>'
-            # As a sentence of its own: otherwise the pause is shortened, or the rest slow as well.
-            said = f'{before}<s><prosody rate="{SLOWER}%">{said}</prosody></s>'
-            said += f'<break time="{AFTER}ms"/>'
-        called = piece.call
+            before = place > 0 and not pieces[place - 1].call
+            after = place < len(pieces) - 1
+            # espeak-ng keeps to a pause before the slow part, and at the end within it; one that
+            # comes after it is cut short, and without one the rest is spoken slowly as well.
+            said = (
+                f"{_pause(BEFORE) if before else ''}"
+                f'<prosody rate="{SLOWER}%">{said}{_pause(AFTER) if after else ""}</prosody>'
+            )
         written.append(said)
     return f"<speak>{' '.join(written)}</speak>" if written else ""
 
@@ -86,6 +88,10 @@ def calls(activity: Activity) -> tuple[str, ...]:
             else:
                 texts.append(activity.fill(template, "", ()))
     return tuple(dict.fromkeys(texts))
+
+
+def _pause(milliseconds: int) -> str:
+    return f'<break time="{milliseconds}ms"/>'
 
 
 def _pieces(text: str, pattern: re.Pattern[str], deck: Deck, found: list[str]) -> Iterator[Piece]:
