@@ -1,4 +1,5 @@
 """ARPAbet and the phones of espeak-ng: what it would say for a word, and how to have it said."""
+# ruff: noqa: RUF001 - these letters are IPA
 
 from __future__ import annotations
 

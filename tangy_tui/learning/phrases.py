@@ -163,7 +163,9 @@ def name_phones(person: Person) -> dict[str, str]:
     """Return how the words of a name are said, where the person's pronunciation has them all."""
     words = words_of(clean(person.name))
     phones = person.pronunciation.split(", ") if person.pronunciation else []
-    return dict(zip(words, phones, strict=True)) if len(words) == len(phones) else {}
+    if len(words) != len(phones):
+        return {}
+    return {word: said for word, said in zip(words, phones, strict=True) if not word.isdigit()}
 
 
 def _numbers_of(people: Sequence[Person]) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import unicodedata
 from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
@@ -36,10 +37,11 @@ def pronounce(word: str) -> tuple[str, ...]:
 def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
     """Guess how a word is pronounced: as espeak-ng would say it, else from its spelling.
 
-    "" where neither knows (a word in another script, without espeak-ng). Some 10 ms with
+    "" where neither knows (a word in another script). Some 10 ms with
     espeak-ng, 50 ms without.
     """
-    guessed = espeak_phones.espeak_phones(word, which)
+    latin = all(letter == "'" or "LATIN" in unicodedata.name(letter, "") for letter in word)
+    guessed = espeak_phones.espeak_phones(word, which) if latin else ""
     if not guessed and set(word) <= set(spelling.SOUNDS):
         guessed = spelling.guess(word, _dictionary())
     return " ".join(guessed.split()[:LONGEST])

@@ -79,7 +79,7 @@ def _letter(padded: str, place: int, dictionary: str) -> str:
             votes[align(known, phones)[at + place - start]] += 1
         if votes.total() >= ENOUGH_ALIKE:
             break
-    usual = _SOUNDS[padded[place]] and SOUNDS[padded[place]].split()[0]
+    usual = SOUNDS[padded[place]].partition(" ")[0]
     return max(votes, key=lambda one: votes[one]) if votes else usual
 
 
