@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from tangy_hw.sound.arecord import list_microphones
+from tangy_hw.sound.wav import SoundError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
@@ -50,15 +52,26 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
             "voice", which("espeak-ng"), "Tangy can speak.",
             "espeak-ng is not installed; what Tangy says is shown as text.",
         ),
-        _program(
-            "microphone", which("arecord"), "a local microphone can be used (--mic arecord).",
-            "arecord is not installed; commands are typed, or come from a WAV file.",
-        ),
+        _microphone(which("arecord")),
     ]  # fmt: skip
 
 
 def _program(part: str, found: str | None, present: str, absent: str) -> Finding:
     return Finding(part, found is not None, present if found else absent)
+
+
+def _microphone(arecord: str | None) -> Finding:
+    instead = "or speak into a laptop's microphone (tangy mic --help)."
+    if arecord is None:
+        what = "arecord is not installed; install alsa-utils,"
+        return Finding("microphone", False, f"{what} {instead}")
+    try:
+        found = list_microphones(arecord)
+    except SoundError as error:
+        return Finding("microphone", False, str(error), broken=True)
+    if not found:
+        return Finding("microphone", False, f"none is found; plug one in, {instead}")
+    return Finding("microphone", True, f"{', '.join(found)} can be used (--mic arecord).")
 
 
 def _terminal() -> Finding:

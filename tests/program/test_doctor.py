@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tangy_hw.sound.arecord import list_microphones
+from tangy_hw.sound.wav import SoundError
 from tangy_profiles.store import Store
 from tangy_tui.doctor import Finding, examine
 
@@ -19,7 +21,43 @@ def data_folder(folder: Path) -> Finding:
 def test_a_program_that_is_not_installed_is_missing_and_not_broken(tmp_path: Path) -> None:
     states = {f.part: f.state for f in examine(tmp_path, lambda _: None)}
     assert (states["voice"], states["microphone"]) == ("missing", "missing")
-    assert {f.state for f in examine(tmp_path, str) if f.part in ("voice", "microphone")} == {"ok"}
+    assert {f.state for f in examine(tmp_path, str) if f.part == "voice"} == {"ok"}
+
+
+LISTED = """**** List of CAPTURE Hardware Devices ****
+card 1: PCH [HDA Intel PCH], device 0: ALC257 Analog [ALC257 Analog]
+card 2: Mic [USB Microphone], device 0: USB Audio [USB Audio]"""
+
+
+@pytest.mark.parametrize(
+    ("does", "state", "says"),
+    [
+        (f"echo '{LISTED}'", "ok", "HDA Intel PCH, USB Microphone can be used"),
+        ("echo 'arecord: device_list:274: no soundcards found...' >&2", "missing", "plug one in"),
+        ("echo '**** List of CAPTURE Hardware Devices ****'", "missing", "tangy mic --help"),
+    ],
+    ids=["two", "no cards", "cards that only play"],
+)
+def test_a_recorder_is_no_microphone(tmp_path: Path, does: str, state: str, says: str) -> None:
+    recorder = tmp_path / "arecord"
+    recorder.touch(mode=0o755)
+    recorder.write_text(f"#!/bin/sh\n{does}\n")
+    (found,) = (f for f in examine(tmp_path, lambda _: str(recorder)) if f.part == "microphone")
+    assert (found.state, says in found.text) == (state, True), found.text
+
+
+def test_a_recorder_that_does_not_start_is_broken(tmp_path: Path) -> None:
+    with pytest.raises(SoundError, match="install alsa-utils anew"):
+        list_microphones(str(tmp_path / "none"))
+
+
+def test_a_user_who_may_not_use_the_sound_cards_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "controlC0").touch()
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    with pytest.raises(SoundError, match="join the group audio"):
+        list_microphones("arecord", tmp_path)
 
 
 def test_a_folder_that_is_sound_or_can_be_made_is_ok(tmp_path: Path) -> None:

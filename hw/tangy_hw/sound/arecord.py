@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
+import re
 import shutil
+import subprocess
+from pathlib import Path
 
 from tangy_hw.sound.source import Chunks, Source, WholeSamples
 from tangy_hw.sound.wav import RATE, SoundError
@@ -13,6 +17,10 @@ from tangy_profiles.reading import plain
 RECORD = ("arecord", "-q", "-t", "raw", "-f", "S16_LE", "-r", str(RATE), "-c", "1")
 PIECE = 2 * RATE // 20  # bytes, 50 ms
 AGAIN_SECONDS = 1.5  # between two tries to record from a microphone that has gone
+LIST_SECONDS = 5.0  # for arecord to list what it can record from
+DEVICES = Path("/dev/snd")
+REASONS = {"No such file or directory": "there is none", "No such device": "it is unplugged",
+           "Device or resource busy": "another program uses it"}  # fmt: skip
 END_SECONDS = 2.0  # for arecord to end by itself when it has closed its output
 
 
@@ -72,13 +80,49 @@ class LocalMicrophone(Source):
         try:
             while chunk := await sound.read(PIECE):
                 yield whole.of(chunk)
-            said = plain((await messages.read(2_000)).decode(errors="replace").strip())
+            said = (await messages.read(4_000)).decode(errors="replace")
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(process.communicate(), END_SECONDS)
-            said = said.replace("\N{REPLACEMENT CHARACTER}", " ").strip().rstrip(".")
-            self._why = said[-120:] or "arecord ended"
+            self._why = _reason(said)
         finally:
             if process.returncode is None:
                 with contextlib.suppress(ProcessLookupError):
                     process.kill()
             await process.communicate()  # wait() alone would wait for what nobody reads any more
+
+
+def list_microphones(program: str, devices: Path = DEVICES) -> list[str]:
+    """Return what the sound cards that can record are called.
+
+    Args:
+        program: arecord.
+        devices: where the system keeps its sound devices.
+
+    Raises:
+        SoundError: arecord does not work, or this user may not use the sound cards.
+    """
+    if any(not os.access(device, os.R_OK | os.W_OK) for device in devices.glob("control*")):
+        raise SoundError("this user may not use the sound cards; join the group audio.")
+    try:
+        listed = subprocess.run(  # noqa: S603 - arecord, found on the path
+            [program, "-l"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=LIST_SECONDS,
+            start_new_session=True,
+            env={**os.environ, "LC_ALL": "C"},
+        ).stdout.decode(errors="replace")
+    except (OSError, subprocess.SubprocessError):
+        raise SoundError(
+            "arecord is there, but does not answer; install alsa-utils anew."
+        ) from None
+    named = re.findall(r"^card \d+: [^\[]*\[([^\]]+)\]", listed, re.MULTILINE)
+    return [plain(name) for name in dict.fromkeys(named)]
+
+
+def _reason(said: str) -> str:
+    """Say why arecord ended, from the last line of its messages."""
+    last = plain((said.strip().splitlines() or [""])[-1]).replace("\N{REPLACEMENT CHARACTER}", " ")
+    last = re.sub(r"^arecord: \w+:\d+: ", "", last.strip().rstrip("."))
+    known = (why for words, why in REASONS.items() if words in last)
+    return next(known, last[-120:] or "arecord ended")
