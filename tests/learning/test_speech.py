@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import pty
-import struct
 import subprocess
 import sys
 from collections.abc import AsyncGenerator, Callable
@@ -14,227 +13,18 @@ from threading import Thread
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from tangy_hw.sound.wav import RATE, SoundError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.microphone import LONGEST, Microphone, Splitter, open_microphone, split
+from tangy_tui.learning.microphone import Microphone, open_microphone, split
 from tangy_tui.learning.speech import UNDERSTOOD, Heard, Recogniser, listen, understand
 from tangy_tui.learning.speech_worker import Worker
-from tangy_tui.learning.wav import RATE, SoundError, decode_wav, read_wav
+from tests.hw.sounds import bursts, pcm, tone, wav, written
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
-
-
-Samples = NDArray[np.float64]
-
-
-def tone(seconds: float, rate: int = RATE, hertz: float = 440.0, loud: float = 0.5) -> Samples:
-    return loud * np.sin(2 * np.pi * hertz * np.arange(round(seconds * rate)) / rate)
-
-
-def pcm(samples: Samples) -> bytes:
-    return np.rint(samples * 32_767).astype("<i2").tobytes()
-
-
-def written(samples: Samples, bits: int, *, floating: bool = False) -> bytes:
-    if floating:
-        return samples.astype(f"<f{bits // 8}").tobytes()
-    if bits == 8:
-        return np.rint(samples * 127 + 128).astype(np.uint8).tobytes()
-    whole = np.rint(samples * (2.0 ** (bits - 1) - 1)).astype("<i4")
-    return whole.view(np.uint8).reshape(-1, 4)[:, : bits // 8].tobytes()
-
-
-def wav(
-    sound: bytes,
-    *,
-    codec: int = 1,
-    channels: int = 1,
-    rate: int = RATE,
-    bits: int = 16,
-    extensible: bool = False,
-    before: bytes = b"",
-    size: int | None = None,
-) -> bytes:
-    width = bits // 8 * channels
-    form = struct.pack(
-        "<HHIIHH", 0xFFFE if extensible else codec, channels, rate, rate * width, width, bits
-    )
-    if extensible:
-        form += struct.pack("<HHIH", 22, bits, 0, codec) + bytes(14)
-    chunks = b"fmt " + struct.pack("<I", len(form)) + form + before + b"data"
-    chunks += struct.pack("<I", len(sound) if size is None else size) + sound
-    return b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks
-
-
-def bursts(*lengths: float, pause: float = 0.8, noise: float = 0.0) -> bytes:
-    """Tones of some lengths in s, with a pause before, between and after them."""
-    quiet = np.zeros(round(pause * RATE))
-    parts = [quiet]
-    for length in lengths:
-        parts += [tone(length), quiet]
-    sound = np.concatenate(parts)
-    return pcm(sound + np.random.default_rng(1).normal(0, noise, len(sound)))
-
-
-def spectrum_peak(sound: bytes) -> float:
-    samples = np.frombuffer(sound, "<i2")
-    return float(np.argmax(np.abs(np.fft.rfft(samples)))) * RATE / len(samples)
-
-
-class TestWav:
-    @pytest.mark.parametrize("rate", [8_000, 11_025, 16_000, 22_050, 44_100, 48_000, 96_000])
-    @pytest.mark.parametrize("channels", [1, 2])
-    def test_any_rate_becomes_16_khz_mono(self, rate: int, channels: int) -> None:
-        sound = written(np.repeat(tone(0.5, rate), channels), 16)
-        made = decode_wav(wav(sound, rate=rate, channels=channels), "it")
-        samples = np.frombuffer(made, "<i2") / 32_767
-        assert len(samples) == pytest.approx(RATE / 2, abs=2)
-        assert spectrum_peak(made) == pytest.approx(440, abs=4)
-        assert samples[1_000:-1_000].std() == pytest.approx(0.5 / 2**0.5, rel=0.02)
-
-    @pytest.mark.parametrize(
-        ("bits", "floating"),
-        [(8, False), (16, False), (24, False), (32, False), (32, True), (64, True)],
-    )
-    @pytest.mark.parametrize("extensible", [False, True])
-    def test_any_width_gives_the_same_samples(
-        self, bits: int, floating: bool, extensible: bool
-    ) -> None:
-        content = wav(
-            written(tone(0.1), bits, floating=floating),
-            codec=3 if floating else 1,
-            bits=bits,
-            extensible=extensible,
-        )
-        made = np.frombuffer(decode_wav(content, "it"), "<i2")
-        exact = np.frombuffer(pcm(tone(0.1)), "<i2")
-        assert np.abs(made.astype(int) - exact).max() <= (300 if bits == 8 else 2)
-
-    def test_what_16_khz_cannot_hold_is_cut_off_not_folded(self) -> None:
-        made = decode_wav(wav(written(tone(0.5, 48_000, 10_000), 16), rate=48_000), "it")
-        assert np.abs(np.frombuffer(made, "<i2"))[1_000:-1_000].max() < 330  # -34 dB
-
-    def test_other_chunks_and_the_sizes_of_streams_are_passed_over(self) -> None:
-        listed = b"LIST" + struct.pack("<I", 5) + b"INFOx\0"
-        sound = pcm(tone(0.1))
-        for content in (wav(sound, before=listed), wav(sound, size=0xFFFFFFFF)):
-            assert decode_wav(content, "it") == sound
-
-    @pytest.mark.filterwarnings("error")
-    def test_loud_and_impossible_floats_are_clipped(self) -> None:
-        odd = np.array([2.0, -2.0, np.nan, np.inf, -np.inf, 0.0] * 50)
-        content = wav(written(odd, 32, floating=True), codec=3, bits=32)
-        assert np.abs(np.frombuffer(decode_wav(content, "it"), "<i2").astype(int)).max() <= 32_767
-
-    @pytest.mark.parametrize(
-        ("content", "word"),
-        [
-            (b"", "breaks off"),
-            (b"hello, this is a text file", "not a WAV"),
-            (b"\x89PNG\r\n\x1a\n" + bytes(100), "not a WAV"),
-            (b"RIFF\x00\x00\x00\x00AVI " + bytes(100), "not a WAV"),
-            (wav(pcm(tone(0.1)))[:30], "breaks off"),
-            (wav(b""), "no samples"),
-            (wav(b"\x01"), "no samples"),
-            (wav(bytes(100), codec=7, bits=8), "mu-law"),
-            (wav(bytes(100), bits=12), "12-bit"),
-            (wav(bytes(100), channels=0), "0 channels"),
-            (wav(bytes(100), rate=1), "1 samples"),
-            (wav(bytes(100), rate=1_000_000_000), "1,000,000,000"),
-            (b"RIFF\x00\x00\x00\x00WAVEdata\x04\x00\x00\x00abcd", "does not say"),
-        ],
-    )
-    def test_what_is_no_sound_is_refused_in_a_sentence(
-        self, tmp_path: Path, content: bytes, word: str
-    ) -> None:
-        path = tmp_path / "odd.wav"
-        path.write_bytes(content)
-        with pytest.raises(SoundError, match=word) as refused:
-            read_wav(path)
-        assert str(path) in str(refused.value)
-        assert str(refused.value).endswith((".", ".wav."))
-        assert "\n" not in str(refused.value)
-
-    def test_files_that_cannot_be_read_are_named(self, tmp_path: Path) -> None:
-        for path, word in (
-            (tmp_path / "none.wav", "no such file"),
-            (tmp_path, "not a file"),
-            (tmp_path / "a\0b.wav", "cannot be read"),
-            (tmp_path / ("x" * 300 + ".wav"), "cannot be read"),
-        ):
-            with pytest.raises(SoundError, match=word):
-                read_wav(path)
-
-    @given(st.binary(max_size=200))
-    def test_garbage_is_read_or_refused_but_never_fails(self, garbage: bytes) -> None:
-        head = wav(b"")[: 12 + 8 + 16]
-        for content in (garbage, b"RIFF" + garbage, b"RIFF\0\0\0\0WAVE" + garbage, head + garbage):
-            try:
-                assert isinstance(decode_wav(content, "it"), bytes)
-            except SoundError as refused:
-                assert str(refused).startswith("it: ")
-
-    @given(st.binary(min_size=16, max_size=16), st.binary(min_size=64, max_size=64))
-    def test_any_format_is_read_or_refused_but_never_fails(self, form: bytes, sound: bytes) -> None:
-        content = wav(sound)
-        try:
-            decode_wav(content[:20] + form + content[36:], "it")
-        except SoundError as refused:
-            assert str(refused).startswith("it: ")
-
-
-class TestPauses:
-    def test_utterances_are_split_at_pauses(self) -> None:
-        found = split(bursts(0.6, 1.0, 0.4))
-        assert [len(u) / 2 / RATE for u in found] == pytest.approx([1.0, 1.4, 0.8], abs=0.15)
-
-    def test_a_short_pause_does_not_split(self) -> None:
-        assert len(split(bursts(0.5, 0.5, pause=0.3))) == 1
-
-    @pytest.mark.parametrize("loud", [0.5, 0.02])
-    def test_quiet_and_loud_voices_are_found(self, loud: float) -> None:
-        quiet = np.zeros(RATE)
-        assert len(split(pcm(np.concatenate([quiet, tone(0.6, loud=loud), quiet])))) == 1
-
-    def test_a_recording_that_begins_with_the_voice_is_found(self) -> None:
-        syllables = np.sin(2 * np.pi * 2 * np.arange(RATE) / RATE) ** 2
-        assert len(split(pcm(tone(1.0) * syllables))) == 1
-
-    def test_a_hum_is_not_an_utterance_but_a_voice_above_it_is(self) -> None:
-        assert len(split(bursts(0.6, noise=0.03))) == 1
-        assert split(bursts(noise=0.03, pause=4.0)) == []
-
-    def test_a_voice_is_found_on_a_device_with_a_bias(self) -> None:
-        voice = np.frombuffer(bursts(0.6, 0.6), "<i2") / 32_767
-        assert len(split(pcm(voice + 0.4))) == 2
-
-    def test_silence_bias_and_clicks_hold_none(self) -> None:
-        assert split(b"") == []
-        assert split(bytes(2 * RATE)) == []
-        assert split(pcm(np.full(RATE, 0.3))) == []
-        assert split(bursts(0.04)) == split(bursts(0.08)) == []
-
-    def test_what_never_pauses_is_cut(self) -> None:
-        syllables = np.sin(2 * np.pi * 2 * np.arange(20 * RATE) / RATE) ** 2
-        found = split(pcm(tone(20) * syllables))
-        assert max(len(u) for u in found) / 2 / RATE == pytest.approx(LONGEST, abs=0.02)
-        assert sum(len(u) for u in found) / 2 / RATE > 19
-
-    @given(st.lists(st.integers(1, 9_000), min_size=1, max_size=40))
-    def test_how_the_sound_arrives_makes_no_difference(self, sizes: list[int]) -> None:
-        sound = bursts(0.3, 0.5, pause=0.6)
-        splitter, found, place = Splitter(), [], 0
-        for size in (*sizes, len(sound)):
-            found += splitter.feed(sound[place : place + size])
-            place += size
-        whole = Splitter()
-        assert found + splitter.finish() == whole.feed(sound) + whole.finish()
 
 
 def _write(descriptor: int, content: bytes) -> None:

@@ -1,0 +1,136 @@
+"""The meter: a bar that looks right, and one line of words when something is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tangy_hw.sound.meter import Meter
+from tangy_hw.sound.wav import RATE
+from tests.hw.sounds import pcm, tone
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Listening:
+    """A meter, and time that passes as sound is fed to it."""
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.meter = Meter(self.clock)
+
+    def hear(self, seconds: float, sound: bytes) -> None:
+        """Feed a sound over and over, 50 ms at a time."""
+        size = 2 * RATE // 20
+        for number in range(round(seconds * 20)):
+            place = number * size % len(sound)
+            self.clock.now += 0.05
+            self.meter.feed(sound[place : place + size])
+
+
+SILENCE = bytes(2 * RATE)
+DITHER = pcm(np.tile([0.0, 1.0, 0.0, -1.0], RATE // 4) / 32_767)
+ROOM = pcm(np.random.default_rng(1).normal(0, 20 / 32_768, RATE))
+VOICE = pcm(tone(1.0, loud=0.2))
+
+
+@pytest.fixture
+def on() -> Listening:
+    return Listening()
+
+
+def test_the_bar_is_on_a_scale_of_decibels(on: Listening) -> None:
+    shown = []
+    for loud in (1.0, 0.1, 0.01, 0.001, 0.0):
+        on.meter.begin()
+        on.hear(0.1, pcm(tone(1.0, loud=loud)))
+        shown.append(on.meter.level)
+    assert shown == pytest.approx([1.0, 2 / 3, 1 / 3, 0.0, 0.0], abs=0.02)
+
+
+def test_the_bar_rises_at_once_and_falls_slowly(on: Listening) -> None:
+    on.hear(0.05, VOICE)
+    loud = on.meter.level
+    on.hear(0.1, SILENCE)
+    assert loud - 0.2 < on.meter.level < loud
+    on.clock.now += 1.0
+    assert on.meter.level == 0.0
+
+
+def test_a_bias_of_the_device_is_not_loud(on: Listening) -> None:
+    on.hear(1.0, pcm(np.full(RATE, 0.3)))
+    assert on.meter.level == 0.0
+
+
+def test_a_voice_gives_no_words(on: Listening) -> None:
+    on.hear(5.0, VOICE)
+    assert (on.meter.words(), on.meter.clipping) == ("", False)
+    assert on.meter.seconds_since_sound == on.meter.seconds_since_data == 0.0
+
+
+@pytest.mark.parametrize("sound", [SILENCE, DITHER], ids=["zeros", "the last bit"])
+def test_a_microphone_that_is_off_is_asked_about_after_two_seconds(
+    on: Listening, sound: bytes
+) -> None:
+    on.hear(3.0, VOICE)
+    on.hear(1.9, sound)
+    assert "No sound" not in on.meter.words()
+    on.hear(0.3, sound)
+    assert on.meter.words().startswith("No sound for 2 s: is the microphone plugged in?")
+    on.hear(3.0, sound)
+    assert on.meter.words().startswith("No sound for 5 s:")
+    on.hear(0.1, VOICE)
+    assert on.meter.words() == ""
+
+
+def test_nothing_at_all_is_told_from_silence(on: Listening) -> None:
+    on.hear(1.0, VOICE)
+    on.clock.now += 2.1
+    assert on.meter.words() == "Nothing has come from the microphone for 2 s: is it connected?"
+    on.hear(2.1, SILENCE)
+    assert on.meter.words().startswith("No sound for")
+
+
+def test_what_touches_the_rails_is_too_loud_for_half_a_second(on: Listening) -> None:
+    on.hear(0.5, pcm(np.clip(tone(1.0, loud=1.3), -1, 1)))
+    assert on.meter.clipping
+    assert on.meter.words().startswith("Too loud:")
+    on.hear(0.6, VOICE)
+    assert not on.meter.clipping
+    assert on.meter.words() == ""
+
+
+def test_a_single_click_is_not_too_loud(on: Listening) -> None:
+    click = np.frombuffer(VOICE, "<i2").copy()
+    click[100] = -32_768
+    on.hear(0.05, click.tobytes())
+    assert not on.meter.clipping
+
+
+def test_a_quiet_room_is_worth_a_word_only_when_somebody_should_speak(on: Listening) -> None:
+    on.hear(1.9, ROOM)
+    assert on.meter.words() == "", "they have only just begun"
+    on.hear(0.2, ROOM)
+    assert on.meter.words().startswith("Very quiet:")
+    assert on.meter.words(speaking=False) == ""
+    on.meter.begin()
+    assert on.meter.words() == ""
+
+
+def test_pauses_between_words_are_not_very_quiet(on: Listening) -> None:
+    for _ in range(3):
+        on.hear(0.5, VOICE)
+        on.hear(2.0, ROOM)
+        assert on.meter.words() == ""
+
+
+def test_a_long_chunk_counts_by_its_end(on: Listening) -> None:
+    on.meter.feed(VOICE * 10 + SILENCE)
+    assert on.meter.level == 0.0
+    on.meter.feed(b"")
+    on.meter.feed(b"\x01")
