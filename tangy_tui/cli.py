@@ -25,7 +25,9 @@ from tangy_tui.verbs import (
     machine,
     mic,
     people,
+    people_speech,
     play,
+    say,
     teach,
 )
 from tangy_tui.verbs.common import Ascii, Data, full_screen, open_house
@@ -70,10 +72,13 @@ VERBS: tuple[Callable[..., None], ...] = (
     play.demo,
     drill.drill,
     machine.listen,
+    say.say,
     machine.doctor,
 )
 for verb in VERBS:
     app.command()(verb)
+people.app.command("pronounce")(people_speech.people_pronounce)
+people.app.command("voice")(people_speech.people_voice)
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
 app.add_typer(mic.app, name="mic")

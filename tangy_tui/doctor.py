@@ -12,6 +12,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tangy_hw.sound.arecord import list_microphones
+from tangy_hw.sound.player import examine_output
+from tangy_hw.sound.synthesis import examine_voice
 from tangy_hw.sound.wav import SoundError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
@@ -48,16 +50,24 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
         _terminal(),
         _store(folder),
         _speech(),
-        _program(
-            "voice", which("espeak-ng"), "Tangy can speak.",
-            "espeak-ng is not installed; what Tangy says is shown as text.",
-        ),
+        _voice(which),
+        _sound_output(which),
         _microphone(which("arecord")),
-    ]  # fmt: skip
+    ]
 
 
-def _program(part: str, found: str | None, present: str, absent: str) -> Finding:
-    return Finding(part, found is not None, present if found else absent)
+def _voice(which: Callable[[str], str | None]) -> Finding:
+    version, problem = examine_voice(which)
+    if problem:
+        return Finding("voice", False, problem, broken=bool(version))
+    return Finding("voice", True, f"Tangy can speak, with {version}.")
+
+
+def _sound_output(which: Callable[[str], str | None]) -> Finding:
+    player, problem = examine_output(which)
+    if player:
+        return Finding("sound output", True, f"{player} plays what Tangy says.")
+    return Finding("sound output", False, f"{problem}; what Tangy says is shown as text.")
 
 
 def _microphone(arecord: str | None) -> Finding:

@@ -28,7 +28,7 @@ PROGRAMS = {
 """The programs that play a WAV, and how they are called; the first that works is used."""
 
 SINKS = ("auto", *PROGRAMS, "null")
-ABSENT = "No program that plays sound is installed (aplay is in alsa-utils)."
+ABSENT = "no program that plays sound is installed (aplay is in alsa-utils)"
 LATE = 10.0  # s that a player may take longer than its WAV: a device that is in use lets it wait
 TRY_SECONDS = 5.0  # for a moment of silence to be played
 
@@ -74,7 +74,7 @@ class ProgramPlayer:
             PlayerError: there is none.
         """
         if not commands:
-            raise PlayerError(ABSENT)
+            raise PlayerError(f"{ABSENT[0].upper()}{ABSENT[1:]}.")
         self._commands = [tuple(command) for command in commands]
         self._late = late
         self._pid: int | None = None
@@ -189,9 +189,9 @@ def examine_output(which: Callable[[str], str | None] = shutil.which) -> tuple[s
     """Try, with a moment of silence, whether anything could be heard here.
 
     Returns:
-        The program that plays, and what is wrong with it; either may be "".
+        The program that plays, and what is wrong if there is none; one of them is "".
     """
-    problem = ""
+    problem = ABSENT
     for program, *options in _installed(which):
         problem = _try(program, options)
         if not problem:
@@ -221,7 +221,7 @@ def _try(program: str, options: Sequence[str]) -> str:
     if done.returncode == 0:
         return ""
     said = _last_line(done.stderr) or f"status {done.returncode}"
-    return f"{Path(program).name} says: {said}"
+    return f"{Path(program).name} finds nothing to play on ({said})"
 
 
 def _installed(which: Callable[[str], str | None], *names: str) -> list[tuple[str, ...]]:

@@ -23,7 +23,7 @@ from tangy_profiles.voice import VoicePreference
 
 PROGRAM = "espeak-ng"
 USUAL = VoicePreference(rate=140, voice="en-us")  # espeak-ng itself would speak at 175
-ABSENT = f"{PROGRAM} is not installed; what Tangy says is shown as text."
+ABSENT = f"{PROGRAM} is not installed; until it is, what Tangy says is shown as text."
 SECONDS = 10.0  # for a line: 15 ms when nothing else runs
 LONGEST = 5_000  # characters of a text with its mark-up: some five minutes
 MOST_BYTES = 200_000_000  # of the cache; the oldest go first
@@ -32,6 +32,10 @@ HEADER = 44  # bytes before the samples of a WAV as this room writes it
 
 class VoiceError(TangyError):
     """A text cannot be spoken; one sentence that says why."""
+
+
+class NoSuchVoice(VoiceError):
+    """A voice that is not there was asked for; says which is nearest."""
 
 
 class Synthesiser:
@@ -116,15 +120,16 @@ class Synthesiser:
         """Check that a voice is there; espeak-ng itself passes over a variant it does not have.
 
         Raises:
-            VoiceError: there is no such voice; says which is nearest.
+            NoSuchVoice: there is no such voice; says which is nearest.
+            VoiceError: as for `version`.
         """
         name, _, variant = (preference.voice or "").partition("+")
         listed = "tangy say --voices lists all."
         if name and name not in self.voices:
-            raise VoiceError(f"There is no voice {name!r}: {_like(name, self.voices)}{listed}")
+            raise NoSuchVoice(f"There is no voice {name!r}: {_like(name, self.voices)}{listed}")
         if variant and variant not in self.variants:
             near = _like(variant, self.variants)
-            raise VoiceError(f"No voice has a variant {variant!r}: {near}{listed}")
+            raise NoSuchVoice(f"No voice has a variant {variant!r}: {near}{listed}")
 
     def render(self, marked_up: str, preference: VoicePreference = USUAL) -> Path:
         """Return a WAV of a text that was marked up, made now or before.
@@ -245,6 +250,26 @@ def cache_folder() -> Path:
     from platformdirs import user_cache_path
 
     return user_cache_path("tangy", appauthor=False) / "voice"
+
+
+def examine_voice(which: Callable[[str], str | None] = shutil.which) -> tuple[str, str]:
+    """Try whether a word can be spoken here; nothing is played, and nothing kept.
+
+    Returns:
+        The program with its version ("" if it is not installed), and what is wrong with it
+        ("" if nothing is).
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        synthesiser = Synthesiser(Path(folder), which=which)
+        if synthesiser.reason:
+            return "", synthesiser.reason
+        named = PROGRAM
+        try:
+            named += f" {synthesiser.version}"
+            synthesiser.render("<speak>hello</speak>")
+        except VoiceError as error:
+            return named, f"{str(error).rstrip('.')}; what Tangy says is shown as text."
+    return named, ""
 
 
 def wav_seconds(path: Path) -> float:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tangy_hw.sound.caller import as_called, marked_up
 from tangy_hw.sound.player import Player, PlayerError
-from tangy_hw.sound.synthesis import USUAL, Synthesiser, VoiceError
+from tangy_hw.sound.synthesis import USUAL, NoSuchVoice, Synthesiser, VoiceError
 from tangy_profiles.cards import Deck
 from tangy_profiles.voice import VoicePreference
 
@@ -204,7 +204,7 @@ class Voice:
             return None
         try:
             return await asyncio.to_thread(self._synthesiser.render, written, preference)
-        except VoiceError as error:
+        except NoSuchVoice as error:
             if preference.voice == self._usual.voice:
                 raise
             usual = VoicePreference(preference.rate, self._usual.voice)
