@@ -17,6 +17,7 @@ from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.state import FRONT
 from tangy_profiles.store import Store
+from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
 if TYPE_CHECKING:
@@ -70,14 +71,30 @@ class House:
         self.robot: Robot = load_robot()
         self.robot.check(self.activity)
         self.room: Room = load_room()
-        people = load_people(users)
+        self._sample = load_people(users)
         self.store = Store.open(folder, write=write, now=now)
-        names = self.store.names()
-        self.people = tuple(Person(p.id, names.get(p.id, p.name)) for p in people)
+        self.people: tuple[Person, ...] = ()
+        self.read_people()
 
     def close(self) -> None:
         """Close the store."""
         self.store.close()
+
+    def read_people(self) -> None:
+        """Read anew what is known of the people: names, how they are said, voices, seats."""
+        names, said = self.store.names(), self.store.pronunciations()
+        voices = self.store.voices()
+        self.people = self.room.placed(
+            [
+                Person(
+                    p.id,
+                    names.get(p.id, p.name),
+                    said.get(p.id, p.pronunciation),
+                    voices.get(p.id, p.voice),
+                )
+                for p in self._sample
+            ]
+        )
 
     def name(self, person: str) -> str:
         """Return a person's name."""
@@ -114,6 +131,23 @@ class House:
         if wanted in taken:
             raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
         self.store.rename(person.id, name)
+        self.read_people()
+
+    def pronounce(self, person: Person, phones: str | None) -> None:
+        """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
+
+        Raises:
+            ProfileError: a phone is none, or there are not as many words as in the name.
+        """
+        from tangy_tui.learning.pronouncing import check_name
+
+        self.store.pronounce(person.id, phones and check_name(phones, person.name))
+        self.read_people()
+
+    def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
+        """Note how a person likes to be spoken to."""
+        self.store.prefer_voice(person.id, preference)
+        self.read_people()
 
     @property
     def names(self) -> dict[str, str]:
@@ -227,6 +261,7 @@ class House:
             self.persuasion(Random(f"{seed}/persuasion")),
             self.store,
             names=self.names,
+            people=self.people,
             seed=seed,
             answers=Answers(self.store, self.activity) if asks else None,
         )

@@ -6,7 +6,7 @@ What happens is in the log before it is told.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 from uuid import uuid4
@@ -132,12 +132,14 @@ class Facilitation:
         store: Store,
         *,
         names: Mapping[str, str],
+        people: Sequence[Person] = (),
         seed: int,
         answers: Answers | None = None,
     ) -> None:
         """Prepare to run games.
 
         Args:
+            people: what else is known of those who have the names: how they and seats are called.
             answers: where a teacher is present, what learns from the answers; without it, a
                 situation that Tangy is not sure about ends the game.
         """
@@ -155,6 +157,7 @@ class Facilitation:
         self._activity = world.activity
         self._store = store
         self._names = names
+        self._people = {person.id: person for person in people}
         self._seed = seed
         self._game = ""
 
@@ -241,7 +244,8 @@ class Facilitation:
 
     def verifier(self) -> Verifier:
         """Make the door through which a teacher answers: every command is verified first."""
-        people = [Person(id, self._names.get(id, id)) for id in self.world.people]
+        named = {id: Person(id, self._names.get(id, id)) for id in self.world.people} | self._people
+        people = [named[id] for id in self.world.people]
         phrasebook = Phrasebook(self._activity, people)
         return Verifier(self._activity, phrasebook, self.world.observe, self._names)
 

@@ -83,6 +83,7 @@ class Teaching:
         self._first = again
         self._verifier: Verifier
         self._undone: list[Step] = []
+        self._people = {person.id: person for person in people}
         self._names = {person.id: person.name for person in people}
         self._store = store
         self._make_world = make_world
@@ -230,7 +231,7 @@ class Teaching:
         self.demonstration = demonstration
         self.world = world
         self._undone = []
-        present = [Person(id, self.name(id)) for id in demonstration.people]
+        present = [self._people.get(id, Person(id, id)) for id in demonstration.people]
         self.phrasebook = Phrasebook(self.activity, present)
         self._verifier = Verifier(
             self.activity, self.phrasebook, lambda: self.world.observe(), self._names

@@ -11,7 +11,15 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, open_house, print_json
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    Users,
+    open_house,
+    print_json,
+)
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
@@ -239,13 +247,18 @@ def people_rename(
     as_json: Json = False,
 ) -> None:
     """Give a person another name; what Tangy has learnt of them stays."""
+    from tangy_tui.learning.naming import how_said, naming_lines
+
     with open_house(data, "bingo", users) as house:
         found = house.find_person(person)
         house.rename(found, name)
+        named = house.find_person(found.id)
         if as_json:
-            print_json({"id": found.id, "name": name})
+            print_json({"id": named.id, "name": name, **how_said(named).to_json()})
         else:
-            print(f"{found.id} is now called {plain(name)}.")
+            print(f"{named.id} is now called {plain(name)}.")
+            for line in naming_lines(named):
+                print(plain(line))
 
 
 @contextmanager

@@ -1,0 +1,121 @@
+"""`tangy people pronounce` and `tangy people voice`: how to speak of a person, and to them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, Json, Seed, Users, open_house, print_json
+from tangy_tui.verbs.people import Who
+
+if TYPE_CHECKING:
+    from tangy_profiles.person import Person
+    from tangy_profiles.voice import VoicePreference
+
+Sink = Annotated[str, typer.Option(help="What plays it: auto, the name of a program, or null.")]
+
+
+def people_pronounce(
+    person: Who,
+    phones: Annotated[
+        str | None,
+        typer.Argument(
+            metavar='["R OW Z AH"]',
+            help="ARPAbet phones, a comma between words; without them: how it is said now.",
+        ),
+    ] = None,
+    hear: Annotated[bool, typer.Option("--hear", help="Say it aloud.")] = False,
+    accept: Annotated[bool, typer.Option("--accept", help="Take what is suggested.")] = False,
+    forget: Annotated[bool, typer.Option("--forget", help="Drop what was noted.")] = False,
+    sink: Sink = "auto",
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Say how a person's name is pronounced, so that it is heard when it is spoken."""
+    from tangy_tui.learning.naming import accept_suggested, how_said
+
+    changes = phones is not None or accept or forget
+    if (phones is not None) + accept + forget > 1:
+        raise TangyError("Choose one: phones, --accept or --forget.")
+    with open_house(data, "bingo", users, write=changes) as house:
+        found = house.find_person(person)
+        if accept:
+            phones = accept_suggested(found)
+        if changes:
+            house.pronounce(found, phones)
+            found = house.find_person(found.id)
+        said = how_said(found)
+        if as_json:
+            print_json({"id": found.id, "name": found.name, **said.to_json()})
+        else:
+            print(plain(said.sentence))
+            if said.source == "suggested":
+                print(plain(f"If that is right: tangy people pronounce {found.id} --accept"))
+    if hear:
+        _hear(said.phones, found, sink)
+
+
+def people_voice(
+    person: Who,
+    rate: Annotated[int | None, typer.Option(help="Words a minute, 80 to 260.")] = None,
+    voice: Annotated[
+        str | None, typer.Option(help="A voice such as en-us, en-gb or en-us+f3.")
+    ] = None,
+    usual: Annotated[bool, typer.Option("--usual", help="As with everybody else.")] = False,
+    seed: Seed = None,
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Choose how fast and in which voice Tangy speaks to a person."""
+    from tangy_profiles.voice import VoicePreference
+
+    wanted = VoicePreference(rate, voice)
+    if usual and (rate, voice) != (None, None):
+        raise TangyError("Choose one: --usual, or a --rate and a --voice.")
+    changes = usual or (rate, voice) != (None, None)
+    with open_house(data, "bingo", users, write=changes) as house:
+        found = house.find_person(person)
+        if voice is not None:
+            _check_voice(wanted)
+        if changes:
+            house.prefer_voice(found, VoicePreference() if usual else wanted.over(found.voice))
+            found = house.find_person(found.id)
+        if as_json:
+            chosen = {"rate": found.voice.rate, "voice": found.voice.voice}
+            print_json({"id": found.id, "name": found.name, **chosen})
+        else:
+            print(plain(voice_sentence(found)))
+
+
+def voice_sentence(person: Person) -> str:
+    """Say how a person is spoken to."""
+    parts = []
+    if person.voice.rate is not None:
+        parts.append(f"at {person.voice.rate} words a minute")
+    if person.voice.voice is not None:
+        parts.append(f"in the voice {person.voice.voice}")
+    return f"Tangy speaks to {person.name} {' '.join(parts) or 'as to everybody else'}."
+
+
+def _check_voice(wanted: VoicePreference) -> None:
+    """Refuse a voice that espeak-ng does not have, where it is installed."""
+    from tangy_hw.sound.synthesis import Synthesiser
+
+    synthesiser = Synthesiser()
+    if not synthesiser.reason:
+        synthesiser.check(wanted)
+
+
+def _hear(phones: str, person: Person, sink: str) -> None:
+    from tangy_tui.learning.aloud import hear
+
+    if not phones:
+        raise TangyError(plain(f"Nobody knows how {person.name} is said: give the phones."))
+    asyncio.run(hear(phones, person.voice, sink))
