@@ -30,14 +30,22 @@ PROGRAMS = {
 SINKS = ("auto", *PROGRAMS, "null")
 ABSENT = "no program that plays sound is installed (aplay is in alsa-utils)"
 LATE = 10.0  # s that a player may take longer than its WAV: a device that is in use lets it wait
+END_SECONDS = 1.0  # for a player to be gone when it was killed: 2 ms when nothing else runs
 TRY_SECONDS = 5.0  # for a moment of silence to be played
 
 # The player ends with us, however we end: then the pipe that we hold is closed, and whoever reads
-# from it kills the whole group.
+# from it kills the player. The shell waits for both, so that no dead process is left behind where
+# nobody else would (in a container).
 GUARDED = (
     "/bin/sh",
     "-c",
-    'exec 3<&0 </dev/null; (read -r _; kill -9 0) <&3 >/dev/null 2>&1 & exec 3<&-; "$@"',
+    """exec 3<&0 </dev/null
+    "$@" 3<&- & player=$!
+    (read -r _ <&3; kill -9 $player) >/dev/null 2>&1 & guard=$!
+    exec 3<&-
+    wait $player; status=$?
+    kill -9 $guard; wait $guard
+    exit $status""",
     "tangy",
 )
 
@@ -77,7 +85,7 @@ class ProgramPlayer:
             raise PlayerError(f"{ABSENT[0].upper()}{ABSENT[1:]}.")
         self._commands = [tuple(command) for command in commands]
         self._late = late
-        self._pid: int | None = None
+        self._holding: int | None = None
         self._stopped = False
 
     @property
@@ -97,14 +105,14 @@ class ProgramPlayer:
             del self._commands[0]
 
     def stop(self) -> None:
-        """Cut what is playing: kill the player and its whole process group."""
+        """Cut what is playing: the player is killed within a few milliseconds."""
         self._stopped = True
-        self._kill()
+        self._let_go()
 
     async def _play(self, wav: Path) -> str:
         """Play a WAV with the first program; return what went wrong ("": nothing)."""
         self._stopped = False
-        reading, holding = os.pipe()
+        reading, self._holding = os.pipe()
         try:
             process = await asyncio.create_subprocess_exec(
                 *GUARDED,
@@ -116,34 +124,29 @@ class ProgramPlayer:
                 start_new_session=True,
             )
         except OSError as error:
-            os.close(holding)
+            self._let_go()
             return f"it cannot be started ({error.strerror})"
         except BaseException:
-            os.close(holding)
+            self._let_go()
             raise
         finally:
             os.close(reading)
-        self._pid = process.pid
         try:
-            if self._stopped:
-                self._kill()
             async with asyncio.timeout(wav_seconds(wav) + self._late):
                 _, said = await process.communicate()
         except TimeoutError:
             return "it does not come to an end; the device may be in use"
         finally:
-            self._kill()  # what it left behind, and who reads from the pipe
-            os.close(holding)
-            self._pid = None
-            await process.wait()
+            self._let_go()
+            await _let_end(process)
         if self._stopped or process.returncode == 0:
             return ""
         return _last_line(said) or f"it ended with status {process.returncode}"
 
-    def _kill(self) -> None:
-        if self._pid is not None:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._pid, signal.SIGKILL)
+    def _let_go(self) -> None:
+        if self._holding is not None:
+            os.close(self._holding)
+            self._holding = None
 
 
 class NullPlayer:
@@ -197,6 +200,16 @@ def examine_output(which: Callable[[str], str | None] = shutil.which) -> tuple[s
         if not problem:
             return Path(program).name, ""
     return "", problem
+
+
+async def _let_end(process: asyncio.subprocess.Process) -> None:
+    """Wait for a player that was let go of; kill all of its group if it does not end."""
+    try:
+        await asyncio.wait_for(process.wait(), END_SECONDS)
+    except TimeoutError:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+        await process.wait()
 
 
 def _try(program: str, options: Sequence[str]) -> str:
