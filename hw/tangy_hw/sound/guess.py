@@ -11,7 +11,7 @@ AT_LEAST = 200  # bytes; in fewer, anything may look like anything
 
 TEXT = frozenset((9, 10, 13, 27, *range(32, 127)))
 MIDDLE = frozenset(range(0x40, 0xC0))  # 8-bit silence is 0x80
-SMALL = frozenset((0x00, 0x80, *range(0x30, 0x40), *range(0xB0, 0xC0)))  # floats from -1 to 1
+SMALL = frozenset((0x00, 0x80, *range(0x20, 0x40), *range(0xA0, 0xC0)))  # floats from -1 to 1
 
 
 def odd_kind(head: bytes) -> str:

@@ -39,6 +39,8 @@ class Place:
         try:
             self._lock = _locked(self._beside)
             try:
+                with _address(self.path):
+                    pass  # for whoever connects; it is refused here if it is too long
                 _clear(self.path)
                 self.socket = _bound(self.path)
                 self._made = self.path.lstat()
@@ -104,7 +106,7 @@ def connect(path: Path) -> socket.socket | None:
 
 
 def same_user(connection: socket.socket) -> bool:
-    """Say whether the other end is this user's; the administrator may always connect.
+    """Say whether the other end is this user's or the administrator's.
 
     Where the system does not tell, the mode of the socket has decided already.
     """
@@ -114,7 +116,7 @@ def same_user(connection: socket.socket) -> bool:
     _, user, _ = struct.unpack(
         "3i", connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, size)
     )
-    return user == os.geteuid() or 0 in (user, os.geteuid())
+    return user in (os.geteuid(), 0)
 
 
 def _locked(path: Path) -> int:
