@@ -12,6 +12,9 @@ from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.lexicon import Alike, Lexicon, distinct_word
+from tangy_tui.learning.phrases import Phrase
+from tangy_tui.learning.pronouncing import can_look_up
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +27,21 @@ class Checked:
 
 
 def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> Checked:
-    """Look over an activity that could be read."""
+    """Look over an activity that could be read.
+
+    Phrases that cannot be told from others, or cannot be heard, are mistakes; the game can be
+    played without them, so it loads all the same.
+    """
     mistakes: list[str] = []
     try:
         robot.check(activity)
     except ProfileError as error:
         mistakes.append(str(error))
-    warnings = [*_stages(activity), *_phrases(activity, people)]
-    return Checked(activity.source, tuple(mistakes), tuple(map(plain, warnings)))
+    phrasebook = Phrasebook(activity, people)
+    mistakes += [*_phrases(activity, phrasebook), *_fillers(activity, phrasebook)]
+    mistakes += _sounds(activity, phrasebook)
+    warnings = [*_stages(activity), *_unused(activity, phrasebook)]
+    return Checked(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
 
 
 def _stages(activity: Activity) -> Iterator[str]:
@@ -72,9 +82,8 @@ def _covers(other: StageRule, rule: StageRule) -> bool:
     )  # fmt: skip
 
 
-def _phrases(activity: Activity, people: Sequence[Person]) -> Iterator[str]:
+def _phrases(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
     """Tell of phrases that are understood as another behaviour than the one they stand with."""
-    phrasebook = Phrasebook(activity, people)
     for behaviour in activity.behaviours.values():
         heard = {phrase: _heard(phrasebook, phrase) for phrase in _ways(behaviour)}
         lost = {phrase: as_ for phrase, as_ in heard.items() if as_ != behaviour.name}
@@ -82,7 +91,7 @@ def _phrases(activity: Activity, people: Sequence[Person]) -> Iterator[str]:
         if len(lost) == len(heard):
             yield f"{where}: nobody can ask for it: " + "; ".join(map(_as, lost.items())) + "."
         else:
-            yield from (f"{where} = {phrase!r}: {_as((phrase, as_))}."
+            yield from (f"{where} = {phrase!r}: {_as((phrase, as_))}; ask for it otherwise here."
                         for phrase, as_ in lost.items())  # fmt: skip
 
 
@@ -98,3 +107,51 @@ def _heard(phrasebook: Phrasebook, phrase: str) -> str | None:
 def _as(lost: tuple[str, str | None]) -> str:
     phrase, heard = lost
     return f"{phrase!r} is " + ("not understood" if heard is None else f"heard as {heard!r}")
+
+
+def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that only words which mean nothing by themselves tell apart."""
+    first: dict[str, Phrase] = {}
+    for phrase in phrasebook.table.all():
+        if phrase.user is None and phrase.heard and phrase.bare:
+            other = first.setdefault(" ".join(phrase.bare), phrase)
+            if other.behaviour != phrase.behaviour:
+                little = "only small words tell it from"
+                yield _collision(activity, phrasebook, Alike(phrase, other), little)
+
+
+def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that sound like others, and of words without a pronunciation."""
+    if not can_look_up():
+        return
+    lexicon = Lexicon(phrasebook)
+    for alike in lexicon.alike:
+        if alike.phrase.bare != alike.other.bare:
+            yield _collision(activity, phrasebook, alike, "it sounds like")
+    for said in lexicon.unknown:
+        if said.word in phrasebook.table.own_words:
+            phones = said.phones[0] if said.phones else "..."
+            hear = f" (hear it: tangy activity hear {phones!r})" if said.phones else ""
+            yield (
+                f"{activity.source}: pronunciations: {said.word!r} has no pronunciation; "
+                f'add: {said.word} = "{phones}"{hear}'
+            )
+
+
+def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: str) -> str:
+    phrase, other = alike.phrase, alike.other
+    word = distinct_word(phrasebook, phrase.behaviour, phrase)
+    such = f", such as {word!r}" if word else ""
+    return (
+        f"{activity.source}: behaviours[{phrase.behaviour}].phrases = {phrase.shown!r}: {how} "
+        f"{other.shown!r} of {other.behaviour!r}; put another word into one of them{such}."
+    )
+
+
+def _unused(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of pronunciations of words that nobody says."""
+    table = phrasebook.table
+    known = {word for phrase in (*table.all(), *table.keywords) for word in phrase.words}
+    for word in activity.pronunciations:
+        if word not in known:
+            yield f"{activity.source}: pronunciations.{word}: the word is in no phrase."

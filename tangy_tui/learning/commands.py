@@ -62,11 +62,12 @@ class Phrasebook:
     """What is meant by a text, out of every phrase and keyword of an activity (see `phrases`).
 
     `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
-    the ids of those who can be gone to.
+    the ids of those who can be gone to; `table` has each phrase with all that is known of it.
     """
 
     phrases: Mapping[str, str]
     people: tuple[str, ...]
+    table: Phrases
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         """Make the phrasebook of an activity for the people who take part in it."""
@@ -76,18 +77,18 @@ class Phrasebook:
             name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
             for name in self._to_people
         }
-        self._table = Phrases(activity, people)
-        self._phrases, self._keywords = self._table.by_words, self._table.keywords
+        self.table = Phrases(activity, people)
+        self._phrases, self._keywords = self.table.by_words, self.table.keywords
         self.phrases = MappingProxyType(
             {
                 form: phrase.behaviour
-                for phrase in self._table.all()
+                for phrase in self.table.all()
                 for form in (phrase.shown, phrase.said)
             }
         )
         self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
         self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
-        self._weights = self._table.word_weights()
+        self._weights = self.table.word_weights()
 
     def understand(self, text: str) -> Command | None:
         """Find the behaviour that a text asks for.
@@ -129,14 +130,14 @@ class Phrasebook:
         already has a part of a number in words.
         """
         begun = re.sub(r"\s+", " ", clean(prefix, strip=False).lstrip()).casefold()
-        return self._table.complete(begun)
+        return self.table.complete(begun)
 
     def spoken(self) -> tuple[str, ...]:
         """Return the phrases as they are said, numbers in words: what a recogniser listens for.
 
         The plain name of a behaviour is not among them unless the activity lists it as a phrase.
         """
-        return tuple(dict.fromkeys(phrase.said for phrase in self._table.all() if phrase.heard))
+        return tuple(dict.fromkeys(phrase.said for phrase in self.table.all() if phrase.heard))
 
     def pronunciations(self) -> dict[str, tuple[str, ...]]:
         """Return how words are said (ARPAbet) in place of what a dictionary says of them.
@@ -144,7 +145,7 @@ class Phrasebook:
         They are those of the activity and of the names of people. A name that is a word of the
         phrases as well keeps beside its own what the activity or the dictionary says of it.
         """
-        return dict(self._table.pronunciations)
+        return dict(self.table.pronunciations)
 
     def _exact(self, words: Words) -> Phrase | None:
         return self._phrases.get(words) or self._bare.get(" ".join(bare(words)))
@@ -166,7 +167,7 @@ class Phrasebook:
                 or found.behaviour not in self._to_people
                 or confidence < ALTERNATIVE_AT_LEAST
                 or any(
-                    (*seat, n) in self._table.seats if seat else n in self._table.numbers
+                    (*seat, n) in self.table.seats if seat else n in self.table.numbers
                     for n in numbers
                 )
             ):
@@ -232,7 +233,7 @@ class Phrasebook:
         """Refuse to go to anybody when a number was said that is not that person's."""
         if found.behaviour not in self._to_people:
             return True
-        table = self._table
+        table = self.table
         own = {word for name, id in table.names.items() if id == found.user for word in name}
         if self._seat_in(words):
             own |= {word for seat, id in table.seats.items() if id == found.user for word in seat}
@@ -242,7 +243,7 @@ class Phrasebook:
 
     def _seat_in(self, words: Words) -> Words:
         """Return what a seat is called, where words name one; its number is then no person's."""
-        return next((noun for noun in self._table.seat_nouns if in_order(noun, words)), ())
+        return next((noun for noun in self.table.seat_nouns if in_order(noun, words)), ())
 
     def _command(self, found: Phrase, confidence: float, heard: str, words: Words) -> Command:
         others = [

@@ -76,6 +76,9 @@ class Phrases:
             if behaviour.effect == "go to user":
                 self._add_people(behaviour)
         self.pronunciations = self._read_pronunciations(activity, people)
+        self.sources = dict.fromkeys(self.pronunciations, "person")
+        """Who says how a word is pronounced: "activity" or "person"."""
+        self.sources |= dict.fromkeys(activity.pronunciations, "activity")
 
     def all(self) -> Iterable[Phrase]:
         """The phrases in the order in which they were entered."""

@@ -23,15 +23,23 @@ def pronounce(word: str) -> tuple[str, ...]:
     """Return the pronunciations that the dictionary has of a word, the usual one first.
 
     There are none where it does not have the word, or is not installed. The first call reads the
-    dictionary, 3 MB, in 20 ms; each takes 1 to 5 ms.
+    dictionary, 3 MB, in 20 ms; each takes some 0.1 ms.
     """
     text, key = _dictionary(), word.casefold()
+    if not text or not key.strip():
+        return ()
     found: list[str] = []
-    place = text.find(f"\n{key} ") if key.strip() else -1
+    start, end = _letter(key[0])
+    place = text.find(f"\n{key} ", start, end)
     while place >= 0:
         found.append(text[text.index(" ", place) + 1 : text.index("\n", place + 1)])
-        place = text.find(f"\n{key}({len(found) + 1}) ", place + 1)
+        place = text.find(f"\n{key}({len(found) + 1}) ", place, end)
     return tuple(found)
+
+
+def can_look_up() -> bool:
+    """Say whether the dictionary is installed."""
+    return bool(_dictionary())
 
 
 def suggest(word: str, which: Callable[[str], str | None] = shutil.which) -> str:
@@ -83,6 +91,14 @@ def check_name(text: str, name: str) -> str:
             "put a comma between words."
         )
     return phones
+
+
+@cache
+def _letter(letter: str) -> tuple[int, int]:
+    """Return where in the dictionary the words with a first letter stand."""
+    text = _dictionary()
+    start, last = text.find(f"\n{letter}"), text.rfind(f"\n{letter}")
+    return (start, text.find("\n", last + 1) + 1) if start >= 0 else (0, 0)
 
 
 @cache

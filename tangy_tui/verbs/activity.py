@@ -113,13 +113,14 @@ def _holds_faults(file: str) -> bool:
 def _check(name: str, robot: Robot) -> tuple[Checked, Activity | None]:
     from tangy_profiles.activity import load_activity
     from tangy_profiles.person import load_people
+    from tangy_profiles.room import load_room
     from tangy_tui.learning.checking import Checked, check_activity
 
     try:
         activity = load_activity(name)
     except ProfileError as error:
         return Checked(plain(Path(name).name), (str(error),)), None
-    return check_activity(activity, robot, load_people(SHOWN)), activity
+    return check_activity(activity, robot, load_room().placed(load_people(SHOWN))), activity
 
 
 def _activity_document(name: str, activity: Activity) -> dict[str, Any]:

@@ -10,10 +10,14 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_profiles.activity import read_activity, shipped_activities
+from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import load_people
 from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
 from tangy_sim.injection import KINDS
-from tangy_tui.learning.checking import check_activity
+from tangy_tui.learning.checking import Checked, check_activity
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.monitoring.rules import check_rules
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -31,12 +35,32 @@ advice = ["Look."]
 """
 
 
-def warnings(folder: Path, text: str) -> list[str]:
+def checked(folder: Path, text: str) -> Checked:
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
-    checked = check_activity(read_activity(path), load_robot(), load_people(4))
-    assert not checked.mistakes
-    return list(checked.warnings)
+    people = load_room().placed(load_people(4))
+    return check_activity(read_activity(path), load_robot(), people)
+
+
+def warnings(folder: Path, text: str) -> list[str]:
+    found = checked(folder, text)
+    assert not found.mistakes
+    return list(found.warnings)
+
+
+def mistakes(folder: Path, text: str) -> list[str]:
+    found = checked(folder, text)
+    assert not found.warnings
+    return list(found.mistakes)
+
+
+def with_phrases(*phrases: tuple[str, str]) -> str:
+    """Return what ships with more phrases, each before one that stands there."""
+    text = SHIPPED
+    for before, more in phrases:
+        assert f'"{before}", ' in text
+        text = text.replace(f'"{before}", ', f'"{more}", "{before}", ', 1)
+    return text
 
 
 def test_everything_that_ships_is_well(tangy: Tangy) -> None:
@@ -150,7 +174,7 @@ def colliding() -> str:
 
 def test_a_phrase_that_means_something_else_is_told(tmp_path: Path) -> None:
     text = colliding().replace('"tell a joke", ', '"tell a joke", "say two", ', 1)
-    found = warnings(tmp_path, text)
+    found = mistakes(tmp_path, text)
     assert len(found) == 2
     assert all("behaviours[joke].phrases" in line for line in found)
     assert all("is heard as 'greeting'" in line for line in found)
@@ -161,8 +185,91 @@ def test_a_behaviour_that_nobody_can_ask_for_is_told(tmp_path: Path) -> None:
     text = colliding()
     begun = text.rindex("phrases", 0, text.index('"tell us a joke"'))
     text = text[:begun] + 'phrases = ["say two"]' + text[text.index("]", begun) + 1 :]
-    (found,) = warnings(tmp_path, text)
+    (found,) = mistakes(tmp_path, text)
     assert "behaviours[joke].phrases: nobody can ask for it" in found
+
+
+def test_a_word_without_pronunciation_is_refused_with_the_line_to_add(tmp_path: Path) -> None:
+    text = with_phrases(("tell a joke", "jestificate"))
+    (found,) = mistakes(tmp_path, text)
+    assert found.startswith("mine.toml: pronunciations: 'jestificate' has no pronunciation; add: ")
+    line, _, hear = found.partition("add: ")[2].partition(" (hear it: tangy activity hear ")
+    phones = line.partition(" = ")[2]
+    assert hear.strip("')") == phones.strip('"')
+    table = "[pronunciations]\n"
+    assert not mistakes(tmp_path, text.replace(table, table + line + "\n", 1))
+
+
+@pytest.mark.parametrize(
+    ("phrases", "told"),
+    [
+        (
+            (("tell a joke", "raise it"), ("remove markers", "raze it")),
+            ("behaviours[remove markers].phrases = 'raze it'", "sounds like 'raise it' of 'joke'"),
+        ),
+        (
+            (("tell a joke", "do it now"), ("remove markers", "do it then")),
+            ("behaviours[remove markers].phrases = 'do it then'", "small words", "'do it now'"),
+        ),
+    ],
+)
+def test_phrases_that_cannot_be_told_apart_are_refused_with_a_word_that_helps(
+    tmp_path: Path, phrases: tuple[tuple[str, str], ...], told: tuple[str, ...]
+) -> None:
+    (found,) = mistakes(tmp_path, with_phrases(*phrases))
+    for words in told:
+        assert words in found
+    helps = found.partition("put another word into one of them, such as ")[2].strip("'.")
+    ours, theirs = phrases[1][1], phrases[0][1]
+    assert ours != theirs
+    better = with_phrases(phrases[0], (phrases[1][0], f"{ours} {helps}"))
+    assert not mistakes(tmp_path, better)
+
+
+def test_an_activity_with_such_phrases_is_refused_and_loads(tangy: Tangy, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    text = with_phrases(("tell a joke", "raise it"), ("remove markers", "raze it"))
+    path.write_text(text, encoding="utf-8")
+    done = tangy("activity", "check", path)
+    assert done.returncode == 2
+    assert "raze it" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    lexicon = Lexicon(Phrasebook(read_activity(path), load_people(4)))
+    assert set(lexicon.left_out()) == {"raze it"}
+    assert "raise it" in lexicon.heard()
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ('joke = "JH OW Q"', ("pronunciations.joke = 'JH OW Q'", "'Q'", "did you mean 'K'?")),
+        ('joke = "JHOWK"', ("there is no phone 'JHOWK'",)),
+        ("joke = []", ("at least one",)),
+        ('joke = ""', ("must not be empty",)),
+        ("joke = 3", ("must be",)),
+        ('"two words" = "T UW"', ("one lower-case word",)),
+        ('Joke = "JH OW K"', ("one lower-case word",)),
+        (f'joke = "{"B " * 41}"', ("from 1 to 40 phones",)),
+    ],
+)
+def test_a_pronunciation_that_is_none_is_one_line(
+    tmp_path: Path, line: str, told: tuple[str, ...]
+) -> None:
+    table = "[pronunciations]\n"
+    with pytest.raises(ProfileError) as caught:
+        checked(tmp_path, SHIPPED.replace(table, f"{table}{line}\n", 1))
+    assert "\n" not in str(caught.value)
+    for words in told:
+        assert words in str(caught.value)
+
+
+def test_stress_and_case_of_phones_do_not_matter_and_unused_words_are_told(tmp_path: Path) -> None:
+    table = "[pronunciations]\n"
+    text = SHIPPED.replace(table, table + 'joke = ["jh OW1 k", "JH AO K"]\nzebra = "Z IY"\n', 1)
+    (found,) = warnings(tmp_path, text)
+    assert "pronunciations.zebra" in found
+    activity = read_activity(tmp_path / "mine.toml")
+    assert activity.pronunciations["joke"] == ("JH OW K", "JH AO K")
 
 
 def test_rules_say_what_none_of_them_is_for(tmp_path: Path) -> None:

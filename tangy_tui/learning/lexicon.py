@@ -1,0 +1,133 @@
+"""How each word of a phrasebook is said, and which of its phrases can be told by their sound."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice, product
+
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.phrases import Phrase
+from tangy_tui.learning.pronouncing import pronounce, suggest
+
+MOST_WAYS = 64  # to say one phrase; those of most words count first
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """How a word is said: its pronunciations, and where they come from.
+
+    `source` is "activity", "person", "dictionary", "suggested" (guessed: it cannot be heard), or
+    "" where nothing can be guessed.
+    """
+
+    word: str
+    phones: tuple[str, ...]
+    source: str
+
+    @property
+    def heard(self) -> bool:
+        """Whether the recogniser can hear it."""
+        return self.source not in ("suggested", "")
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """A phrase that sounds like another of another meaning, which came first."""
+
+    phrase: Phrase
+    other: Phrase
+
+
+class Lexicon:
+    """The words of a phrasebook by their sound.
+
+    It reads the pronouncing dictionary: some 30 ms for the words of an activity.
+    """
+
+    words: Mapping[str, Said]
+    """Of every word that can be said or typed, how it is said."""
+    alike: tuple[Alike, ...]
+    """Phrases that cannot be told from others by their sound; the others can be heard."""
+
+    def __init__(
+        self,
+        phrasebook: Phrasebook,
+        *,
+        pronounce: Callable[[str], tuple[str, ...]] = pronounce,
+        suggest: Callable[[str], str] = suggest,
+    ) -> None:
+        """Look up every word; `suggest` is asked about those that nobody has a pronunciation of."""
+        self._phrases = [p for p in phrasebook.table.all() if p.heard]
+        self._pronounce, self._suggest = pronounce, suggest
+        self._table = phrasebook.table
+        spoken = (word for p in phrasebook.table.all() for word in p.said.split())
+        self.words = {word: self._look_up(word) for word in dict.fromkeys(spoken)}
+        self.alike = tuple(self._find_alike())
+
+    @property
+    def unknown(self) -> tuple[Said, ...]:
+        """The words of phrases that have no pronunciation, with what is suggested."""
+        words = dict.fromkeys(word for phrase in self._phrases for word in phrase.said.split())
+        return tuple(self.words[word] for word in words if not self.words[word].heard)
+
+    def heard(self) -> tuple[str, ...]:
+        """Return the phrases that can be heard, as they are said."""
+        out = {one.phrase.said for one in self.alike}
+        return tuple(
+            dict.fromkeys(p.said for p in self._phrases if self._known(p) and p.said not in out)
+        )
+
+    def left_out(self) -> dict[str, str]:
+        """Return the phrases that cannot be heard, only typed, each with the reason in words."""
+        reasons = {one.phrase.said: f"sounds like {one.other.said!r}" for one in self.alike}
+        for phrase in self._phrases:
+            lacks = [word for word in phrase.said.split() if not self.words[word].heard]
+            if lacks:
+                reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
+        return reasons
+
+    def _look_up(self, word: str) -> Said:
+        if word in self._table.pronunciations:
+            return Said(word, self._table.pronunciations[word], self._table.sources[word])
+        known = self._pronounce(word)
+        if known:
+            return Said(word, known, "dictionary")
+        guessed = self._suggest(word)
+        return Said(word, (guessed,), "suggested") if guessed else Said(word, (), "")
+
+    def _known(self, phrase: Phrase) -> bool:
+        return all(self.words[word].heard for word in phrase.said.split())
+
+    def _find_alike(self) -> Iterator[Alike]:
+        """Find phrases of different meanings that have the same phones, whatever their words."""
+        first: dict[str, Phrase] = {}
+        for phrase in filter(self._known, self._phrases):
+            ways = set(self._ways(phrase))
+            other = next((first[way] for way in ways if _differ(first.get(way), phrase)), None)
+            if other is not None:
+                yield Alike(phrase, other)
+            else:
+                for way in ways:
+                    first.setdefault(way, phrase)
+
+    def _ways(self, phrase: Phrase) -> Iterator[str]:
+        """Yield the ways to say a phrase, as phones without a gap between words."""
+        choices = [self.words[word].phones for word in phrase.said.split()]
+        return (" ".join(way) for way in islice(product(*choices), MOST_WAYS))
+
+
+def _differ(other: Phrase | None, phrase: Phrase) -> bool:
+    return other is not None and (other.behaviour, other.user) != (phrase.behaviour, phrase.user)
+
+
+def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str:
+    """Return a word that only one behaviour is asked for with, and a phrase lacks; "" if none."""
+    users: dict[str, set[str]] = defaultdict(set)
+    for entry in (*phrasebook.table.all(), *phrasebook.table.keywords):
+        for word in entry.bare:
+            users[word].add(entry.behaviour)
+    own = (word for entry in phrasebook.table.all() for word in entry.bare
+           if entry.behaviour == behaviour and entry.user is None)  # fmt: skip
+    return next((w for w in own if users[w] == {behaviour} and w not in phrase.words), "")
