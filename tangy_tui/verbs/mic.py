@@ -114,7 +114,7 @@ def _draw(forwarder: Forwarder) -> None:
     """Draw a bar, and what is wrong beside it, over the last one."""
     state = "connected" if forwarder.connected else "waiting for Tangy"
     columns = shutil.get_terminal_size().columns
-    bar = "#" * round(BAR * forwarder.meter.level)
+    bar = "#" * round(BAR * forwarder.meter.loudest(1.5 * WORDS_SECONDS))
     line = f"[{bar:<{BAR}}] {forwarder.meter.words(speaking=False) or state}"
     print(f"\r{plain(line)[: columns - 1]}\033[K", end="", file=sys.stderr, flush=True)
 

@@ -62,6 +62,13 @@ def test_the_bar_rises_at_once_and_falls_slowly(on: Listening) -> None:
     assert on.meter.level == 0.0
 
 
+def test_what_was_loudest_lately_can_be_asked(on: Listening) -> None:
+    on.hear(0.05, pcm(tone(1.0, loud=1.0)))
+    on.hear(1.5, SILENCE)
+    assert on.meter.loudest(2.0) == pytest.approx(1.0, abs=0.01)
+    assert on.meter.loudest(1.0) == 0.0
+
+
 def test_a_bias_of_the_device_is_not_loud(on: Listening) -> None:
     on.hear(1.0, pcm(np.full(RATE, 0.3)))
     assert on.meter.level == 0.0

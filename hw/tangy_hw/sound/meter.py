@@ -76,6 +76,11 @@ class Meter:
         """How loud it is now on a scale of decibels: 0 is silence, 1 as loud as can be."""
         return max(0.0, self._shown - FALL * (self._clock() - self._shown_at))
 
+    def loudest(self, seconds: float) -> float:
+        """How loud it was at most in the last seconds (3 are remembered), from 0 to 1."""
+        since = self._clock() - seconds
+        return _bar(max((loudness for at, loudness in self._loudest if at >= since), default=0.0))
+
     @property
     def clipping(self) -> bool:
         """Whether the last half second was so loud that it was cut off."""

@@ -1,0 +1,236 @@
+"""Handing sound on: exactly when nobody is late, never old, and to whoever listens next."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangy_hw.sound.forwarding import SPEED_SECONDS, Forwarder, TakenOver
+from tangy_hw.sound.socket_source import LaptopMicrophone
+from tangy_hw.sound.source import Chunks, Recording, Source
+from tangy_hw.sound.wav import RATE, SoundError
+
+PATIENCE = 20.0
+PIECE = 640
+SOUND = np.random.default_rng(2).integers(-9_000, 9_000, RATE, np.int16).astype("<i2").tobytes()
+
+
+class Spoken(Source):
+    """A live source that says what it is given; nothing is its end."""
+
+    def __init__(self) -> None:
+        super().__init__("spoken", live=True)
+        self.given = asyncio.Queue[bytes]()
+
+    async def _sound(self) -> Chunks:
+        while chunk := await self.given.get():
+            yield chunk
+            self.given.task_done()
+
+    async def say(self, chunk: bytes) -> None:
+        """Say something; return when it has been taken."""
+        self.given.put_nowait(chunk)
+        await asyncio.wait_for(self.given.join(), PATIENCE)
+
+
+class Link:
+    """A forwarder with a source on one side, and whoever listens on the other."""
+
+    def __init__(self, path: Path, source: Source | None = None) -> None:
+        self.path = path
+        self.now = 50.0
+        self.spoken = Spoken()
+        self.told = asyncio.Queue[str]()
+        self.forwarder = Forwarder(
+            source or self.spoken,
+            path,
+            tell=self.told.put_nowait,
+            clock=lambda: self.now,
+            again=0.0,
+        )
+        self.running = asyncio.create_task(self.forwarder.run())
+
+    async def said(self) -> str:
+        return await asyncio.wait_for(self.told.get(), PATIENCE)
+
+    async def end(self) -> None:
+        self.running.cancel()
+        await asyncio.wait({self.running})
+
+
+async def take(listener: Source, count: int) -> bytes:
+    """Hear so many bytes."""
+    got = b""
+    while len(got) < count:
+        got += await asyncio.wait_for(anext(listener), PATIENCE)
+    return got
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "mic.sock"
+
+
+async def test_sound_arrives_exactly_when_nobody_is_late(path: Path) -> None:
+    listener = LaptopMicrophone("socket", path)
+    hearing = asyncio.ensure_future(take(listener, PIECE))
+    link = Link(path)
+    assert await link.said() == "Connected: Tangy listens to this microphone."
+    for place in range(0, len(SOUND), PIECE):
+        await link.spoken.say(SOUND[place : place + PIECE])
+        assert await hearing == SOUND[place : place + PIECE]
+        hearing = asyncio.ensure_future(take(listener, PIECE))
+    assert link.forwarder.dropped == 0
+    link.spoken.given.put_nowait(b"")
+    await link.running
+    await listener.close()
+
+
+async def test_what_is_said_while_nobody_listens_is_never_heard(path: Path) -> None:
+    link = Link(path)
+    assert "Tangy does not listen yet" in await link.said()
+    for _ in range(20):
+        await link.spoken.say(b"\1\1" * (PIECE // 2))
+    listener = LaptopMicrophone("socket", path)
+    hearing = asyncio.ensure_future(take(listener, PIECE))
+    assert "Connected" in await link.said()
+    await link.spoken.say(b"\2\2" * (PIECE // 2))
+    assert await hearing == b"\2\2" * (PIECE // 2)
+    await link.end()
+    await listener.close()
+
+
+async def test_a_listener_that_is_late_hears_the_newest_and_not_the_whole(path: Path) -> None:
+    listener = LaptopMicrophone("socket", path)
+    first = asyncio.ensure_future(take(listener, 2))
+    link = Link(path)
+    await link.said()
+    for number in range(150):  # three seconds, of which nobody takes more than the first piece
+        await link.spoken.say(number.to_bytes(2, "little") * (PIECE // 2))
+        for _ in range(5):
+            await asyncio.sleep(0)
+    await first
+    got, last = b"", (149).to_bytes(2, "little")
+    while not got.endswith(last):
+        got += await take(listener, 2)
+    assert len(got) / 2 / RATE < 0.7, "what the listener itself had taken, and a quarter second"
+    assert link.forwarder.dropped / 2 / RATE > 2.0
+    await link.end()
+    await listener.close()
+
+
+async def test_sound_that_waited_on_the_way_is_cut_to_its_end(path: Path) -> None:
+    listener = LaptopMicrophone("socket", path)
+    hearing = asyncio.ensure_future(take(listener, 2))
+    link = Link(path)
+    await link.said()
+    await link.spoken.say(SOUND)  # a second at once: the link was down
+    got = await hearing
+    while not got.endswith(SOUND[-PIECE:]):
+        got += await take(listener, 2)
+    assert len(got) / 2 / RATE <= 0.25
+    assert SOUND.endswith(got)
+    await link.end()
+    await listener.close()
+
+
+async def test_a_program_that_is_started_again_is_found_again(path: Path) -> None:
+    link = Link(path)
+    assert "does not listen yet" in await link.said()
+    for number in (1, 2):
+        listener = LaptopMicrophone("socket", path)
+        hearing = asyncio.ensure_future(take(listener, 4))
+        assert "Connected" in await link.said()
+        await link.spoken.say(bytes([number] * 4))
+        assert await hearing == bytes([number] * 4)
+        await listener.close()
+        assert await link.said() == "Tangy has closed; waiting until it listens again."
+    assert link.told.empty()
+    await link.end()
+
+
+async def test_the_last_words_arrive(path: Path) -> None:
+    listener = LaptopMicrophone("socket", path)
+    hearing = asyncio.ensure_future(take(listener, 2_000))
+    link = Link(path)
+    await link.said()
+    link.spoken.given.put_nowait(SOUND[:2_000])
+    link.spoken.given.put_nowait(b"")
+    await link.running
+    assert await hearing == SOUND[:2_000]
+    await listener.close()
+
+
+async def test_a_recording_is_sent_whole_and_waits_for_a_listener(path: Path) -> None:
+    link = Link(path, Recording("it.wav", SOUND[:5_000]))
+    assert "does not listen yet" in await link.said()
+    listener = LaptopMicrophone("socket", path)
+    assert await take(listener, 5_000) == SOUND[:5_000]
+    await link.running
+    await listener.close()
+
+
+async def test_the_older_of_two_ends_and_does_not_fight_for_its_place(path: Path) -> None:
+    listener = LaptopMicrophone("socket", path)
+    hearing = asyncio.ensure_future(take(listener, 4))
+    older = Link(path)
+    assert "Connected" in await older.said()
+    newer = Link(path)
+    assert "Connected" in await newer.said()
+    with pytest.raises(TakenOver, match="Another microphone has taken over"):
+        await asyncio.wait_for(older.running, PATIENCE)
+    await newer.spoken.say(b"new!")
+    assert await hearing == b"new!"
+    await newer.end()
+    await listener.close()
+
+
+async def test_a_source_that_fails_ends_it_with_its_sentence(path: Path) -> None:
+    class Broken(Spoken):
+        async def _sound(self) -> Chunks:
+            raise SoundError("It is broken.")
+            yield b""
+
+    link = Link(path, Broken())
+    with pytest.raises(SoundError, match="It is broken"):
+        await asyncio.wait_for(link.running, PATIENCE)
+
+
+@pytest.mark.parametrize(
+    ("speed", "says"),
+    [(1.0, ""), (0.9, ""), (5.5, "5.5 times as fast"), (0.5, "0.5 times as fast")],
+)
+async def test_sound_of_another_speed_is_noticed_once(path: Path, speed: float, says: str) -> None:
+    link = Link(path)
+    await link.said()
+    await link.spoken.say(bytes(2 * RATE * 20))  # what had waited on the way does not count
+    size = round(2 * RATE * speed / 2) // 2 * 2
+    for _ in range(round(4 * SPEED_SECONDS) * 2):
+        link.now += 0.5
+        await link.spoken.say(bytes(size))
+    told = [link.told.get_nowait() for _ in range(link.told.qsize())]
+    assert len(told) == bool(says)
+    assert all(says in sentence for sentence in told)
+    await link.end()
+
+
+async def test_a_pause_of_the_link_is_no_other_speed(path: Path) -> None:
+    link = Link(path)
+    await link.said()
+    for number in range(60):
+        link.now += 5.0 if number == 30 else 0.5
+        await link.spoken.say(bytes(RATE))
+    assert link.told.empty()
+    await link.end()
+
+
+async def test_it_is_known_how_loud_it_is_before_anybody_listens(path: Path) -> None:
+    link = Link(path)
+    assert link.forwarder.meter.level == 0.0
+    await link.spoken.say(SOUND[:PIECE])
+    await link.spoken.say(SOUND[:PIECE])  # so the first was heard
+    assert link.forwarder.meter.level == pytest.approx(0.79, abs=0.02)
+    await link.end()
