@@ -42,7 +42,7 @@ GUARDED = (
     """exec 3<&0 </dev/null
     "$@" 3<&- & player=$!
     (read -r _ <&3; kill -9 $player) >/dev/null 2>&1 & guard=$!
-    exec 3<&-
+    exec 3<&- 2>/dev/null
     wait $player; status=$?
     kill -9 $guard; wait $guard
     exit $status""",

@@ -71,6 +71,8 @@ class Voice:
         self._told: set[str] = set()
         self._queue: deque[_Line] = deque()
         self._waiting = asyncio.Event()
+        self._quiet = asyncio.Event()
+        self._quiet.set()
         self._worker: asyncio.Task[None] | None = None
         self._speaking: asyncio.Task[bool] | None = None
         self._begun = False
@@ -106,6 +108,7 @@ class Voice:
             return heard
         wanted = (preference or self._usual).over(self._usual)
         self._queue.append(_Line(text, wanted, heard))
+        self._quiet.clear()
         self._waiting.set()
         if self._worker is None:
             self._worker = asyncio.create_task(self._work())
@@ -119,6 +122,10 @@ class Voice:
             if self._player is not None:
                 self._player.stop()
             self._speaking.cancel()
+
+    async def quiet(self) -> None:
+        """Wait until nothing is spoken any more, and `on_end` was called."""
+        await self._quiet.wait()
 
     def prerender(
         self,
@@ -170,8 +177,10 @@ class Voice:
                         self._speaking = None
                 self._waiting.clear()
                 self._end()
+                self._quiet.set()
         finally:
             self._end()
+            self._quiet.set()
 
     async def _speak(self, line: _Line) -> bool:
         """Speak one line; return whether it was heard to its end."""

@@ -1,0 +1,99 @@
+"""Numbers as a caller says them: found by the deck alone, twice, then digit by digit."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.sound.caller import Piece, as_called, calls, in_words, marked_up
+from tangy_profiles.activity import Activity, load_activity
+
+DECK = load_activity("bingo").deck
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("The number is O 69.", "The number is O, 69. O, 6 9."),
+        ("O-69", "O, 69. O, 6 9."),
+        ("It is O-69. I repeat: O-69.", "It is O, 69. I repeat: O, 6 9."),
+        ("It is B 5. Again: B 5! B 5!", "It is B, 5. Again: B, 5. B, 5."),
+        ("Mark these: I-16, G-60. Please.", "Mark these: I, 16. I, 1 6. G, 60. G, 6 0. Please."),
+    ],
+)
+def test_a_call_is_said_twice_and_then_digit_by_digit(text: str, said: str) -> None:
+    assert in_words(as_called(text, DECK)) == said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "B 16",
+        "O 76",
+        "X 5",
+        "b 5",
+        "AB 5",
+        "B 5.5",
+        "B 5-7",
+        "I am 20",
+        "B",
+        "5",
+        "B and 5",
+        "B-05x",
+    ],
+)
+def test_what_is_no_call_of_the_deck_is_left_as_it_is(text: str) -> None:
+    assert as_called(text, DECK) == (Piece(text),)
+
+
+def test_the_letters_come_from_the_deck(lanterns: Activity) -> None:
+    assert in_words(as_called("K-15 B-5", lanterns.deck)) == "K, 15. K, 1 5. B-5"
+    assert as_called("K-15", None) == (Piece("K-15"),)
+
+
+def test_only_the_call_is_slow_and_has_pauses() -> None:
+    marked = ElementTree.fromstring(marked_up(as_called("Now O 69 please", DECK)))  # noqa: S314
+    slow = list(marked.iter("prosody"))
+    assert [s.text for s in slow] == ["O, 69.", "O, 6 9."]
+    assert {s.get("rate") for s in slow} == {"75%"}
+    assert [b.get("time") for b in marked.iter("break")] == ["400ms", "600ms", "600ms"]
+    assert "".join(marked.itertext()).split() == ["Now", "O,", "69.", "O,", "6", "9.", "please"]
+
+
+def test_nobody_waits_before_or_after_a_call_that_is_all() -> None:
+    assert "<break" not in marked_up((Piece("B, 5.", call=True),))
+
+
+def test_there_is_nothing_to_say_of_nothing() -> None:
+    for text in ("", " \n", "\x00\u200b"):
+        assert as_called(text, DECK) == ()
+        assert marked_up(as_called(text, DECK)) == ""
+
+
+@given(st.text())
+def test_any_text_is_well_formed_and_said_whole(text: str) -> None:
+    written = marked_up(as_called(text, DECK))
+    if written:
+        said = "".join(ElementTree.fromstring(written).itertext())  # noqa: S314
+        assert "[[" not in said, "it would be read as sounds"
+        assert said.replace("[ [", "[[") == in_words(as_called(text, None)) or "," in said
+
+
+def test_all_calls_are_known_beforehand_and_nobody_is_named(activity: Activity) -> None:
+    texts = calls(activity)
+    assert len(set(texts)) == len(texts)
+    assert not any("{" in text for text in texts)
+    for number in activity.deck.numbers:
+        label = activity.deck.label(number)
+        found = [text for text in texts if f"{label}." in text]
+        assert len(found) == len(activity.strategies), label
+    first = texts[: len(texts) // len(activity.strategies)]
+    plain = {b.speech[activity.plain_strategy] for b in activity.behaviours.values()}
+    assert all(any(t.partition("{")[0] in text for t in plain) for text in first)
+
+
+def test_a_made_up_activity_has_calls_as_well(lanterns: Activity) -> None:
+    assert calls(lanterns)
