@@ -110,8 +110,23 @@ class ProgramPlayer:
         self._let_go()
 
     async def _play(self, wav: Path) -> str:
-        """Play a WAV with the first program; return what went wrong ("": nothing)."""
+        """Play a WAV with the first program; return what went wrong ("": nothing).
+
+        Who waits for it may give up, but not in the middle of the start of a process: asyncio
+        would then wait for ever for its pipes.
+        """
         self._stopped = False
+        running = asyncio.create_task(self._run(wav))
+        try:
+            return await asyncio.shield(running)
+        except asyncio.CancelledError:
+            self.stop()
+            await asyncio.wait({running})
+            raise
+
+    async def _run(self, wav: Path) -> str:
+        if self._stopped:
+            return ""
         reading, self._holding = os.pipe()
         try:
             process = await asyncio.create_subprocess_exec(
@@ -126,9 +141,6 @@ class ProgramPlayer:
         except OSError as error:
             self._let_go()
             return f"it cannot be started ({error.strerror})"
-        except BaseException:
-            self._let_go()
-            raise
         finally:
             os.close(reading)
         try:
