@@ -73,7 +73,7 @@ class Phrasebook:
         """Make the phrasebook of an activity for the people who take part in it."""
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
         self.people = tuple(person.id for person in people)
-        self._nouns = {
+        self.nouns = {
             name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
             for name in self._to_people
         }
@@ -172,7 +172,7 @@ class Phrasebook:
                 )
             ):
                 return None
-            return f"{' '.join(seat) or self._nouns[found.behaviour]} {numbers[0]}"
+            return f"{' '.join(seat) or self.nouns[found.behaviour]} {numbers[0]}"
         said = bare(mended)
         if not said or said[-1] in self._weights or said[-1] not in words:
             return None

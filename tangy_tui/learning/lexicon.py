@@ -7,9 +7,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice, product
 
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.phones import PHONES, read_name_phones
+from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.phrases import Phrase
 from tangy_tui.learning.pronouncing import pronounce, suggest
+from tangy_tui.learning.words import clean, spoken, words_of
 
 MOST_WAYS = 64  # to say one phrase; those of most words count first
 
@@ -131,3 +136,21 @@ def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str
     own = (word for entry in phrasebook.table.all() for word in entry.bare
            if entry.behaviour == behaviour and entry.user is None)  # fmt: skip
     return next((w for w in own if users[w] == {behaviour} and w not in phrase.words), "")
+
+
+def phones_of(text: str, activity: Activity) -> str:
+    """Return the phones to say: as they were given in capitals, or those of words.
+
+    Raises:
+        ProfileError: one of several phones is none, or a word has no pronunciation at all.
+    """
+    if text.isupper() and (" " in text.strip() or text.strip() in PHONES):
+        return read_name_phones(text)
+    words = spoken(words_of(clean(text))).split()
+    found = [
+        [*activity.pronunciations.get(word, ()), *pronounce(word)] or [suggest(word)]
+        for word in words
+    ]
+    if not words or not all(ways[0] for ways in found):
+        raise ProfileError(plain(f"Nobody knows how {clean(text)!r} is said: give the phones."))
+    return ", ".join(ways[0] for ways in found)

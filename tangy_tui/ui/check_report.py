@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import groupby
 
 from rich import box
 from rich.console import Console
@@ -12,6 +13,7 @@ from rich.text import Text
 from tangy_profiles.activity import Activity
 from tangy_profiles.reading import plain
 from tangy_tui.learning.checking import Checked
+from tangy_tui.learning.phrase_list import PhraseList, items
 from tangy_tui.monitoring.rules import Rules, looks_at, recovery_words
 from tangy_tui.wording import counted
 
@@ -72,6 +74,20 @@ def print_rules(rules: Rules) -> None:
     for code, kinds in rules.together.items():
         console.print(Text(plain(f"Only together do {' and '.join(kinds)} bring about: {code}.")))
     console.print(_verdict(rules.file, not rules.unruled, "no mistake"))
+
+
+def print_phrases(listed: PhraseList) -> None:
+    """Print the phrasebook as a page."""
+    console = Console(highlight=False)
+    console.print(Text(plain(f"{listed.title}: what can be said or typed"), style="bold"))
+    for heading, of_it in groupby(items(listed), key=lambda item: item.heading):
+        console.print(Text(f"\n{heading}", style="bold"))
+        table = Table.grid(padding=(0, 2))
+        table.add_column(min_width=20, max_width=24, overflow="fold")
+        table.add_column(overflow="fold")
+        for item in of_it:
+            table.add_row(Text(plain(item.about)), Text("\n".join(map(plain, item.texts))))
+        console.print(table)
 
 
 def _print_left(console: Console, what: str, words: Sequence[str]) -> None:

@@ -10,7 +10,14 @@ import typer
 
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Json, print_json
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Data,
+    Json,
+    Users,
+    open_house,
+    print_json,
+)
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -96,6 +103,52 @@ def activity_check(
             print(plain(line), file=sys.stderr)
     if mistakes:
         raise typer.Exit(2)
+
+
+@app.command("phrases")
+def activity_phrases(
+    activity: Annotated[str, typer.Argument(help="A shipped activity, or its TOML.")] = "bingo",
+    data: Data = None,
+    users: Users = 4,
+    as_json: Json = False,
+) -> None:
+    """Show the phrasebook: what can be said for what, and how every word is said."""
+    from tangy_tui.learning.phrase_list import list_phrases
+
+    with open_house(data, activity, users, write=False) as house:
+        listed = list_phrases(house.activity, house.people)
+    if as_json:
+        print_json(listed.to_json())
+    else:
+        from tangy_tui.ui.check_report import print_phrases
+
+        print_phrases(listed)
+
+
+@app.command("hear")
+def activity_hear(
+    text: Annotated[
+        str, typer.Argument(metavar="WORDS_OR_PHONES", help="bingo, or the phones in capitals.")
+    ],
+    sink: Annotated[
+        str, typer.Option(help="What plays it: auto, the name of a program, or null.")
+    ] = "auto",
+    activity: ActivityName = "bingo",
+    as_json: Json = False,
+) -> None:
+    """Say words, or ARPAbet phones, as Tangy expects to hear them, and print the phones."""
+    import asyncio
+
+    from tangy_profiles.activity import load_activity
+    from tangy_tui.learning.aloud import hear
+    from tangy_tui.learning.lexicon import phones_of
+
+    phones = phones_of(text, load_activity(activity))
+    if not as_json:
+        print(phones)
+    asyncio.run(hear(phones, sink=sink))
+    if as_json:
+        print_json({"text": text, "phones": phones})
 
 
 def _holds_faults(file: str) -> bool:
