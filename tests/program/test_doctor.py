@@ -11,6 +11,7 @@ from tangy_hw.sound.arecord import list_microphones
 from tangy_hw.sound.wav import SoundError
 from tangy_profiles.store import Store
 from tangy_tui.doctor import Finding, examine
+from tests.hw.speakers import Speaker, program
 
 
 def data_folder(folder: Path) -> Finding:
@@ -20,8 +21,32 @@ def data_folder(folder: Path) -> Finding:
 
 def test_a_program_that_is_not_installed_is_missing_and_not_broken(tmp_path: Path) -> None:
     states = {f.part: f.state for f in examine(tmp_path, lambda _: None)}
-    assert (states["voice"], states["microphone"]) == ("missing", "missing")
-    assert {f.state for f in examine(tmp_path, str) if f.part == "voice"} == {"ok"}
+    parts = ("voice", "sound output", "microphone")
+    assert {states[part] for part in parts} == {"missing"}
+
+
+def test_a_voice_is_tried_and_not_only_found(tmp_path: Path) -> None:
+    speaker = Speaker(tmp_path / "speaker")
+
+    def voice() -> Finding:
+        return next(f for f in examine(tmp_path, speaker.which) if f.part == "voice")
+
+    assert voice() == Finding("voice", True, "Tangy can speak, with espeak-ng 9.9.")
+    program(speaker.path, "echo 'no data here' >&2; exit 1")
+    assert (voice().state, "failed: no data here;" in voice().text) == ("broken", True)
+
+
+def test_a_player_without_a_sound_card_is_no_sound_output(tmp_path: Path) -> None:
+    player = program(tmp_path / "aplay", "echo 'aplay: main:831: no card' >&2; exit 1")
+
+    def output() -> Finding:
+        found = examine(tmp_path, {"aplay": str(player)}.get)
+        return next(f for f in found if f.part == "sound output")
+
+    assert output().state == "missing"
+    assert output().text.endswith("(no card); what Tangy says is shown as text.")
+    program(player, "exit 0")
+    assert output() == Finding("sound output", True, "aplay plays what Tangy says.")
 
 
 LISTED = """**** List of CAPTURE Hardware Devices ****
