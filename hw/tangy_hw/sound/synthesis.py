@@ -173,17 +173,17 @@ class Synthesiser:
         if self._program is None:
             raise VoiceError(ABSENT)
         try:
-            process = subprocess.Popen(  # noqa: S603 - found on the path; the text goes to its stdin
-                [self._program, *arguments],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                start_new_session=True,
-            )
+            with self._lock:  # so that `end` finds it from its first moment on
+                process = subprocess.Popen(  # noqa: S603 - found on the path; text goes to its stdin
+                    [self._program, *arguments],
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    start_new_session=True,
+                )
+                self._running.add(process)
         except OSError as error:
             raise VoiceError(f"{PROGRAM} cannot be started ({error.strerror}).") from None
-        with self._lock:
-            self._running.add(process)
         try:
             made, said = process.communicate(text.encode("utf-8", "replace"), self._seconds)
         except subprocess.TimeoutExpired:
