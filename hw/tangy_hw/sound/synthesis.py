@@ -12,6 +12,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+import time
 import wave
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -27,6 +28,7 @@ ABSENT = f"{PROGRAM} is not installed; until it is, what Tangy says is shown as 
 SECONDS = 10.0  # for a line: 15 ms when nothing else runs
 LONGEST = 5_000  # characters of a text with its mark-up: some five minutes
 MOST_BYTES = 200_000_000  # of the cache; the oldest go first
+UNFINISHED_SECONDS = 60.0  # after which a file that is not finished was left behind
 HEADER = 44  # bytes before the samples of a WAV as this room writes it
 
 
@@ -235,12 +237,15 @@ class Synthesiser:
         return left
 
     def _kept(self) -> list[tuple[Path, int, float]]:
-        """List the files in the folder, with bytes and time; another process may drop some."""
+        """List the files in the folder, with bytes and time; another process may drop some.
+
+        An unfinished one counts when nobody can be writing it any more.
+        """
         kept: list[tuple[Path, int, float]] = []
-        for pattern in ("*.wav", "*.tmp"):
-            for path in self.folder.glob(pattern):
-                with contextlib.suppress(OSError):
-                    status = path.stat()
+        for path in (*self.folder.glob("*.wav"), *self.folder.glob("*.tmp")):
+            with contextlib.suppress(OSError):
+                status = path.stat()
+                if path.suffix == ".wav" or status.st_mtime < time.time() - UNFINISHED_SECONDS:
                     kept.append((path, status.st_size, status.st_mtime))
         return kept
 
