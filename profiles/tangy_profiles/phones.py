@@ -19,6 +19,8 @@ LONGEST = 40  # phones of a word
 
 MEANT = {
     **{"A": "AE", "E": "EH", "I": "IH", "O": "OW", "U": "AH", "AX": "AH", "IX": "IH"},
+    **{"OH": "OW", "OO": "UW", "EE": "IY", "AI": "AY", "EI": "EY", "AU": "AW", "OU": "AW"},
+    **{"OI": "OY", "UR": "ER", "AR": "AA R", "OR": "AO R", "UU": "UW", "II": "IY", "EW": "Y UW"},
     **{"AXR": "ER", "UX": "UW", "DX": "D", "C": "K", "H": "HH", "J": "JH", "Q": "K", "X": "K S"},
 }
 """What is mostly meant by letters and phones that are none of the 39."""

@@ -1,0 +1,131 @@
+"""How a person's name is said: heard, accepted as suggested, or written otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widgets import Input, Static
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person
+from tangy_tui.learning.naming import how_said
+from tangy_tui.learning.pronouncing import check_name
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+
+LONGEST = 200
+EXPLAINED = (
+    "Write it in sounds, with a comma between words: R OW Z AH is Rosa. An empty line drops what "
+    "was noted."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class NewPronunciation:
+    """What is to be noted; None: nothing any more."""
+
+    phones: str | None
+
+
+class PhonesInput(Input):
+    """The line with the phones; Enter counts once the dialog has been seen."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+l", "screen.hear", "Hear it"),
+        Binding("enter", "submit", "Note it"),
+        Binding("escape", "screen.leave", "Leave it as it is"),
+    ]
+
+    def __init__(self, phones: str) -> None:
+        super().__init__(phones, max_length=LONGEST, compact=True, select_on_focus=False)
+        self.cursor_blink = False
+        self.keys = FreshKeys()
+
+    async def _on_key(self, event: events.Key) -> None:
+        if event.key in ("enter", "escape", "ctrl+l"):
+            event.prevent_default()
+            if self.keys.take(event):
+                await self.run_action(self._bindings.key_to_bindings[event.key][0].action)
+        else:
+            await super()._on_key(event)
+
+
+class PronunciationDialog(Dialog[NewPronunciation | None]):
+    """Shows how a name is said now or may be said; Enter notes what stands in the line."""
+
+    HELP = (
+        "Ctrl+L says what stands in the line. Enter notes it for this person, and what you say "
+        "to Tangy with this name is heard from then on. " + EXPLAINED
+    )
+
+    def __init__(
+        self, person: Person, hear: Callable[[str], object], *, clock: Clock | None = None
+    ) -> None:
+        """Make the dialog; `hear` has phones said aloud."""
+        super().__init__(None)
+        self._person = person
+        self._said = how_said(person)
+        self._hear = hear
+        self._clock = clock
+
+    def compose(self) -> ComposeResult:
+        """Lay out what is known, the line, and the keys."""
+        with Vertical(classes="box") as box:
+            box.border_title = Content(f"How {clean(self._person.name)} is said")
+            yield Static(clean(self._said.sentence), markup=False)
+            yield Static(EXPLAINED + "\n", markup=False, classes="dim")
+            yield PhonesInput(self._said.phones)
+            yield Static("", id="wrong", markup=False)
+            yield Static(
+                Content.assemble(
+                    *(part for key, words in (("enter", "note it"), ("^l", "hear it"),
+                                              ("esc", "leave it as it is"))
+                      for part in ((key, "$primary bold"), f" {words}   "))
+                )
+            )  # fmt: skip
+
+    def on_mount(self) -> None:
+        """Give the line the keys, from the moment that it is seen."""
+        line = self.query_one(PhonesInput)
+        line.focus()
+        line.cursor_position = len(line.value)
+        self.call_after_refresh(line.keys.painted, self._clock or clock_of(self.app))
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Note what was written, if it can be said."""
+        if not event.value.strip():
+            self.answer(NewPronunciation(None))
+        elif phones := self._checked():
+            self.answer(NewPronunciation(phones))
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Take back what was wrong before."""
+        self._tell("")
+
+    def action_hear(self) -> None:
+        """Say what stands in the line."""
+        if phones := self._checked():
+            self._hear(phones)
+
+    def action_leave(self) -> None:
+        """Go back."""
+        self.answer(None)
+
+    def _checked(self) -> str:
+        """Return the phones in the line; "" if they are wrong, which is then said."""
+        try:
+            return check_name(self.query_one(PhonesInput).value, self._person.name)
+        except TangyError as error:
+            self._tell(str(error))
+            return ""
+
+    def _tell(self, sentence: str) -> None:
+        self.query_one("#wrong", Static).update(clean(sentence))

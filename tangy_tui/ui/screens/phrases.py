@@ -1,0 +1,224 @@
+"""The phrasebook as a screen: what can be said for what, and how every word is said."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from itertools import groupby
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Input
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.learning.aloud import hear
+from tangy_tui.learning.phrase_list import Item, items, list_phrases
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
+from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
+from tangy_tui.ui.panels import key_line, panel
+from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.rows import fit
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.wrapping import wrap
+
+LONGEST_SEARCH = 60
+ABOUT = 20  # columns of what an entry is about
+
+Hear = Callable[[str], Awaitable[None]]
+"""Says phones aloud."""
+
+
+class SearchInput(Input):
+    """The line that is searched for: what is found is shown with every letter."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("enter,down,up,tab", "screen.found", "Choose among what was found"),
+        Binding("escape", "screen.all", "Show everything again"),
+    ]
+
+    async def _on_key(self, event: events.Key) -> None:
+        bindings = self._bindings.key_to_bindings.get(event.key, [])
+        if bindings:
+            event.stop()
+            event.prevent_default()
+            await self.run_action(bindings[0].action)
+        else:
+            await super()._on_key(event)
+
+
+class PhrasesScreen(TangyScreen[None]):
+    """Everything that can be said among the people of a house, to be read, searched and heard."""
+
+    DEFAULT_CSS = """
+    PhrasesScreen #phrases { height: 1fr; }
+    PhrasesScreen #search { display: none; height: 1; padding: 0 1; }
+    PhrasesScreen.-searching #search { display: block; }
+    """
+    TITLE = "Phrases"
+    HELP = (
+        "All that can be said or typed, from the file of the activity: for each behaviour its "
+        "phrases and keywords, then the people and their seats, what cannot be heard, and how "
+        "every word is said. / searches: type any words, Enter goes to what was found, esc shows "
+        "everything again. h says the chosen entry aloud. e changes how a person's name is said; "
+        "words of the activity stand in its file, under [pronunciations]."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("slash", "search", "Search", key_display="/"),
+        Binding("h", "hear", "Hear the chosen entry"),
+        Binding("e", "edit", "Change how a person's name is said"),
+        Binding("escape", "leave", "Back"),
+    ]
+
+    def __init__(self, house: House, say: Hear = hear) -> None:
+        """Make the screen; `say` says phones aloud."""
+        super().__init__()
+        self._house = house
+        self._aloud = say
+        self._items: tuple[Item, ...] = ()
+
+    def compose(self) -> ComposeResult:
+        """Lay out the list and the line to search with."""
+        yield StatusLine(Status(mode="phrases", note=self._house.activity.title))
+        yield panel(ChoiceList("What can be said or typed", LIST_HELP, id="phrases"))
+        search = SearchInput(
+            placeholder="search for ...",
+            max_length=LONGEST_SEARCH,
+            compact=True,
+            select_on_focus=False,
+            id="search",
+        )
+        search.cursor_blink = False
+        yield search
+        yield key_line(
+            ("up down", "choose"),
+            ("/", "search"),
+            ("h", "hear"),
+            ("e", "edit a name"),
+            ("esc", "back"),
+            ("?", "help"),
+        )
+
+    def on_mount(self) -> None:
+        """Look the words up beside the screen."""
+        self._list.focus()
+        self._list.show(lambda width, height: [Line((("Looking the words up ...", "dim"),))])
+        self.run_worker(self._read(), group="read", exclusive=True)
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Show what is found."""
+        self._show()
+
+    def action_search(self) -> None:
+        """Open the line to search with."""
+        self.add_class("-searching")
+        self.query_one(SearchInput).focus()
+
+    def action_found(self) -> None:
+        """Go to what was found."""
+        self._list.focus()
+
+    def action_all(self) -> None:
+        """Show everything again."""
+        self.query_one(SearchInput).clear()
+        self.remove_class("-searching")
+        self._list.focus()
+        self._show()
+
+    def action_hear(self) -> None:
+        """Say the chosen entry aloud."""
+        item = self._chosen
+        if item is None or not item.phones:
+            self._say("Choose something that can be said: a word, a person, a behaviour.")
+        else:
+            self._hear(item.phones)
+
+    def action_edit(self) -> None:
+        """Change how the name of the chosen person is said."""
+        item = self._chosen
+        if item is None or item.person is None:
+            self._say("Choose a person: words of the activity are changed in its file.")
+            return
+        person = self._house.find_person(item.person)
+
+        def take(new: NewPronunciation | None) -> None:
+            if new is not None:
+                try:
+                    self._house.pronounce(person, new.phones)
+                except TangyError as error:
+                    self._say(str(error), bad=True)
+                self.run_worker(self._read(), group="read", exclusive=True)
+
+        self.app.push_screen(PronunciationDialog(person, self._hear), take)
+
+    def action_leave(self) -> None:
+        """Show everything again, or go back."""
+        if self.query_one(SearchInput).value:
+            self.action_all()
+        else:
+            close(self, None)
+
+    @property
+    def _list(self) -> ChoiceList:
+        return self.query_one("#phrases", ChoiceList)
+
+    @property
+    def _chosen(self) -> Item | None:
+        """The entry that the cursor is on."""
+        at = self._list.chosen
+        return self._items[at] if isinstance(at, int) and at < len(self._items) else None
+
+    async def _read(self) -> None:
+        house = self._house
+        listed = await asyncio.to_thread(list_phrases, house.activity, house.people)
+        self._items = tuple(items(listed))
+        self._show()
+
+    def _show(self) -> None:
+        wanted = self.query_one(SearchInput).value
+        self._list.show(lambda width, height: phrase_lines(self._items, wanted, width))
+
+    def _hear(self, phones: str) -> None:
+        self.run_worker(self._heard(phones), group="hear", exclusive=True)
+
+    async def _heard(self, phones: str) -> None:
+        try:
+            await self._aloud(phones)
+        except TangyError as error:
+            self._say(str(error), bad=True)
+
+    def _say(self, sentence: str, *, bad: bool = False) -> None:
+        severity = "error" if bad else "information"
+        self.app.notify(clean(sentence), severity=severity, markup=False)  # type: ignore[arg-type]
+
+
+def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[Line]:
+    """Write the entries that are searched for, under their headings; keys are their places."""
+    about = min(ABOUT, width // 3)
+    lines: list[Line] = []
+    found = [(place, item) for place, item in enumerate(entries) if item.has(wanted)]
+    for heading, under in groupby(found, key=lambda one: one[1].heading):
+        lines += (
+            [Line(()), Line(((clean(heading), "strong"),))]
+            if lines
+            else [Line(((clean(heading), "strong"),))]
+        )
+        for place, item in under:
+            left = wrap(clean(item.about), about)
+            right = [line for text in item.texts for line in wrap(clean(text), width - about - 2)]
+            for n in range(max(len(left), len(right))):
+                name = fit(left[n] if n < len(left) else "", about + 2)
+                text = right[n] if n < len(right) else ""
+                ink = "person" if item.person else "robot"
+                lines.append(Line(((name, ink), (text, "text")), place))
+    return lines or [Line((("Nothing is found: esc shows everything again.", "dim"),))]
+
+
+LIST_HELP = (
+    "Up and down choose an entry, / searches, h says it aloud. Of what is only guessed nothing is "
+    "heard yet: choose the person and press e."
+)

@@ -1,0 +1,152 @@
+"""The phrasebook on a screen: read, searched, heard, and a name's pronunciation edited."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.house import House
+from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
+from tangy_tui.ui.screens.phrases import PhrasesScreen
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+NEW_NAME = "Xanthippe"
+
+
+@pytest.fixture
+def spoken() -> list[str]:
+    """What was said aloud."""
+    return []
+
+
+@pytest.fixture
+def screen(house: House, spoken: list[str]) -> PhrasesScreen:
+    """The screen, in a house with one name that the dictionary does not have."""
+    house.rename(house.people[0], "Rosa")
+    house.rename(house.people[1], NEW_NAME)
+
+    async def say(phones: str) -> None:
+        spoken.append(phones)
+
+    return PhrasesScreen(house, say)
+
+
+async def looked_up(pilot: TangyPilot) -> None:
+    """Wait until the words were looked up, which happens beside the screen."""
+    await pilot.app.workers.wait_for_complete()
+    await pilot.pause()
+
+
+async def find(pilot: TangyPilot, *keys: str) -> None:
+    """Search, and go to the first that is found."""
+    await looked_up(pilot)
+    pilot.type("slash")
+    await pilot.pause()
+    pilot.type(*keys, "enter")
+    await pilot.pause()
+    pilot.type("home")
+    await pilot.pause()
+
+
+async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: PhrasesScreen) -> None:
+    async with run(screen) as pilot:
+        await looked_up(pilot)
+        assert "greet everyone" in pilot.text()
+        await find(pilot, *"rosa")
+        assert "user 1, rosa, seat 1" in pilot.text()
+        assert "R OW Z AH" in pilot.text()
+        assert "greet everyone" not in pilot.text()
+        pilot.type("escape", "home")
+        await pilot.pause()
+        assert "greet everyone" in pilot.text()
+        pilot.type("end")
+        await pilot.pause()
+        assert "Y UW Z ER" in pilot.text()
+
+
+async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
+    run: Run, screen: PhrasesScreen, house: House
+) -> None:
+    async with run(screen) as pilot:
+        await find(pilot, *"xanthippe")
+        assert "Cannot be heard, only typed" in pilot.text()
+        pilot.type("e")
+        await pilot.pause()
+        dialog = pilot.app.screen
+        assert isinstance(dialog, PronunciationDialog)
+        suggested = dialog.query_one(PhonesInput).value
+        pilot.type("enter", at=1e9)
+        await looked_up(pilot)
+        assert house.find_person("user2").pronunciation == suggested
+        assert "Cannot be heard, only typed" not in pilot.text()
+        assert suggested in pilot.text()
+
+
+async def test_entries_and_names_are_heard(
+    run: Run, screen: PhrasesScreen, spoken: list[str]
+) -> None:
+    async with run(screen) as pilot:
+        await find(pilot, *"rosa")
+        pilot.type("h")
+        await pilot.pause()
+        pilot.type("e")
+        await pilot.pause()
+        dialog = pilot.app.screen
+        dialog.query_one(PhonesInput).value = "r oh"
+        await pilot.pause()
+        pilot.type("ctrl+l", at=1e9)
+        await pilot.pause()
+        assert "there is no phone 'OH'; did you mean 'OW'?" in pilot.text()
+        dialog.query_one(PhonesInput).value = "r ow1 s ah"
+        await pilot.pause()
+        pilot.type("ctrl+l", at=1e9)
+        await pilot.pause()
+        assert spoken == ["R OW Z AH", "R OW S AH"]
+
+
+async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
+    run: Run, screen: PhrasesScreen, house: House
+) -> None:
+    house.pronounce(house.people[0], "R AO S AH")
+    async with run(screen) as pilot:
+        await find(pilot, *"rosa")
+        pilot.type("e")
+        await pilot.pause()
+        pilot.app.screen.query_one(PhonesInput).value = "R"
+        pilot.type("escape", at=1e9)
+        await pilot.pause()
+        assert house.find_person("user1").pronunciation == "R AO S AH"
+        pilot.type("e")
+        await pilot.pause()
+        pilot.app.screen.query_one(PhonesInput).value = ""
+        pilot.type("enter", at=1e9)
+        await pilot.pause()
+        assert house.find_person("user1").pronunciation is None
+
+
+async def test_what_cannot_be_said_aloud_is_told(run: Run, house: House) -> None:
+    async def fails(phones: str) -> None:
+        raise TangyError("No sound comes out here.")
+
+    async with run(PhrasesScreen(house, fails), notifications=True) as pilot:
+        await looked_up(pilot)
+        pilot.type("h")
+        await pilot.pause()
+        assert "No sound comes out here." in pilot.text()
+        pilot.type("e")
+        await pilot.pause()
+        assert "Choose a person" in pilot.text()
+
+
+async def test_at_the_smallest_size_it_is_drawn(
+    run: Run, screen: PhrasesScreen, picture: Callable[[App[Any]], None]
+) -> None:
+    async with run(screen) as pilot:
+        await looked_up(pilot)
+        picture(pilot.app)
