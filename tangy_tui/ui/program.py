@@ -253,6 +253,15 @@ class Program(TangyApp):
         yield SystemCommand(
             "Compare policies", "Teacher against teacher, before against after", self.action_compare
         )
+        yield SystemCommand(
+            "Phrases", "All that can be said or typed, and how it is said", self.action_phrases
+        )
+
+    async def action_phrases(self) -> None:
+        """Open the phrasebook."""
+        from tangy_tui.ui.screens.phrases import PhrasesScreen
+
+        await self.push_screen(PhrasesScreen(self.house))
 
     def action_other_policy(self) -> None:
         """Look at another policy that was kept."""

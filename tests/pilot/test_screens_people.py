@@ -17,6 +17,7 @@ from tangy_tui.interaction.feedback import AWAITED, Feedback
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodDialog
+from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
 from tangy_tui.ui.screens.people import PeopleScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import LIGHT
@@ -310,3 +311,31 @@ async def test_at_every_size_the_chosen_person_is_told_of_in_full(
         assert "praise works with Rosa: 7 of 9" in text
         for words in ("0 of 3", "★ settled", ".49-.91", "did not comply"):
             assert words in text
+
+
+# ------------------------------------------------------------------------- how a name is said
+
+
+async def test_a_name_is_heard_and_its_pronunciation_noted(
+    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoken: list[str] = []
+
+    async def say(phones: str) -> None:
+        spoken.append(phones)
+
+    monkeypatch.setattr("tangy_tui.ui.screens.people.hear", say)
+    async with run(PeopleScreen(house)) as pilot:
+        pilot.type("n")
+        await pilot.pause()
+        dialog = pilot.app.screen
+        assert isinstance(dialog, PronunciationDialog)
+        assert "Rosa is said R OW Z AH, as in the dictionary." in pilot.text()
+        dialog.query_one(PhonesInput).value = "r ow s ah"
+        await pilot.pause()
+        pilot.type("ctrl+l", "enter", at=1e9)
+        await pilot.pause()
+        assert spoken == ["R OW S AH"]
+        assert house.find_person("user1").pronunciation == "R OW S AH"
+        assert house.store.pronunciations() == {"user1": "R OW S AH"}
+        assert all("R OW S AH" not in str(event.body) for event in house.store.events())

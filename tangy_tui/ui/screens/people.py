@@ -14,12 +14,14 @@ from tangy_tui.house import House
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.record import Record
 from tangy_tui.interaction.saying import change_words, entry_words, on_day
+from tangy_tui.learning.aloud import hear
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodChoice, MethodDialog
+from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.person_lines import (
     history_lines,
@@ -44,13 +46,15 @@ class PeopleScreen(TangyScreen[None]):
         "Above, everybody with what works in a sentence. Below, of the person that is chosen, "
         "each way of asking and the history game by game. tab goes from one panel to the next. "
         "Every change is asked about first, and u takes the last one back. "
-        "Names are given on the command line: tangy people rename."
+        "n is for how the name is said, so that it is heard when somebody speaks it. Names are "
+        "given on the command line: tangy people rename."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("v", "void", "The chosen response does not count"),
         Binding("f", "feedback", "Say what the person did about the chosen request"),
         Binding("x", "switch", "Switch the chosen strategy off or on"),
         Binding("m", "method", "Choose how Tangy persuades this person"),
+        Binding("n", "pronounce", "Say how this person's name is said"),
         Binding("u", "undo", "Take the last change back"),
         Binding("escape", "leave", "Back"),
     ]
@@ -78,6 +82,7 @@ class PeopleScreen(TangyScreen[None]):
             ("x", "off/on"),
             ("m", "method"),
             ("u", "undo"),
+            ("n", "name"),
             ("esc", "back"),
             ("?", "help"),
         )
@@ -151,6 +156,26 @@ class PeopleScreen(TangyScreen[None]):
                 self._do(lambda: self._feedback.choose_method(person.id, answer.chosen))
 
         self.app.push_screen(MethodDialog(person.name, known.chosen, known.own, default), take)
+
+    def action_pronounce(self) -> None:
+        """Look at, hear or change how the person's name is said."""
+        person = self._house.find_person(self._record.person.id)
+
+        def take(new: NewPronunciation | None) -> None:
+            if new is not None:
+                self._do(lambda: self._house.pronounce(person, new.phones))
+
+        self.app.push_screen(PronunciationDialog(person, self._hear), take)
+
+    def _hear(self, phones: str) -> None:
+        """Have phones said aloud beside the screen."""
+        self.run_worker(self._heard(phones), group="hear", exclusive=True)
+
+    async def _heard(self, phones: str) -> None:
+        try:
+            await hear(phones)
+        except TangyError as error:
+            self._say(str(error), bad=True)
 
     def action_undo(self) -> None:
         """Ask whether the last change to this person is to be taken back."""
