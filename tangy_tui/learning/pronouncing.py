@@ -26,7 +26,7 @@ def pronounce(word: str) -> tuple[str, ...]:
     dictionary, 3 MB, in 20 ms; each takes some 0.1 ms.
     """
     text, key = _dictionary(), word.casefold()
-    if not text or not key.strip():
+    if not text or not key.strip() or "(" in key:  # which numbers further pronunciations
         return ()
     found: list[str] = []
     start, end = _letter(key[0])
