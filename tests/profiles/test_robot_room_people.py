@@ -134,6 +134,13 @@ def test_points_measure_and_divide_the_way_between_them() -> None:
         ("x = 2.0", "x = 20", ("seats[1].x = 20", "0 to 10")),
         ("reach = 0.7", "reach = 'far'", ("reach = 'far'",)),
         ("[[seats]]\nx = 2.0", "[[seat]]\nx = 2.0", ("seat",)),
+        ('seat_word = "seat"', 'seat_word = "Seat 2"', ("seat_word = 'Seat 2'", "as they are")),
+        ("x = 2.0", 'name = "a\\tb"\nx = 2.0', ("seats[", "cannot be shown")),
+        (
+            "x = 2.0\ny = 6.5\n\n[[seats]]\nx = 4.0",
+            'name = "door"\nx = 2.0\ny = 6.5\n\n[[seats]]\nname = "door"\nx = 4.0',
+            ("seats", "same name"),
+        ),
     ],
 )
 def test_a_mistake_in_a_room_is_one_line(

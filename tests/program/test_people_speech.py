@@ -1,0 +1,194 @@
+"""`tangy people pronounce` and `voice`, `tangy activity phrases` and `hear`: what is said how."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.store import Store
+from tangy_profiles.voice import VoicePreference
+from tangy_tui.house import House
+from tangy_tui.learning import aloud
+from tangy_tui.learning.verifying import Asked
+from tangy_tui.learning.verifying import Say as Words
+
+Tangy = Callable[..., CompletedProcess[str]]
+
+LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """A data folder in which Rosa and Xanthippus take part."""
+    with Store.open(tmp_path / "mine") as store:
+        store.rename("user1", "Rosa")
+        store.rename("user2", "Xanthippus Lee")
+    return tmp_path / "mine"
+
+
+@pytest.fixture
+def spoken(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, VoicePreference | None]]:
+    """What was said aloud, and how the person likes to be spoken to."""
+    said: list[tuple[str, VoicePreference | None]] = []
+
+    async def hear(
+        phones: str, preference: VoicePreference | None = None, sink: str = "auto"
+    ) -> None:
+        said.append((phones, preference))
+
+    monkeypatch.setattr(aloud, "hear", hear)
+    return said
+
+
+class TestNames:
+    def test_a_name_in_the_dictionary_is_heard_at_once(self, tangy: Tangy, data: Path) -> None:
+        done = tangy("people", "pronounce", "Rosa", "--data", data)
+        assert done.stdout == "Rosa is said R OW Z AH, as in the dictionary.\n"
+
+    def test_a_new_name_is_accepted_heard_or_changed(
+        self, tangy: Tangy, data: Path, spoken: list[tuple[str, VoicePreference | None]]
+    ) -> None:
+        shown = tangy("people", "rename", "user3", "Xanthippus", "--data", data).stdout
+        assert "user3 is now called Xanthippus." in shown
+        assert "can be typed, but not yet heard" in shown
+        assert "tangy people pronounce user3 --accept" in shown
+        asked = ("people", "pronounce", "user3")
+        suggested = json.loads(tangy(*asked, "--json", "--data", data).stdout)
+        assert (suggested["source"], suggested["heard"]) == ("suggested", False)
+        assert tangy(*asked, "--hear", "--data", data).returncode == 0
+        assert spoken == [(suggested["pronunciation"], VoicePreference())]
+        taken = json.loads(tangy(*asked, "--accept", "--json", "--data", data).stdout)
+        assert taken["pronunciation"] == suggested["pronunciation"]
+        assert (taken["source"], taken["heard"]) == ("person", True)
+        changed = tangy(*asked, "z AE1 n", "--data", data)
+        assert changed.stdout == "Xanthippus is said Z AE N.\n"
+        assert tangy(*asked, "--forget", "--json", "--data", data).stdout.count("suggested") == 1
+
+    @pytest.mark.parametrize(
+        ("arguments", "told"),
+        [
+            (("Rosa", "R OH"), "there is no phone 'OH'; did you mean 'OW'?"),
+            (("user2", "Z AE N"), "has 2 words"),
+            (("user2", "Z AE N, L IY, L IY"), "has 2 words"),
+            (("Rosa", ""), "from 1 to 40 phones"),
+            (("Rosa", "R OW", "--accept"), "Choose one"),
+            (("nobody",), "There is nobody called"),
+        ],
+    )
+    def test_what_is_no_pronunciation_changes_nothing(
+        self, tangy: Tangy, data: Path, arguments: tuple[str, ...], told: str
+    ) -> None:
+        done = tangy("people", "pronounce", *arguments, "--data", data)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert told in done.stderr
+        assert len(done.stderr.splitlines()) == 1
+        with Store.open(data, write=False) as store:
+            assert store.pronunciations() == {}
+
+    def test_it_is_kept_apart_from_the_log_and_forgotten_with_the_name(
+        self, tangy: Tangy, data: Path
+    ) -> None:
+        tangy("people", "pronounce", "user2", "Z AE N TH OY, L IY", "--data", data)
+        with Store.open(data) as store:
+            assert store.pronunciations() == {"user2": "Z AE N TH OY, L IY"}
+            assert "TH OY" not in json.dumps(list(store.events()))
+            store.rename("user2", "Xanthippus Lee")  # which is no other name
+            assert store.pronunciations()
+            store.rename("user2", "Ann")
+            assert store.pronunciations() == {}
+        for path in data.iterdir():
+            assert b"TH OY" not in path.read_bytes()
+
+    def test_a_person_who_may_only_be_read_changes_nothing(self, tangy: Tangy, data: Path) -> None:
+        before = (data / "tangy.db").read_bytes()
+        tangy("people", "pronounce", "Rosa", "--data", data)
+        tangy("people", "voice", "Rosa", "--data", data)
+        assert (data / "tangy.db").read_bytes() == before
+
+
+class TestVoices:
+    def test_rate_and_voice_are_chosen_one_by_one_and_taken_back(
+        self, tangy: Tangy, data: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setenv("PATH", "")  # so that espeak-ng is not asked which voices there are
+        asked = ("people", "voice", "Rosa", "--data", data)
+        assert tangy(*asked).stdout == "Tangy speaks to Rosa as to everybody else.\n"
+        tangy(*asked, "--rate", "110")
+        said = tangy(*asked, "--voice", "en-gb").stdout
+        assert said == "Tangy speaks to Rosa at 110 words a minute in the voice en-gb.\n"
+        shown = json.loads(tangy(*asked, "--json").stdout)
+        assert (shown["rate"], shown["voice"]) == (110, "en-gb")
+        with Store.open(data, write=False) as store:
+            assert store.voices() == {"user1": VoicePreference(110, "en-gb")}
+            assert "en-gb" not in json.dumps(list(store.events()))
+        assert "everybody else" in tangy(*asked, "--usual").stdout
+
+    @pytest.mark.parametrize(
+        ("options", "told"),
+        [
+            (("--rate", "5"), "80 to 260"),
+            (("--voice", "; rm"), "cannot be a voice"),
+            (("--rate", "100", "--usual"), "Choose one"),
+        ],
+    )
+    def test_what_cannot_be_spoken_is_refused(
+        self, tangy: Tangy, data: Path, options: tuple[str, ...], told: str
+    ) -> None:
+        done = tangy("people", "voice", "Rosa", *options, "--data", data)
+        assert done.returncode == 2
+        assert told in done.stderr
+
+
+class TestTheHouse:
+    def test_teaching_goes_to_seats_and_hears_names(self, data: Path) -> None:
+        house = House(data)
+        house.pronounce(house.find_person("user2"), "Z AE N, L IY")
+        teaching = house.teaching("somebody", 1)
+        teaching.begin()
+        book = teaching.phrasebook
+        assert "go to seat two" in book.spoken()
+        assert book.pronunciations()["xanthippus"] == ("Z AE N",)
+        (asked,) = teaching.apply(Words("go to seat two"))
+        house.close()
+        assert isinstance(asked, Asked)
+        assert asked.target == "user2"
+
+
+class TestThePhrasebook:
+    def test_the_page_has_all_of_it(self, tangy: Tangy, data: Path) -> None:
+        text = tangy("activity", "phrases", "--data", data).stdout
+        for words in ("greet everyone", "user 1, rosa, seat 1", "R OW Z AH", "Cannot be heard"):
+            assert words in text
+        document = json.loads(tangy("activity", "phrases", "--json", "--data", data).stdout)
+        assert [person["name"] for person in document["people"]][:2] == ["Rosa", "Xanthippus Lee"]
+        assert "go to xanthippus lee" in document["left_out"]
+        (own,) = [word for word in document["words"] if word["source"] == "activity"]
+        assert own["phones"]
+
+    def test_another_activity_has_its_own_page(self, tangy: Tangy, data: Path) -> None:
+        text = tangy("activity", "phrases", LANTERNS, "--data", data).stdout
+        assert "sing them in" in text
+        assert "greet" not in text
+
+    def test_words_and_phones_are_heard_and_printed(
+        self, tangy: Tangy, spoken: list[tuple[str, VoicePreference | None]]
+    ) -> None:
+        assert tangy("activity", "hear", "bingo").stdout == "B IH NG G OW\n"
+        assert tangy("activity", "hear", "JH OW1 K").stdout == "JH OW K\n"
+        document = json.loads(tangy("activity", "hear", "a joke", "--json").stdout)
+        assert document["phones"].endswith("JH OW K")
+        assert [phones for phones, _ in spoken][:2] == ["B IH NG G OW", "JH OW K"]
+        done = tangy("activity", "hear", "JH Q")
+        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+
+    def test_without_a_voice_the_phones_are_printed_and_the_reason_told(
+        self, tangy: Tangy, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setenv("PATH", "")
+        done = tangy("activity", "hear", "bingo")
+        assert (done.returncode, done.stdout) == (2, "B IH NG G OW\n")
+        assert "espeak-ng is not installed" in done.stderr

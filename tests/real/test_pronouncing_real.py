@@ -1,0 +1,51 @@
+"""Pronunciations through the real espeak-ng: what it would say is read, and said as written."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import subprocess
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangy_profiles.phones import PHONES
+from tangy_tui.learning.aloud import hear
+from tangy_tui.learning.espeak_phones import PROGRAM, espeak_phones, from_ipa, to_espeak
+from tangy_tui.learning.pronouncing import pronounce, suggest
+
+pytestmark = pytest.mark.skipif(
+    shutil.which(PROGRAM) is None, reason="espeak-ng is not installed: nobody to say a name"
+)
+
+WORDS = ("rosa", "margaret", "judge", "thing", "measure", "boy", "cow", "bird", "yellow", "hello")
+
+
+def test_usual_words_are_guessed_as_the_dictionary_has_them() -> None:
+    right = [word for word in WORDS if espeak_phones(word) in pronounce(word)]
+    assert len(right) >= len(WORDS) - 2
+
+
+def said(text: str) -> str:
+    """Return what espeak-ng makes of its own phones, in ours."""
+    command = [PROGRAM, "-q", "--ipa", "--sep=_", "-v", "en-us", "--stdin"]
+    done = subprocess.run(command, input=text.encode(), capture_output=True, check=True)  # noqa: S603
+    return from_ipa(done.stdout.decode())
+
+
+@settings(max_examples=15)
+@given(st.sampled_from(sorted(PHONES - {"AA", "AH", "ER", "R"})))
+def test_a_consonant_or_vowel_is_said_as_it_is_written(phone: str) -> None:
+    phones = f"M {phone} M" if phone[0] in "AEIOU" else f"{phone} EY M"
+    assert said(to_espeak(phones)) == phones
+
+
+def test_a_name_is_said_as_it_is_written_not_as_it_is_spelled() -> None:
+    assert said(to_espeak("SH IH V AO N")) == "SH IH V AO N"
+    asyncio.run(hear("SH IH V AO N", sink="null"))
+
+
+@pytest.mark.parametrize("word", ["-v", "--help", "[[r]]", "<b>", "a" * 200, "'"])
+def test_odd_words_are_no_options_and_give_phones_at_the_most(word: str) -> None:
+    assert set(suggest(word).split()) <= PHONES
