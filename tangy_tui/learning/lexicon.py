@@ -93,6 +93,24 @@ class Lexicon:
                 reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
         return reasons
 
+    def notices(self) -> tuple[str, ...]:
+        """Return a sentence for each word and phrase that cannot be heard, with what helps."""
+        whose = {word: id for words, id in self._table.names.items() for word in words}
+        lines = [
+            f"{said.word!r} can be typed, but not heard: "
+            + (
+                f"say how it is pronounced (tangy people pronounce {whose[said.word]})."
+                if said.word in whose
+                else "the activity does not say how it is pronounced (tangy activity check)."
+            )
+            for said in self.unknown
+        ]
+        lines += [
+            f"{one.phrase.said!r} can be typed, but not heard: it sounds like {one.other.said!r}."
+            for one in self.alike
+        ]
+        return tuple(lines)
+
     def _look_up(self, word: str) -> Said:
         if word in self._table.pronunciations:
             return Said(word, self._table.pronunciations[word], self._table.sources[word])

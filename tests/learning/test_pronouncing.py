@@ -208,6 +208,9 @@ class TestInThePhrasebook:
         assert lexicon.words["xanthippus"].source == source
         assert lexicon.words["xanthippus"].heard is heard
         out = lexicon.left_out()
+        (notice,) = lexicon.notices()
+        assert notice.startswith("'xanthippus' can be typed, but not heard")
+        assert "tangy people pronounce user1" in notice
         assert "go to xanthippus" in out
         assert "go to xanthippus" not in lexicon.heard()
         assert set(out) | set(lexicon.heard()) == set(Phrasebook(activity, [person]).spoken())
@@ -224,3 +227,5 @@ class TestInThePhrasebook:
         lexicon = Lexicon(Phrasebook(activity, people))
         assert "go to catherine" in lexicon.heard()
         assert lexicon.left_out()["go to katherine"] == "sounds like 'go to catherine'"
+        assert len(lexicon.notices()) == len(lexicon.alike)
+        assert all("katherine' can be typed, but not heard" in line for line in lexicon.notices())
