@@ -11,7 +11,9 @@ from textual.app import App
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
+from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen
+from tests.pilot.conftest import StillClock
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -150,3 +152,17 @@ async def test_at_the_smallest_size_it_is_drawn(
     async with run(screen) as pilot:
         await looked_up(pilot)
         picture(pilot.app)
+
+
+async def test_the_palette_leads_to_it_and_esc_back(run: Run, house: House) -> None:
+    program = Program(house, clock=StillClock())
+    async with run(app=program) as pilot:
+        (command,) = [
+            one for one in program.get_system_commands(program.screen) if one.title == "Phrases"
+        ]
+        await command.callback()
+        await looked_up(pilot)
+        assert isinstance(program.screen, PhrasesScreen)
+        pilot.type("escape")
+        await pilot.pause()
+        assert not isinstance(program.screen, PhrasesScreen)
