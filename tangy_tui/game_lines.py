@@ -166,7 +166,6 @@ def _ask(
     verifier = supervision.verifier()
     if supervision.acceptable:
         write("If all is well, type: all right. What should I do? Type: what.")
-    activity = supervision.world.activity
     while (line := read()) is not None:
         text = line.strip()
         lower = text.lower()
@@ -180,8 +179,8 @@ def _ask(
             elif lower.isdecimal():
                 said = verifier.reply(Reply(yes=False, alternative=int(lower)))
             else:
-                others = len(verifier.question.alternatives)
-                for words in answer_help(others) if lower in ("help", "?") else [ANSWER_HELP]:
+                asks_help = lower in ("help", "?")
+                for words in answer_help(verifier.question) if asks_help else [ANSWER_HELP]:
                     write(words)
                 continue
         elif lower in ALL_RIGHT and supervision.acceptable:
@@ -198,7 +197,7 @@ def _ask(
             said = verifier.say(Say(text))
         if isinstance(said, Verified):
             return supervision.answer(said.behaviour, said.target, teacher)
-        for words in verification_lines(said, activity):
+        for words in verification_lines(said):
             write(words)
         if isinstance(said, NotUnderstood):
             write(HELP)

@@ -16,7 +16,8 @@ from typing import Any
 from tangy_profiles.reading import plain
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.ears import Ears
+from tangy_tui.learning.speech.ears import Ears, Heard
+from tangy_tui.learning.speech.understanding import stops
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -33,12 +34,15 @@ from tangy_tui.learning.verifying import (
     ANSWER_HELP,
     ANSWERS,
     NO_QUESTION,
+    WHICH,
     Asked,
     NotUnderstood,
+    Offered,
     Refused,
     Rejected,
     Reply,
     Say,
+    Stop,
     answer_help,
 )
 from tangy_tui.wording import counted, state_words, step_words, verification_lines
@@ -61,6 +65,7 @@ MEANINGS = (
     ("next", "begin another demonstration"),
     ("quit", "leave; what you confirmed is kept"),
 )
+STOPPED = "STOP: the simulated robot stands still until the next command is carried out."
 _AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
 _AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
 
@@ -107,7 +112,7 @@ class TeachingLines:
         self._learn = learn
         self._kept = False  # something of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
-        self._spoken: asyncio.Future[Say | None] | None = None
+        self._spoken: asyncio.Future[Heard | None] | None = None
         self._typed: asyncio.Future[str | None] | None = None
         if ears is not None:
             ears.tell = write
@@ -122,8 +127,12 @@ class TeachingLines:
             command = self._command(line) if isinstance(line, str) else line
             if command == "quit":
                 break
-            if not isinstance(command, str):
+            if isinstance(command, Stop):
+                write(STOPPED)
+            elif not isinstance(command, str):
                 self._tell(teaching.apply(command))
+            if self._ears is not None:
+                self._ears.asking(teaching.question is not None)
         self._leave()
 
     def _leave(self) -> None:
@@ -139,13 +148,13 @@ class TeachingLines:
         elif shown.steps:
             self._write("You confirmed nothing, so nothing was changed.")
 
-    async def _next_line(self) -> str | Say | None:
+    async def _next_line(self) -> str | Heard | None:
         """Return what comes next: the spoken command if one is due, otherwise a line.
 
         A recording goes before the lines, so that a script can answer it; somebody who is
         speaking now may as well type.
         """
-        if self._ears is None or self._teaching.question is not None:
+        if self._ears is None or (self._teaching.question is not None and not self._answers):
             return await self._line()
         spoken = self._spoken = self._spoken or asyncio.ensure_future(anext(self._ears, None))
         typed = self._typed = self._typed or (self._reading() if self._together else None)
@@ -180,19 +189,26 @@ class TeachingLines:
         line, self._typed = self._typed or self._reading(), None
         return await line
 
-    def _command(self, line: str) -> TeacherCommand | str:
+    @property
+    def _answers(self) -> bool:
+        return self._ears is not None and self._ears.answers
+
+    def _command(self, line: str) -> TeacherCommand | Stop | str:
         text = line.strip()
         lower = text.lower()
         if not text or text.startswith("#"):
             return "nothing"
+        if stops(lower):
+            return Stop(text)
         if self._teaching.question is not None and lower != "quit":
             if lower in ANSWERS:
                 return Reply(yes=ANSWERS[lower])
             if lower.isdecimal():
                 return Reply(yes=False, alternative=int(lower))
             asks_help = lower in ("help", "?")
-            others = len(self._teaching.question.alternatives)
-            self._write_all(answer_help(others) if asks_help else [ANSWER_HELP])
+            question = self._teaching.question
+            short = WHICH if isinstance(question, Offered) else ANSWER_HELP
+            self._write_all(answer_help(question) if asks_help else [short])
             return "nothing"
         match lower:
             case "quit" | "exit" | "leave":
@@ -260,8 +276,8 @@ class TeachingLines:
 def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
     """Put one event of a teaching session into lines."""
     match event:
-        case Asked() | NotUnderstood() | Refused() | Rejected():
-            return verification_lines(event, teaching.activity)
+        case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
+            return verification_lines(event)
         case Executed(number, step, _, _, speech, _):
             return [
                 f"{number}. {step_words(teaching.activity, step, teaching.name)}",

@@ -12,7 +12,14 @@ from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.learning.asking import Lesson
 from tangy_tui.learning.conflicts import Conflict, Resolution
 from tangy_tui.learning.library import Edit, Library
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Verification
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Verification,
+)
 
 MOST_STEPS = 3
 """Steps that are named for each answer of a conflict."""
@@ -65,16 +72,20 @@ def card_words(activity: Activity, card: CardView) -> str:
     return " ".join(part for part in parts if part)
 
 
-def verification_lines(said: Verification, activity: Activity) -> list[str]:
+def verification_lines(said: Verification) -> list[str]:
     """Put what the verification of a command says into lines."""
     match said:
-        case Asked(_, question, heard, confidence, alternatives):
+        case Asked(question=question, heard=heard, confidence=confidence, others=others):
             lines = [f"Did you say: {question}? Type Y to execute it or N for a new command."]
             if confidence < 1:
                 lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
             return lines + [
-                f"  {number} instead: {activity.behaviour(other).question}"
-                for number, other in enumerate(alternatives, 1)
+                f"  {number} instead: {other}" for number, other in enumerate(others, 1)
+            ]
+        case Offered(heard, _, _, questions):
+            return [
+                f"I heard {plain(heard)!r}. Did you mean one of these? Type its number, or N.",
+                *(f"  {number}  {question}" for number, question in enumerate(questions, 1)),
             ]
         case NotUnderstood(heard, suggestions):
             near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""

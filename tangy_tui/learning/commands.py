@@ -39,6 +39,7 @@ ALTERNATIVE_AT_LEAST = 0.25
 UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
 SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
 
+LINKS = frozenset(("of", "to"))
 REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
 
 
@@ -109,6 +110,24 @@ class Phrasebook:
         if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(mended, found):
             return None
         return self._command(found, confidence, heard, mended)
+
+    def choices(self, text: str) -> tuple[Command, ...]:
+        """Return up to three commands that a text may mean, the likeliest first."""
+        command = self.understand(text)
+        if command is None:
+            return ()
+        words, _ = self._mend(words_of(clean(text)))
+        others = [
+            self._command(phrase, command.confidence * likeness, command.heard, words)
+            for likeness, phrase in self._ranking(words)
+            if phrase.behaviour != command.behaviour and likeness >= ALTERNATIVE_AT_LEAST
+        ]
+        return (command, *others)[:MOST_ALTERNATIVES]
+
+    def known(self, text: str) -> int:
+        """Count the words of a text that are words of the phrases, and mean something."""
+        told = (word for word in bare(words_of(clean(text))) if word not in LINKS)
+        return sum(word in self._weights for word in told)
 
     def stranger(self, text: str) -> str | None:
         """Return whom a text goes to if that is nobody here: "user 7", or a name alone."""

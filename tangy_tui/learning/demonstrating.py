@@ -33,6 +33,7 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.verifying import (
     Asked,
+    Offered,
     Refused,
     Reply,
     Say,
@@ -96,7 +97,7 @@ class Teaching:
         return self.demonstration.people
 
     @property
-    def question(self) -> Asked | None:
+    def question(self) -> Asked | Offered | None:
         """The question that is open, if one is."""
         return self._verifier.question
 

@@ -8,7 +8,15 @@ from typing import TypeAlias
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import Outcome
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+)
 
 # ------------------------------------------------------------------- what a teacher can do
 
@@ -82,5 +90,5 @@ class Finished:
 
 
 TeachingEvent: TypeAlias = (
-    Asked | NotUnderstood | Refused | Rejected | Executed | StepUndone | Begun | Finished
+    Asked | Offered | NotUnderstood | Refused | Rejected | Executed | StepUndone | Begun | Finished
 )

@@ -6,32 +6,46 @@ The same door for whoever commands: a teacher who demonstrates, and one whom Tan
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import ActivityState
-from tangy_tui.learning.commands import Command, Phrasebook
-from tangy_tui.learning.speech import UNDERSTOOD
+from tangy_tui.learning.commands import MOST_ALTERNATIVES, Command, Phrasebook
 
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
 """What is typed for an answer where lines are read."""
 ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+LEAVE = "leave without executing it"
+WHICH = "Please say which: type its number, or N for a new command."
 ANSWER_MEANINGS = (
     ("y", "yes, execute it"),
     ("n", "no, do nothing; give a new command"),
-    ("quit", "leave without executing it"),
+    ("quit", LEAVE),
 )
 NO_QUESTION = "There is no question open: give a command."
 
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """A command in words, typed or heard; `confidence` is the decoder's (typed: 1)."""
+    """A command in words.
+
+    Of spoken words `commands` says what they may mean, the likeliest first, and `sure` whether the
+    first of them is to be asked about at once; typed words are yet to be understood.
+    """
 
     text: str
     confidence: float = 1.0
+    commands: tuple[Command, ...] | None = None
+    sure: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Somebody said that the robot is to stop: it does so at once, and nothing is asked."""
+
+    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +66,18 @@ class Asked:
     confidence: float
     alternatives: tuple[str, ...]
     target: str | None
+    others: tuple[str, ...] = ()
+    """The alternatives as they are asked about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offered:
+    """What unsure words may mean: one of these, each of which is asked about, or nothing."""
+
+    heard: str
+    confidence: float
+    alternatives: tuple[str, ...]
+    questions: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +113,7 @@ class Verified:
     confidence: float
 
 
-Verification: TypeAlias = Asked | NotUnderstood | Refused | Rejected | Verified
+Verification: TypeAlias = Asked | Offered | NotUnderstood | Refused | Rejected | Verified
 
 
 class Verifier:
@@ -101,25 +127,29 @@ class Verifier:
         names: Mapping[str, str],
     ) -> None:
         """Make the door; `observe` gives the present state, `names` what people are called."""
-        self.question: Asked | None = None
+        self.question: Asked | Offered | None = None
         self._activity = activity
         self._phrasebook = phrasebook
         self._observe = observe
         self._names = names
+        self._others: tuple[Command, ...] = ()
 
     def say(self, said: Say) -> Verification:
         """Understand a command, and ask about it."""
         self.question = None
-        command = self._phrasebook.understand(said.text)
-        if command is not None:
-            command = replace(command, confidence=command.confidence * said.confidence)
-        if command is None and said.confidence >= UNDERSTOOD:
+        if said.commands is None:
+            command = self._phrasebook.understand(said.text)
+            commands = () if command is None else (command, *self._alternatives(command))
+        else:
+            commands = said.commands
+        if not commands:
             stranger = self._phrasebook.stranger(said.text)
             if stranger is not None:
                 return Refused(self._nobody(stranger), said.text)
-        if command is None or (said.confidence < 1 and command.confidence < UNDERSTOOD):
             return NotUnderstood(said.text, self._phrasebook.suggestions(said.text))
-        return self._ask(command, command.behaviour)
+        if not said.sure:
+            return self._offer(said, commands)
+        return self._ask(commands[0], commands[1:])
 
     def reply(self, reply: Reply) -> Verification:
         """Take the answer to the open question."""
@@ -130,34 +160,68 @@ class Verifier:
             if not 1 <= reply.alternative <= len(question.alternatives):
                 self.question = question
                 return Refused(f"There is no choice {reply.alternative}.")
-            chosen = question.alternatives[reply.alternative - 1]
-            command = Command(
-                question.behaviour, {}, question.confidence, question.heard, question.alternatives
-            )
-            return self._ask(command, chosen)
+            chosen = self._others[reply.alternative - 1]
+            rest = tuple(other for other in self._others if other != chosen)
+            if isinstance(question, Asked):
+                rest = (self._asked, *rest)
+            return self._ask(chosen, rest)
         if not reply.yes:
             return Rejected(question.heard)
+        if isinstance(question, Offered):
+            self.question = question
+            return Refused(WHICH)
         behaviour = self._activity.behaviour(question.behaviour)
         return Verified(behaviour, question.target, question.heard, question.confidence)
 
-    def _ask(self, command: Command, name: str) -> Verification:
-        behaviour = self._activity.behaviour(name)
-        target = command.arguments.get("user") if behaviour.attends else None
-        if behaviour.attends and target is None:
-            target = self._observe().attended
+    def _alternatives(self, command: Command) -> tuple[Command, ...]:
+        """Return the other behaviours that typed words may mean."""
+        if command.confidence >= 1:
+            return ()  # a phrase typed letter by letter leaves no doubt
+        return tuple(
+            Command(name, {}, command.confidence, command.heard, ())
+            for name in command.alternatives
+        )
+
+    def _ask(self, command: Command, others: tuple[Command, ...]) -> Verification:
+        behaviour = self._activity.behaviour(command.behaviour)
+        target = self._target(command)
         reason = self._obstacle(behaviour, target)
         if reason is not None:
             return Refused(reason, command.heard)
-        question = behaviour.question
-        if target is not None:
-            question = f"{question} ({self._name(target)})"
-        others = tuple(other for other in command.alternatives if other != name)
-        if command.confidence >= 1:
-            others = ()  # a phrase typed letter by letter leaves no doubt
-        if name != command.behaviour:
-            others = (command.behaviour, *others)
-        self.question = Asked(name, question, command.heard, command.confidence, others[:3], target)
+        self._asked, self._others = command, others[:MOST_ALTERNATIVES]
+        names = tuple(other.behaviour for other in self._others)
+        self.question = Asked(
+            command.behaviour,
+            self._words(command),
+            command.heard,
+            command.confidence,
+            names,
+            target,
+            tuple(map(self._words, self._others)),
+        )
         return self.question
+
+    def _offer(self, said: Say, commands: tuple[Command, ...]) -> Offered:
+        self._others = commands[:MOST_ALTERNATIVES]
+        self.question = Offered(
+            said.text,
+            said.confidence,
+            tuple(command.behaviour for command in self._others),
+            tuple(map(self._words, self._others)),
+        )
+        return self.question
+
+    def _target(self, command: Command) -> str | None:
+        """Return whom a command is about."""
+        if not self._activity.behaviour(command.behaviour).attends:
+            return None
+        return command.arguments.get("user") or self._observe().attended
+
+    def _words(self, command: Command) -> str:
+        """Return how a command is asked about: the words of its behaviour, and with whom."""
+        target = self._target(command)
+        question = self._activity.behaviour(command.behaviour).question
+        return question if target is None else f"{question} ({self._name(target)})"
 
     def _obstacle(self, behaviour: Behaviour, target: str | None) -> str | None:
         """Return why a behaviour for one person cannot be done now, or None."""
@@ -182,8 +246,11 @@ class Verifier:
         return self._names.get(person, person)
 
 
-def answer_help(alternatives: int) -> list[str]:
-    """Say what can be answered to "Did you say ...?", a line each."""
+def answer_help(question: Asked | Offered) -> list[str]:
+    """Say what can be answered to an open question, a line each."""
+    if isinstance(question, Offered):
+        return [WHICH, "  n: none of these; give a new command", f"  quit: {LEAVE}"]
+    alternatives = len(question.alternatives)
     lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
     if alternatives:
         numbers = "1" if alternatives == 1 else f"1 to {alternatives}"

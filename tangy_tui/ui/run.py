@@ -13,7 +13,7 @@ from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
     from tangy_tui.learning.demonstrating import Teaching
-    from tangy_tui.learning.ears import Ears
+    from tangy_tui.learning.speech.ears import Ears
 
 
 def run_program(house: House, *, ascii_only: bool) -> int:

@@ -21,10 +21,10 @@ def listen(
     """Hear spoken commands in WAV files, and say what was understood."""
     from tangy_profiles.activity import load_activity
     from tangy_profiles.person import load_people
-    from tangy_tui.learning import speech
     from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.speech.listening import listen as hear
 
-    heard = speech.listen(files, Phrasebook(load_activity(activity), load_people(4)))
+    heard = hear(files, Phrasebook(load_activity(activity), load_people(4)))
     if as_json:
         print_json(heard)
         return

@@ -29,7 +29,7 @@ from tangy_tui.verbs.common import (
 if TYPE_CHECKING:
     from tangy_tui.house import House
     from tangy_tui.learning.demonstrating import Teaching
-    from tangy_tui.learning.ears import Ears
+    from tangy_tui.learning.speech.ears import Ears
     from tangy_tui.learning.teaching_events import Again
 
 
@@ -170,9 +170,9 @@ def _teach_by_lines(
 def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears | None:
     if mic is None:
         return None
-    from tangy_tui.learning.ears import Ears
+    from tangy_tui.learning.speech.ears import Ears
 
-    return Ears(mic, teaching.phrasebook, stdin=sound, log=house.store.folder / "speech.log")
+    return Ears(mic, teaching.phrasebook, stdin=sound, folder=house.store.folder)
 
 
 def _seen(house: House, teaching: Teaching) -> list[str]:

@@ -16,8 +16,8 @@ from textual.worker import Worker
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.ears import Ears
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
+from tangy_tui.learning.speech.ears import Ears
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -31,6 +31,7 @@ from tangy_tui.learning.teaching_events import (
     Undo,
 )
 from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.learning.verifying import Stop as SpokenStop
 from tangy_tui.ui.base import TangyScreen, on_top
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
@@ -364,6 +365,9 @@ class TeachScreen(TangyScreen[bool]):
         ears.tell = lambda sentence: self._log.write(sentence, "dim")
         try:
             async for said in ears:
+                if isinstance(said, SpokenStop):
+                    await self.run_action("app.stop")
+                    continue
                 await self._free.wait()
                 self._apply(said)
         except TangyError as error:

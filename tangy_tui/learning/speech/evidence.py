@@ -1,0 +1,90 @@
+"""What is wanted of the decoder, and what it says of an utterance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+from tangy_hw.sound.wav import RATE
+
+__all__ = ["LONGEST", "RATE", "USUAL", "Evidence", "Expecting", "Settings", "Wanted"]
+
+Expecting = Literal["commands", "answers"]
+"""What is listened for: commands, or the answer to a question (yes and no)."""
+
+LONGEST = 15  # s of an utterance that are decoded at most
+MODES = ("tiers", "paper")
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How it is listened, which depends on the microphone and the room.
+
+    `mode` is one of MODES. `garbage` is the weight of all speech that is no command, against 1 for
+    the commands; `shift` is added to what is demanded of the sound: above 0 is stricter.
+    """
+
+    mode: str = "tiers"
+    garbage: float = 0.43
+    shift: float = 0.0
+
+
+USUAL = Settings()
+"""For a clean, close microphone that nobody has checked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be heard: commands, answers, and how their words are pronounced (ARPAbet).
+
+    Those that are `urgent` end an utterance as soon as they are heard.
+    """
+
+    phrases: tuple[str, ...]
+    answers: tuple[str, ...] = ()
+    urgent: tuple[str, ...] = ()
+    pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    settings: Settings = USUAL
+
+    def to_json(self) -> dict[str, Any]:
+        """Write it for the worker."""
+        return {
+            "phrases": list(self.phrases),
+            "answers": list(self.answers),
+            "urgent": list(self.urgent),
+            "pronunciations": {w: list(ways) for w, ways in self.pronunciations.items()},
+            "settings": asdict(self.settings),
+        }
+
+    @classmethod
+    def from_json(cls, written: Mapping[str, Any]) -> Wanted:
+        """Read what `to_json` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: it was written by something else.
+        """
+        ways = written.get("pronunciations", {})
+        return cls(
+            tuple(map(str, written["phrases"])),
+            tuple(map(str, written.get("answers", ()))),
+            tuple(map(str, written.get("urgent", ()))),
+            {str(word): tuple(map(str, some)) for word, some in ways.items()},
+            Settings(**written.get("settings", {})),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the decoder says of an utterance.
+
+    `words` are the likeliest ones, everyday words among them; `phrase` is the whole phrase that
+    the grammar finds, or empty; `margin` is log P(sound, words) - log P(sound, grammar or any
+    phones) a frame; `confidence` is that of the paper's mode, else 1; `seconds` is the length.
+    """
+
+    words: str = ""
+    phrase: str = ""
+    margin: float = 0.0
+    confidence: float = 0.0
+    seconds: float = 0.0

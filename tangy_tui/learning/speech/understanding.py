@@ -1,0 +1,92 @@
+"""What spoken words mean, and how sure that is: a question, a choice of up to three, or nothing.
+
+Three tiers: *sure* words are asked about at once, *unsure* ones are offered as choices (each of
+which is asked about in its turn), and of others it is only said what was heard. Words that stop the
+robot do so in every mode. In the paper's mode there is one tier: n-gram and keywords.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tangy_tui.learning.commands import Command, Phrasebook
+from tangy_tui.learning.speech.evidence import Evidence, Settings, Wanted
+from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.learning.words import bare, words_of
+
+# How likely words are to be the command they come nearest to: a logistic over the confidence of
+# the phrasebook and over how many telling words it knows. Fitted and the limits set by
+# tests/bench/speech.py on voices and sentences that no figure is quoted for.
+CONFIDENCE_WEIGHT, KNOWN_WEIGHT, OFFSET = 16.53, 0.99, -16.0
+MOST_KNOWN = 3
+SURE = 0.7
+UNSURE = 0.3
+UNDERSTOOD = 0.35
+"""The confidence below which the paper's mode takes nothing for a command."""
+
+STOPS = ("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "halt")
+YES = ("yes", "yes please", "yes do it", "yes that is right", "that is right")
+NO = ("no", "no thank you", "no do not", "that is wrong", "no that is wrong")
+MOST_STOP_WORDS = 2
+
+
+def wanted(phrasebook: Phrasebook, settings: Settings) -> Wanted:
+    """Return what is to be listened for: the phrases, what stops the robot, and answers."""
+    return Wanted(
+        (*phrasebook.spoken(), *STOPS),
+        (*YES, *NO, *STOPS),
+        STOPS,
+        phrasebook.pronunciations(),
+        settings,
+    )
+
+
+def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -> Say | Stop:
+    """Return what an utterance commands: it may be several things, or (no commands) nothing."""
+    text = evidence.words
+    if stops(text):
+        return Stop(text)
+    if settings.mode == "paper":
+        return _as_in_the_paper(evidence, phrasebook)
+    found = phrasebook.choices(text)
+    if not found:
+        return Say(text, 0.0, ())
+    confidence = likelihood(found[0].confidence, phrasebook.known(text), settings.shift)
+    if confidence < UNSURE:
+        return Say(text, confidence, ())
+    commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
+    return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+
+
+def answer(evidence: Evidence) -> Reply | Stop | None:
+    """Return the answer to a question that an utterance gives, if it gives one."""
+    said = evidence.words
+    if stops(said):
+        return Stop(said)
+    if said in YES or said in NO:
+        return Reply(said in YES)
+    return None
+
+
+def stops(text: str) -> bool:
+    """Say whether words stop the robot, whatever else is going on."""
+    words = bare(words_of(text))
+    return 1 <= len(words) <= MOST_STOP_WORDS and words[0] in ("stop", "halt")
+
+
+def likelihood(confidence: float, known: int, shift: float = 0.0) -> float:
+    """Return how likely words are to be the command they come nearest to, 0 to 1."""
+    told = CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN) + OFFSET - shift
+    return 1 / (1 + math.exp(-told))
+
+
+def _as_in_the_paper(evidence: Evidence, phrasebook: Phrasebook) -> Say:
+    """Match the n-gram model's words by phrases and keywords; there is one tier."""
+    command: Command | None = phrasebook.understand(evidence.words)
+    if command is None:
+        return Say(evidence.words, evidence.confidence, ())
+    confidence = round(command.confidence * evidence.confidence, 3)
+    if confidence < UNDERSTOOD:
+        return Say(evidence.words, confidence, ())
+    return Say(evidence.words, confidence, (replace(command, confidence=confidence),))

@@ -1,0 +1,180 @@
+"""The decoder's process: pocketsphinx holds the interpreter's lock, so it runs on its own.
+
+Run as `python -m tangy_tui.learning.speech.worker`, spoken to by JSON, one object a line:
+
+    {"id": 1, "wanted": {...}}                   what is to be heard (`evidence.Wanted`)
+    {"id": 1, "ready": true, "left_out": []}     words that nobody can pronounce
+    {"id": 2, "begin": "commands"}               an utterance begins, or the answer to a question;
+                                                 with "endpoint": true it is found in what comes
+    {"pcm": "..."}                               base64 of 16 kHz mono s16le, in pieces of any size
+    {"id": 2, "speaking": true}                  where it is looked for: it has begun
+    {"id": 2, "partial": "go to"}                the words so far, whenever they change
+    {"id": 2, "end": true}                       it is over; where it is looked for, at the latest
+    {"id": 2, "heard": {...}}                    `evidence.Evidence`
+    {"id": 3, "pieces": "..."}                   base64 of a whole recording
+    {"id": 3, "found": [[0.5, 1.7]]}             where utterances are in it, in s
+    {"id": 3, "error": "One sentence."}          instead of any answer
+
+What comes between two utterances is not heard. It ends when its input closes; what the C library
+prints goes to standard error.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any, get_args
+
+from tangy_tui.learning.speech.endpointing import Endpoints, pieces
+from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
+
+LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
+STANDS = 0.3  # s for which urgent words have to stand alone
+
+
+class Refused(Exception):
+    """A request that cannot be answered; its text is the answer's error."""
+
+
+class Worker:
+    """Answers requests, one at a time; `write` takes the answers."""
+
+    def __init__(self, write: Callable[[dict[str, Any]], None]) -> None:
+        self._write = write
+        self._decoder: Any = None
+        self._id: Any = None
+        self._expecting: Expecting = "commands"
+        self._pcm = bytearray()
+        self._endpoints: Endpoints | None = None
+        self._shown = ""
+        self._stood = 0  # bytes since the words so far have changed
+        self._urgent: frozenset[str] = frozenset()
+
+    def take(self, request: Any) -> None:
+        """Take one request; what is wrong with it becomes the answer's error."""
+        id = request.get("id") if isinstance(request, dict) else None
+        try:
+            self._take(id, request)
+        except Refused as reason:
+            self._write({"id": id, "error": str(reason)})
+        except ImportError as error:
+            needed = error.name or "pocketsphinx"
+            self._write({"id": id, "error": f"Speech needs the package {needed}."})
+        except (RuntimeError, ValueError, OSError) as error:
+            said = " ".join(str(error).split())[:200] or type(error).__name__
+            self._write({"id": id, "error": f"The speech decoder failed: {said}."})
+
+    def _take(self, id: Any, request: Any) -> None:
+        match request:
+            case {"wanted": dict(wanted)}:
+                self._write({"id": id, "ready": True, "left_out": self._build(wanted)})
+            case {"begin": str(expecting)} if expecting in get_args(Expecting):
+                self._begin(id, expecting, endpoint=bool(request.get("endpoint")))
+            case {"pcm": str(encoded)}:
+                self._hear(_sound(encoded))
+            case {"end": True}:
+                if id == self._id:
+                    self._end()
+            case {"pieces": str(encoded)}:
+                self._write({"id": id, "found": pieces(_sound(encoded))})
+            case _:
+                raise Refused("A request must hold wanted, begin, pcm, end or pieces.")
+
+    def _build(self, wanted: dict[str, Any]) -> list[str]:
+        from tangy_tui.learning.speech.decoding import Unspeakable, make_decoder
+
+        try:
+            read = Wanted.from_json(wanted)
+            self._decoder = make_decoder(read)
+        except Unspeakable as reason:
+            raise Refused(str(reason)) from None
+        except (KeyError, TypeError) as error:
+            raise Refused(f"What is wanted cannot be read: {error}.") from None
+        self._urgent = frozenset(read.urgent)
+        return list(self._decoder.left_out)
+
+    def _begin(self, id: Any, expecting: Any, *, endpoint: bool) -> None:
+        if self._decoder is None:
+            raise Refused("The phrases must come before the sound.")
+        self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
+        self._pcm.clear()
+        self._endpoints = Endpoints() if endpoint else None
+        if not endpoint:
+            self._decoder.begin(expecting)
+
+    def _hear(self, sound: bytes) -> None:
+        if self._id is None:
+            return  # nobody listens just now
+        if self._endpoints is None:
+            self._add(sound)
+            if self._stands_alone():
+                self._end()
+            return
+        for began, speech, over in self._endpoints.feed(sound):
+            if began:
+                self._decoder.begin(self._expecting)
+                self._write({"id": self._id, "speaking": True})
+            self._add(speech)
+            if over or len(self._pcm) >= 2 * RATE * LONGEST or self._stands_alone():
+                self._end()
+                return
+
+    def _add(self, sound: bytes) -> None:
+        if len(self._pcm) + len(sound) > 2 * RATE * LONGEST and self._endpoints is None:
+            sound = sound[: max(0, 2 * RATE * LONGEST - len(self._pcm))]
+        if not sound:
+            return
+        self._pcm += sound
+        if len(sound) <= 2 * RATE * LARGEST_PIECE:
+            words = self._decoder.partial(sound)
+            self._stood += len(sound)
+            if words != self._shown:
+                self._shown, self._stood = words, 0
+                self._write({"id": self._id, "partial": words})
+
+    def _stands_alone(self) -> bool:
+        """Whether the words so far are urgent, and nothing has followed them for a while."""
+        return self._shown in self._urgent and self._stood >= 2 * RATE * STANDS
+
+    def _end(self) -> None:
+        id, self._id = self._id, None
+        heard: Evidence = self._decoder.decode(bytes(self._pcm), self._expecting)
+        self._pcm.clear()
+        self._write({"id": id, "heard": asdict(heard)})
+
+
+def _sound(encoded: str) -> bytes:
+    try:
+        pcm = base64.b64decode(encoded, validate=True)
+    except binascii.Error:
+        raise Refused("The sound is not base64.") from None
+    return pcm[: len(pcm) // 2 * 2]
+
+
+def main() -> None:
+    """Answer requests until standard input closes."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # the C library prints on standard output; the protocol has its own copy of it
+
+    def write(answer: dict[str, Any]) -> None:
+        try:
+            print(json.dumps(answer), file=answers, flush=True)
+        except BrokenPipeError:
+            os._exit(0)  # nobody listens any more
+
+    worker = Worker(write)
+    for line in sys.stdin.buffer:
+        try:
+            request = json.loads(line)
+        except (ValueError, RecursionError):
+            request = None
+        worker.take(request)
+
+
+if __name__ == "__main__":
+    main()
