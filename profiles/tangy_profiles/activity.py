@@ -23,6 +23,8 @@ from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.state import Situation
 
+LISTENING = ("tiers", "paper")
+"""How spoken words are matched: in tiers by how sure they are, or by n-gram and keywords alone."""
 CONDITIONS = ("before", "after", "beside requester", "requested or away", "count", "otherwise")
 
 
@@ -64,6 +66,8 @@ class Activity:
     """What people handle, as they call it."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How words of the phrases are pronounced, in place of what the dictionary says of them."""
+    listening: str = LISTENING[0]
+    """How spoken words are matched, one of LISTENING."""
 
     @cached_property
     def unread(self) -> str:
@@ -211,6 +215,7 @@ def read_activity(path: Path) -> Activity:
     state_names = [s.name for s in states]
     behaviours = _behaviours(top, strategies, state_names)
     rules = _stage_rules(top, behaviours)
+    listening = top.table("listening", optional=True)
     activity = Activity(
         name=top.text("name"),
         title=top.text("title"),
@@ -228,7 +233,9 @@ def read_activity(path: Path) -> Activity:
         pronunciations=MappingProxyType(
             read_pronunciations(top.table("pronunciations", optional=True))
         ),
+        listening=listening.choice("mode", LISTENING, LISTENING[0]),
     )
+    listening.close()
     top.close()
     for situation in activity.expected:
         if situation not in activity.situations:

@@ -11,6 +11,7 @@ from typing import Literal, TypeAlias
 from tangy_hw.sound.meter import Meter
 from tangy_hw.sound.sources import open_source
 from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Settings
 from tangy_tui.learning.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.learning.speech.understanding import answer, understand, wanted
@@ -40,7 +41,6 @@ class Ears:
         settings: Settings = USUAL,
         hands_free: bool = False,
         answers: bool = False,
-        left_out: Callable[[], tuple[str, ...]] = tuple,
         stdin: int = 0,
         folder: Path | None = None,
     ) -> None:
@@ -52,7 +52,6 @@ class Ears:
             settings: how it is listened with this microphone.
             hands_free: listen all the time, and find out where an utterance begins and ends.
             answers: also hear yes and no while a question is open.
-            left_out: says what can be typed but not heard, a sentence each; asked in a thread.
             stdin: the file descriptor that `-` stands for.
             folder: the data folder, for the socket and the messages of the decoder.
 
@@ -76,7 +75,6 @@ class Ears:
         self._state: State = "starting"
         self._phrasebook = phrasebook
         self._settings = settings
-        self._left_out = left_out
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
         self._heard: AsyncIterator[Heard] | None = None
         self._sound: asyncio.Queue[bytes] | None = None  # of the utterance that is listened for
@@ -158,8 +156,9 @@ class Ears:
         self._source.tell = self._told
         pump: asyncio.Task[None] | None = None
         try:
-            await recogniser.start(wanted(self._phrasebook, self._settings))
-            for sentence in await asyncio.to_thread(self._left_out):
+            lexicon = await asyncio.to_thread(Lexicon, self._phrasebook, suggest=lambda word: "")
+            await recogniser.start(wanted(self._phrasebook, self._settings, lexicon.heard()))
+            for sentence in lexicon.notices():
                 self._told(sentence)
             if self.live:
                 pump = asyncio.create_task(self._pump())

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from tangy_hw.sound.wav import RATE
+from tangy_profiles.activity import LISTENING
 
 __all__ = ["LONGEST", "RATE", "USUAL", "Evidence", "Expecting", "Settings", "Wanted"]
 
@@ -14,7 +15,7 @@ Expecting = Literal["commands", "answers"]
 """What is listened for: commands, or the answer to a question (yes and no)."""
 
 LONGEST = 15  # s of an utterance that are decoded at most
-MODES = ("tiers", "paper")
+MODES = LISTENING
 
 
 @dataclass(frozen=True, slots=True)

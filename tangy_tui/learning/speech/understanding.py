@@ -8,6 +8,7 @@ robot do so in every mode. In the paper's mode there is one tier: n-gram and key
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from tangy_tui.learning.commands import Command, Phrasebook
@@ -31,10 +32,18 @@ NO = ("no", "no thank you", "no do not", "that is wrong", "no that is wrong")
 MOST_STOP_WORDS = 2
 
 
-def wanted(phrasebook: Phrasebook, settings: Settings) -> Wanted:
-    """Return what is to be listened for: the phrases, what stops the robot, and answers."""
+def wanted(
+    phrasebook: Phrasebook, settings: Settings, phrases: Sequence[str] | None = None
+) -> Wanted:
+    """Return what is to be listened for: the phrases, what stops the robot, and answers.
+
+    Args:
+        phrasebook: has the pronunciations, and all phrases as they are said.
+        settings: how it is listened.
+        phrases: those that can be told apart by their sound, if that is known.
+    """
     return Wanted(
-        (*phrasebook.spoken(), *STOPS),
+        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
         (*YES, *NO, *STOPS),
         STOPS,
         phrasebook.pronunciations(),
