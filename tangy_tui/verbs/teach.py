@@ -37,7 +37,22 @@ def teach(
     activity: ActivityName = "bingo",
     script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
     mic: Annotated[
-        str | None, typer.Option(help="Listen to FILE.wav, - (standard input) or arecord.")
+        str | None,
+        typer.Option(
+            metavar="SOURCE",
+            help="Listen to arecord (a local microphone; arecord:DEVICE for one of several), "
+            "socket (a laptop's, see `tangy mic`), FILE.wav or - (standard input).",
+        ),
+    ] = None,
+    hands_free: Annotated[
+        bool, typer.Option("--hands-free", help="Listen all the time, not only after t.")
+    ] = False,
+    spoken_answers: Annotated[
+        bool, typer.Option("--spoken-answers", help="Also take yes and no by voice.")
+    ] = False,
+    mode: Annotated[
+        str | None,
+        typer.Option(help="How spoken words are matched: tiers, or paper (n-gram and keywords)."),
     ] = None,
     plain_lines: Annotated[
         bool, typer.Option("--plain", help="By lines, for any terminal.")
@@ -76,10 +91,18 @@ def teach(
     with open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
-        ears = _ears(mic, teaching, sound, house)
+        screen = not (plain_lines or script or as_json) and full_screen()
+        if mic is None and (hands_free or spoken_answers or mode):
+            raise TangyError("There is nothing to listen to: name a microphone with --mic.")
+        ears = None
+        if mic is not None:
+            ears = _ears(
+                mic, teaching, sound, house, mode,
+                hands_free=hands_free or not screen, answers=spoken_answers,
+            )  # fmt: skip
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
-        elif not (plain_lines or script or as_json) and full_screen():
+        elif screen:
             from tangy_tui.ui.run import run_teaching
 
             status = run_teaching(
@@ -167,12 +190,34 @@ def _teach_by_lines(
         print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
 
 
-def _ears(mic: str | None, teaching: Teaching, sound: int, house: House) -> Ears | None:
-    if mic is None:
-        return None
+def _ears(
+    mic: str,
+    teaching: Teaching,
+    sound: int,
+    house: House,
+    mode: str | None,
+    *,
+    hands_free: bool,
+    answers: bool,
+) -> Ears:
+    from tangy_profiles.activity import LISTENING
+    from tangy_profiles.reading import nearest
     from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.learning.speech.evidence import Settings
 
-    return Ears(mic, teaching.phrasebook, stdin=sound, folder=house.store.folder)
+    chosen = mode or house.activity.listening
+    if chosen not in LISTENING:
+        raise TangyError(plain(f"--mode {chosen}: there is no such mode; ")
+                         + nearest(chosen, LISTENING))  # fmt: skip
+    return Ears(
+        mic,
+        teaching.phrasebook,
+        settings=Settings(mode=chosen),
+        hands_free=hands_free,
+        answers=answers,
+        stdin=sound,
+        folder=house.store.folder,
+    )
 
 
 def _seen(house: House, teaching: Teaching) -> list[str]:
