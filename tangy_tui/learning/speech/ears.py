@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, AsyncIterator, Callable
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -19,10 +19,68 @@ from tangy_tui.learning.verifying import Reply, Say, Stop
 
 LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
 RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
+PIECE = 3_200  # bytes, 0.1 s: words are shown as they come if they come in pieces
+MOST_WAITING = 60  # s of a stream that wait for the decoder
+FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
 Heard: TypeAlias = Say | Stop | Reply
 State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
 """off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
+
+
+class _Chunks(asyncio.Queue[bytes]):
+    """Chunks that wait to be heard, and how many bytes they are."""
+
+    held = 0
+
+    def _put(self, chunk: bytes) -> None:
+        self.held += len(chunk)
+        super()._put(chunk)
+
+    def _get(self) -> bytes:
+        chunk: bytes = super()._get()
+        self.held -= len(chunk)
+        return chunk
+
+
+class _Utterance:
+    """The sound of an utterance as it comes, or of a stream in which one is to be found."""
+
+    def __init__(self, *, found: bool, begun: bytes = b"") -> None:
+        """Begin; `found` says that its end is to be found, `begun` is what is there already."""
+        self.chunks = _Chunks()
+        self.over = False
+        self.dropped = False
+        """It counts for nothing."""
+        self._found = found
+        self._left = round(LONGEST_TALK * RATE) * 2
+        self.add(begun)
+
+    def add(self, chunk: bytes) -> None:
+        """Take the next chunk. Push-to-talk ends in time; of a stream the oldest is forgotten."""
+        if self.over or not chunk:
+            return
+        if self._found:
+            for place in range(0, len(chunk), PIECE):
+                self.chunks.put_nowait(chunk[place : place + PIECE])
+            while self.chunks.held > 2 * RATE * MOST_WAITING:
+                self.chunks.get_nowait()
+            return
+        self.chunks.put_nowait(chunk[: self._left])
+        self._left -= len(chunk)
+        if self._left <= 0:
+            self.end()
+
+    def end(self, *, dropped: bool = False) -> None:
+        """Take no more of it."""
+        self.dropped = self.dropped or dropped
+        if not self.over:
+            self.over = True
+            self.chunks.put_nowait(b"")
+
+    def rest(self) -> bytes:
+        """Take out what nobody has heard yet."""
+        return b"".join(self.chunks.get_nowait() for _ in range(self.chunks.qsize()))
 
 
 class Ears:
@@ -76,16 +134,17 @@ class Ears:
         self._phrasebook = phrasebook
         self._settings = settings
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
-        self._heard: AsyncIterator[Heard] | None = None
-        self._sound: asyncio.Queue[bytes] | None = None  # of the utterance that is listened for
-        self._talks = asyncio.Event()
+        self._heard: AsyncGenerator[Heard, None] | None = None
+        self._recogniser: Recogniser | None = None
+        self._utterance: _Utterance | None = None  # the one that is listened for
+        self._talks = asyncio.Event()  # it has begun, or none will
         self._free = asyncio.Event()
         self._free.set()
         self._asking = False
-        self._dropped = False  # the present utterance does not count
         self._ended = False  # the source has no more
+        self._closed = False
+        self._over = asyncio.Event()  # all that was started has ended
         self._deaf = 0  # bytes that are not heard: the room still rings
-        self._left = 0  # bytes that push-to-talk still takes
 
     @property
     def state(self) -> State:
@@ -96,24 +155,26 @@ class Ears:
     def trouble(self) -> str:
         """What is wrong with the sound, in a sentence; "" if nothing is."""
         listens = self.state in ("listening", "speaking")
-        return self.meter.words(speaking=self._talks.is_set()) if self.live and listens else ""
+        spoken = self._state == "speaking" or not self.hands_free
+        return self.meter.words(speaking=spoken) if self.live and listens else ""
 
     def talk(self) -> None:
         """Push to talk: begin to listen, or end what is being said."""
         if not self.live or self.hands_free or not self._free.is_set():
             return
-        if self._talks.is_set():
-            self._put(b"")
+        if self._utterance is not None:
+            self._end()
         elif self._state == "off":
             self.meter.begin()
-            self._left = round(LONGEST_TALK * RATE) * 2
+            self._utterance = _Utterance(found=False)
             self._talks.set()
+            self._now("listening")
 
     def shut(self) -> None:
         """Hear nothing for a while: the robot speaks. A recording has no robot in it."""
         if self.live and self._free.is_set():
             self._free.clear()
-            self._drop()
+            self._end(dropped=True)
             self.changed()
 
     def open(self) -> None:
@@ -128,7 +189,7 @@ class Ears:
         if self._asking != asks:
             self._asking = asks
             if self.live:
-                self._drop()
+                self._end(dropped=True)
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
         """Match what is heard to these phrases from now on; they are listened for later."""
@@ -139,24 +200,33 @@ class Ears:
 
     async def __anext__(self) -> Heard:
         if self._heard is None:
+            if self._closed:
+                raise StopAsyncIteration
             self._heard = self._hear()
         return await anext(self._heard)
 
     async def close(self) -> None:
-        """Stop listening for good."""
+        """Stop listening for good, and end the decoder, whatever it is doing."""
+        self._closed = True
         await self._source.close()
-        if self._heard is not None and hasattr(self._heard, "aclose"):
-            with contextlib.suppress(RuntimeError):  # somebody waits for it, and gets the end
+        if self._recogniser is not None:
+            await self._recogniser.close()
+        if self._heard is not None:
+            try:
                 await self._heard.aclose()
+            except RuntimeError:  # somebody waits for it, and gets the end
+                await self._over.wait()
 
-    async def _hear(self) -> AsyncIterator[Heard]:
-        recogniser = Recogniser(log=self._log, notify=self._told)
+    async def _hear(self) -> AsyncGenerator[Heard, None]:
+        recogniser = self._recogniser = Recogniser(log=self._log, notify=self._told)
         recogniser.partial = self._partial
-        recogniser.speaking = lambda: self._now("speaking")
+        recogniser.speaking = self._spoke
         self._source.tell = self._told
         pump: asyncio.Task[None] | None = None
         try:
             lexicon = await asyncio.to_thread(Lexicon, self._phrasebook, suggest=lambda word: "")
+            if self._closed:
+                return
             await recogniser.start(wanted(self._phrasebook, self._settings, lexicon.heard()))
             for sentence in lexicon.notices():
                 self._told(sentence)
@@ -165,23 +235,31 @@ class Ears:
                 spoken = self._live(recogniser)
             else:
                 spoken = self._recorded(recogniser)
-            async with contextlib.aclosing(spoken):  # type: ignore[type-var]
+            async with contextlib.aclosing(spoken):
                 async for evidence in spoken:
                     heard = self._understand(evidence)
-                    if heard is not None:
+                    if heard is not None and not self._closed:
                         yield heard
             if pump is not None:
                 await pump
+            if self._closed:
+                return
             self._told("The microphone has closed." if self.live else "The recording is over.")
+        except SpeechUnavailable:
+            if not self._closed:
+                raise
         finally:
-            self._now("over")
-            if pump is not None:
-                pump.cancel()
-                await asyncio.wait({pump})
-            await recogniser.close()
-            await self._source.close()
+            try:
+                if pump is not None:
+                    pump.cancel()
+                    await asyncio.wait({pump})
+                await recogniser.close()
+                await self._source.close()
+            finally:
+                self._over.set()
+                self._now("over")
 
-    async def _recorded(self, recogniser: Recogniser) -> AsyncIterator[Evidence]:
+    async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
         pcm = b"".join([chunk async for chunk in self._source])
         for piece in await recogniser.pieces(pcm):
             self._now("thinking")
@@ -191,42 +269,59 @@ class Ears:
                     piece, "answers" if self._asking and self.answers else "commands"
                 )
             except SpeechUnavailable as error:
+                if self._closed:
+                    raise
                 self._told(str(error))
                 continue
             self._now("listening")
             yield evidence
 
-    async def _live(self, recogniser: Recogniser) -> AsyncIterator[Evidence]:
-        while not self._ended:
-            if not self.hands_free:
-                self._now("off")
-                await self._pushed()
-                if self._ended:
-                    return
-            self._dropped, self._sound = False, asyncio.Queue()
-            self._now("listening")
+    async def _live(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
+        failures = 0
+        while (utterance := await self._next()) is not None:
             try:
                 evidence = await recogniser.hear(
-                    self._sound,
+                    utterance.chunks,
                     "answers" if self._asking else "commands",
                     endpoint=self.hands_free,
                 )
+                failures = 0
             except SpeechUnavailable as error:
+                failures += 1
+                if self._closed or (self.hands_free and failures >= FAILURES):
+                    raise
                 self._told(f"{error} Please say that again.")
-                await asyncio.sleep(0)
                 continue
             finally:
-                self._sound = None
+                self._utterance = None
                 self._talks.clear()
                 self._partial("")
             self.sound = recogniser.said
-            if not self._dropped:
-                yield evidence
+            if utterance.dropped:
+                continue
+            if self.hands_free:
+                self._go_on(recogniser.left + utterance.rest())
+            yield evidence
 
-    async def _pushed(self) -> None:
-        """Wait until somebody talks, or the source is over."""
-        while not self._talks.is_set() and not self._ended:
-            await self._talks.wait()
+    async def _next(self) -> _Utterance | None:
+        """Wait for the next utterance to listen to; None if the source is over."""
+        if not self.hands_free:
+            self._now("off")
+            while self._utterance is None and not self._ended:
+                await self._talks.wait()
+        else:
+            if self._utterance is None or self._utterance.dropped:
+                self._utterance = None if self._ended else _Utterance(found=True)
+            if self._utterance is not None:
+                self._now("listening")
+        return self._utterance
+
+    def _go_on(self, begun: bytes) -> None:
+        """Listen on to a stream from where an utterance ended: somebody may have spoken on."""
+        if begun or not self._ended:
+            self._utterance = _Utterance(found=True, begun=begun)
+            if self._ended:
+                self._utterance.end()
 
     async def _pump(self) -> None:
         """Take the sound as it comes, and keep what is to be heard."""
@@ -237,42 +332,31 @@ class Ears:
                     continue
                 dropped = min(self._deaf, len(chunk))
                 self._deaf -= dropped
-                self._take(chunk[dropped:])
+                if self._utterance is not None:
+                    self._utterance.add(chunk[dropped:])
+                    self._thinks()
         finally:
             self._ended = True
-            self._put(b"")
+            self._end()
             self._talks.set()
 
-    def _take(self, chunk: bytes) -> None:
-        if not chunk or self._sound is None:
-            return
-        if not self.hands_free:
-            chunk = chunk[: self._left]
-            self._left -= len(chunk)
-        if chunk:
-            self._put(chunk)
-        if not self.hands_free and self._left <= 0:
-            self._put(b"")
+    def _end(self, *, dropped: bool = False) -> None:
+        """Let the present utterance end; if it is dropped, it counts for nothing."""
+        if self._utterance is not None:
+            self._utterance.end(dropped=dropped)
+            self._thinks()
 
-    def _put(self, chunk: bytes) -> None:
-        if self._sound is None:
-            return
-        self._sound.put_nowait(chunk)
-        if not chunk:
-            self._sound = None  # what comes now is not part of it
+    def _thinks(self) -> None:
+        if self._utterance is not None and self._utterance.over:
             self._now("thinking")
-
-    def _drop(self) -> None:
-        """Let the present utterance end, and count for nothing."""
-        self._dropped = True
-        self._put(b"")
 
     def _understand(self, evidence: Evidence) -> Heard | None:
         if self._asking:
             said = answer(evidence)
             return said if self.answers or isinstance(said, Stop) else None
         if not evidence.words:
-            self._told("I heard something, but no words that I know." if self.live else "")
+            if self.live and evidence.seconds:
+                self._told("I heard something, but no words that I know.")
             return None
         return understand(evidence, self._phrasebook, self._settings)
 
@@ -280,6 +364,10 @@ class Ears:
         if words != self.words:
             self.words = words
             self.changed()
+
+    def _spoke(self) -> None:
+        if self._utterance is not None and not self._utterance.over:
+            self._now("speaking")
 
     def _now(self, state: State) -> None:
         if state != self._state:

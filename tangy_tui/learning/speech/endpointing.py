@@ -22,6 +22,13 @@ class Endpoints:
             window=window, ratio=RATIO, sample_rate=RATE, vad_mode=pocketsphinx.Vad.LOOSE
         )
         self._rest = b""
+        self.taken = 0
+        """How many bytes of the stream it has looked at."""
+
+    @property
+    def speaking(self) -> bool:
+        """Whether an utterance is going on."""
+        return bool(self._endpointer.in_speech)
 
     @property
     def begin(self) -> float:
@@ -35,20 +42,23 @@ class Endpoints:
 
     def feed(self, pcm: bytes) -> Iterator[tuple[bool, bytes, bool]]:
         """Give the speech in these samples: whether it begins here, and whether it is over."""
-        self._rest += pcm
+        stream = self._rest + pcm
         size = self._endpointer.frame_bytes
-        while len(self._rest) >= size:
-            frame, self._rest = self._rest[:size], self._rest[size:]
+        whole = len(stream) - len(stream) % size
+        self._rest = stream[whole:]
+        for place in range(0, whole, size):
             spoke = self._endpointer.in_speech
-            speech = self._endpointer.process(frame)
+            speech = self._endpointer.process(stream[place : place + size])
+            self.taken += size
             if speech:
                 yield not spoke, bytes(speech), not self._endpointer.in_speech
 
-    def finish(self) -> bool:
-        """End the stream; return whether an utterance was still going on."""
+    def finish(self) -> bytes:
+        """End the stream; return what is left of an utterance that was still going on."""
         speaking: bool = self._endpointer.in_speech
-        self._endpointer.end_stream(self._rest or b"\0\0")
-        return speaking
+        speech = self._endpointer.end_stream(self._rest or b"\0\0")
+        self.taken, self._rest = self.taken + len(self._rest), b""
+        return bytes(speech) if speaking and speech else b""
 
 
 def pieces(pcm: bytes) -> list[tuple[float, float]]:
@@ -59,6 +69,6 @@ def pieces(pcm: bytes) -> list[tuple[float, float]]:
     for _, _, over in endpoints.feed(pcm):
         if over:
             found.append((endpoints.begin, endpoints.end))
-    if endpoints.finish():
+    if endpoints.speaking:
         found.append((endpoints.begin, length))
     return [(max(0.0, begin - MARGIN), min(length, end + MARGIN)) for begin, end in found]

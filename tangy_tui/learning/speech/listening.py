@@ -10,7 +10,7 @@ from typing import Any
 
 from tangy_hw.sound.wav import read_wav
 from tangy_tui.learning.commands import Command, Phrasebook
-from tangy_tui.learning.speech.evidence import USUAL, Settings
+from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Settings
 from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.understanding import understand, wanted
 from tangy_tui.learning.verifying import Say, Stop
@@ -23,7 +23,7 @@ def listen(
 
     A row has file, heard, tier (sure, unsure, nothing, stop), behaviour (only of a sure one),
     arguments, confidence, and choices, which may be meant, the likeliest first. A file is heard as
-    one command; if it is none for sure, and has pauses, what is between them.
+    one command; if it is none for sure, or too long, and has pauses, what is between them.
 
     Raises:
         SoundError: a file is missing or cannot be read as sound; it is named.
@@ -42,7 +42,8 @@ async def _listen(
         await recogniser.start(wanted(phrasebook, settings))
         for file, pcm in sounds:
             whole = understand(await recogniser.decode(pcm), phrasebook, settings)
-            pieces = [] if tier_of(whole) in ("sure", "stop") else await recogniser.pieces(pcm)
+            settled = tier_of(whole) in ("sure", "stop") and len(pcm) <= 2 * RATE * LONGEST
+            pieces = [] if settled else await recogniser.pieces(pcm)
             if len(pieces) < 2:
                 rows.append(_row(file, whole))
                 continue

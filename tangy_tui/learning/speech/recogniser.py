@@ -10,6 +10,8 @@ import asyncio
 import base64
 import contextlib
 import json
+import os
+import signal
 import sys
 from collections.abc import Callable
 from dataclasses import fields
@@ -23,8 +25,10 @@ WORKER = (sys.executable, "-P", "-m", "tangy_tui.learning.speech.worker")
 START_SECONDS = 30.0  # for the worker to load its models: 0.8 s when nothing else runs
 DECODE_SECONDS = 30.0  # for an utterance: 0.2 s when nothing else runs
 END_SECONDS = 2.0
-MARGIN = 0.3  # s by which an utterance is over before that is known
+MARGIN = 0.6  # s that an endpointer needs to know that an utterance has begun, and is over
+BEHIND = 5.0  # s of sound that are on the way to the worker at most
 ATTEMPTS = 2  # at one utterance, before it is given up
+LONGEST_ANSWER = 1 << 20  # bytes; a recording may have thousands of utterances
 
 
 class SpeechUnavailable(TangyError):
@@ -32,7 +36,7 @@ class SpeechUnavailable(TangyError):
 
 
 class _WorkerDied(Exception):
-    """The worker ended before it answered; its text says how."""
+    """The worker ended before it answered; its text says how, in a few words."""
 
 
 class Recogniser:
@@ -67,6 +71,8 @@ class Recogniser:
         self._closing = False
         self.said = b""
         """The sound of the last utterance that was heard."""
+        self.left = b""
+        """What was taken of the sound after it, where its end was found."""
 
     @property
     def pid(self) -> int | None:
@@ -81,14 +87,14 @@ class Recogniser:
             SpeechUnavailable: the worker cannot run here, or no phrase can be pronounced.
         """
         async with self._turn:
-            self._wanted = wanted
+            self._wanted, self._closing = wanted, False
             try:
                 if self.pid is None:
                     await self._begin()
                 else:
                     await self._tell_what()
             except _WorkerDied as how:
-                raise SpeechUnavailable(str(how)) from None
+                raise SpeechUnavailable(f"The speech worker ended {how}.") from None
 
     async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
         """Decode one whole utterance (16 kHz mono s16le, at most 15 s).
@@ -111,11 +117,12 @@ class Recogniser:
         """Hear one utterance as it is spoken; an empty chunk ends it.
 
         If the worker dies over it, a new one is given all that was said so far, and it goes on.
+        Of what is longer than 15 s the rest is not heard.
 
         Args:
             sound: chunks of 16 kHz mono s16le.
             expecting: what is listened for.
-            endpoint: find where it begins and ends; then only what comes after it is left.
+            endpoint: find where it begins and ends; what was taken after that is in `left`.
 
         Raises:
             SpeechUnavailable: the worker died over it twice, or cannot be started again.
@@ -127,7 +134,9 @@ class Recogniser:
                     return await self._hear(sound, said, expecting, endpoint)
                 except _WorkerDied as how:
                     if attempt == ATTEMPTS:
-                        raise SpeechUnavailable(str(how)) from None
+                        raise SpeechUnavailable(
+                            f"The speech worker ended twice over one utterance, {how}."
+                        ) from None
             raise AssertionError("not reached")
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
@@ -141,7 +150,7 @@ class Recogniser:
                 await self._ready()
                 answer = await self._ask({"pieces": base64.b64encode(pcm).decode()}, DECODE_SECONDS)
             except _WorkerDied as how:
-                raise SpeechUnavailable(str(how)) from None
+                raise SpeechUnavailable(f"The speech worker ended {how}.") from None
         return [
             pcm[2 * round(begin * RATE) : 2 * round(end * RATE)] for begin, end in answer["found"]
         ]
@@ -164,21 +173,32 @@ class Recogniser:
             await self._send({"id": id, "begin": expecting, "endpoint": endpoint})
             for before in said:
                 await self._send({"pcm": base64.b64encode(before).decode()})
+            sent = sum(map(len, said))
             while not answer.done() and (not said or said[-1]):
                 chunk = await self._next(sound, answer)
                 if chunk is None:
                     break
+                if not endpoint and chunk:
+                    chunk = chunk[: max(0, 2 * RATE * LONGEST - sent)]
+                    if not chunk:
+                        continue
                 said.append(chunk)
                 if endpoint:
                     _forget(said)
                 if chunk:
+                    sent += len(chunk)
                     await self._send({"pcm": base64.b64encode(chunk).decode()})
             if not answer.done():
                 await self._send({"id": id, "end": True})
-            heard = (await self._answer(answer, DECODE_SECONDS))["heard"]
-            evidence = Evidence(**{field.name: heard[field.name] for field in fields(Evidence)})
-            self.said = b"".join(said)
-            if endpoint:  # what came before it is nobody's business
+            got = await self._answer(answer, DECODE_SECONDS)
+            evidence = Evidence(
+                **{field.name: got["heard"][field.name] for field in fields(Evidence)}
+            )
+            self.said, self.left = b"".join(said), b""
+            if endpoint:
+                end = len(self.said) - max(0, sent - got["used"])
+                self.said, self.left = self.said[:end], self.said[end:]
+                # what came before it is nobody's business
                 self.said = self.said[-2 * round((evidence.seconds + MARGIN) * RATE) :]
             return evidence
         finally:
@@ -199,11 +219,15 @@ class Recogniser:
 
     async def _ready(self) -> None:
         if self.pid is None:
+            if self._reader is not None:
+                await asyncio.wait({self._reader})  # which says how it ended
             await self._begin()
 
     async def _begin(self) -> None:
         """Start a worker; one that has ended is cleared away."""
         await self._end()
+        if self._wanted is None:
+            raise SpeechUnavailable("Speech was not started yet.")
         log: int | IO[bytes] = asyncio.subprocess.DEVNULL
         try:
             if self._log is not None:
@@ -214,6 +238,7 @@ class Recogniser:
                 stdout=asyncio.subprocess.PIPE,
                 stderr=log,
                 start_new_session=True,  # ctrl+c in the terminal is not meant for it
+                limit=LONGEST_ANSWER,
             )
         except OSError as error:
             raise SpeechUnavailable(
@@ -252,10 +277,14 @@ class Recogniser:
     async def _send(self, request: dict[str, Any]) -> None:
         process = self._process
         if process is None or process.stdin is None:
-            raise _WorkerDied("The speech worker does not run.")
-        with contextlib.suppress(OSError):  # its reader says how it ended
+            raise _WorkerDied("unasked")
+        try:
             process.stdin.write(json.dumps(request).encode() + b"\n")
-            await process.stdin.drain()
+            await asyncio.wait_for(process.stdin.drain(), DECODE_SECONDS)
+        except TimeoutError:
+            _kill(process)  # it hangs
+        except OSError:
+            pass  # its reader says how it ended
 
     async def _answer(
         self, coming: asyncio.Future[dict[str, Any]], seconds: float
@@ -274,28 +303,39 @@ class Recogniser:
 
     async def _read(self, process: asyncio.subprocess.Process) -> None:
         """Give each answer to whoever waits for it, until the worker ends."""
-        with contextlib.suppress(OSError, ValueError):
-            while process.stdout is not None and (line := await process.stdout.readline()):
+        stdout = process.stdout or asyncio.StreamReader()
+        try:
+            while line := await stdout.readline():
                 self._took(json.loads(line))
+        except (OSError, ValueError, TypeError):  # that is no answer: it cannot be relied on
+            _kill(process)
+            with contextlib.suppress(OSError):
+                while await stdout.read(1 << 16):  # a full pipe would keep it from ending
+                    pass
         await _let_end(process)
         if self._process is process:
-            sentence = _epitaph(process)
-            if self._notify is not None and not self._closing:
-                self._notify(sentence)
+            how = _epitaph(process)
             for waiting in self._waiting.values():
                 if not waiting.done():
-                    waiting.set_exception(_WorkerDied(sentence))
+                    waiting.set_exception(_WorkerDied(how))
+            if self._notify is not None and not self._closing:
+                self._notify(f"The speech worker ended {how}; it is started again.")
 
-    def _took(self, answer: dict[str, Any]) -> None:
+    def _took(self, answer: Any) -> None:
+        if not isinstance(answer, dict):
+            raise TypeError("An answer is an object.")
         waiting = self._waiting.get(answer.get("id", 0))
         if waiting is None or waiting.done():
             return
-        if "partial" in answer:
-            self.partial(str(answer["partial"]))
-        elif "speaking" in answer:
-            self.speaking()
-        else:
-            waiting.set_result(answer)
+        try:
+            if "partial" in answer:
+                self.partial(str(answer["partial"]))
+            elif "speaking" in answer:
+                self.speaking()
+            else:
+                waiting.set_result(answer)
+        except Exception as error:  # whoever was told could not take it
+            waiting.set_exception(error)
 
     async def _end(self, *, kill: bool = False) -> None:
         process, self._process = self._process, None
@@ -311,8 +351,8 @@ class Recogniser:
 
 
 def _forget(said: list[bytes]) -> None:
-    """Keep no more of a stream than an utterance can be long."""
-    while sum(map(len, said)) > 2 * RATE * LONGEST:
+    """Keep no more of a stream than an utterance can be long, and the worker can be behind."""
+    while sum(map(len, said)) > 2 * RATE * (LONGEST + BEHIND):
         said.pop(0)
 
 
@@ -330,11 +370,13 @@ async def _let_end(process: asyncio.subprocess.Process) -> None:
 
 
 def _kill(process: asyncio.subprocess.Process) -> None:
-    with contextlib.suppress(ProcessLookupError):
-        process.kill()
+    """Kill a process, and leave its status to asyncio (`process.kill()` may take it away)."""
+    if process.returncode is None:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(process.pid, signal.SIGKILL)
 
 
 def _epitaph(process: asyncio.subprocess.Process) -> str:
     code = process.returncode or 0
     how = f"signal {-code}" if code < 0 else f"status {code}"
-    return f"The speech worker ended unasked ({how}); it is started again, and nothing is lost."
+    return f"unasked ({how})"

@@ -10,7 +10,8 @@ Run as `python -m tangy_tui.learning.speech.worker`, spoken to by JSON, one obje
     {"id": 2, "speaking": true}                  where it is looked for: it has begun
     {"id": 2, "partial": "go to"}                the words so far, whenever they change
     {"id": 2, "end": true}                       it is over; where it is looked for, at the latest
-    {"id": 2, "heard": {...}}                    `evidence.Evidence`
+    {"id": 2, "heard": {...}, "used": 64000}     `evidence.Evidence`, and how many bytes since it
+                                                 began are part of it or came before it
     {"id": 3, "pieces": "..."}                   base64 of a whole recording
     {"id": 3, "found": [[0.5, 1.7]]}             where utterances are in it, in s
     {"id": 3, "error": "One sentence."}          instead of any answer
@@ -58,16 +59,23 @@ class Worker:
     def take(self, request: Any) -> None:
         """Take one request; what is wrong with it becomes the answer's error."""
         id = request.get("id") if isinstance(request, dict) else None
+        if isinstance(request, dict) and "pcm" in request:
+            id = self._id  # whoever waits for the utterance is told what is wrong with its sound
         try:
             self._take(id, request)
         except Refused as reason:
-            self._write({"id": id, "error": str(reason)})
+            self._fail(id, str(reason))
         except ImportError as error:
-            needed = error.name or "pocketsphinx"
-            self._write({"id": id, "error": f"Speech needs the package {needed}."})
+            self._fail(id, f"Speech needs the package {error.name or 'pocketsphinx'}.")
         except (RuntimeError, ValueError, OSError) as error:
             said = " ".join(str(error).split())[:200] or type(error).__name__
-            self._write({"id": id, "error": f"The speech decoder failed: {said}."})
+            self._fail(id, f"The speech decoder failed: {said}.")
+
+    def _fail(self, id: Any, sentence: str) -> None:
+        """Answer with an error; an utterance that it befell is over."""
+        if id is not None and id == self._id:
+            self._id = None
+        self._write({"id": id, "error": sentence})
 
     def _take(self, id: Any, request: Any) -> None:
         match request:
@@ -79,9 +87,12 @@ class Worker:
                 self._hear(_sound(encoded))
             case {"end": True}:
                 if id == self._id:
+                    if self._endpoints is not None:
+                        self._add(self._endpoints.finish())
                     self._end()
             case {"pieces": str(encoded)}:
-                self._write({"id": id, "found": pieces(_sound(encoded))})
+                found = [(round(begin, 3), round(end, 3)) for begin, end in pieces(_sound(encoded))]
+                self._write({"id": id, "found": found})
             case _:
                 raise Refused("A request must hold wanted, begin, pcm, end or pieces.")
 
@@ -142,10 +153,12 @@ class Worker:
         return self._shown in self._urgent and self._stood >= 2 * RATE * STANDS
 
     def _end(self) -> None:
-        id, self._id = self._id, None
+        id = self._id
         heard: Evidence = self._decoder.decode(bytes(self._pcm), self._expecting)
+        used = len(self._pcm) if self._endpoints is None else self._endpoints.taken
+        self._id = None
         self._pcm.clear()
-        self._write({"id": id, "heard": asdict(heard)})
+        self._write({"id": id, "heard": asdict(heard), "used": used})
 
 
 def _sound(encoded: str) -> bytes:
