@@ -13,6 +13,7 @@ from contextlib import suppress
 from threading import Thread
 from typing import Any
 
+from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.demonstrating import Teaching
@@ -66,6 +67,7 @@ MEANINGS = (
     ("quit", "leave; what you confirmed is kept"),
 )
 STOPPED = "STOP: the simulated robot stands still until the next command is carried out."
+LONGEST_NUMBER = 5  # characters
 _AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
 _AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
 
@@ -119,6 +121,17 @@ class TeachingLines:
 
     async def run(self, *, resume: bool = True) -> None:
         """Teach until `quit` or the end of the input. What was verified is kept."""
+        ears = self._ears
+        try:
+            await self._teach(resume=resume)
+        finally:
+            if ears is not None:
+                await ears.close()
+            if self._spoken is not None:
+                await asyncio.gather(self._spoken, return_exceptions=True)
+        self._leave()
+
+    async def _teach(self, *, resume: bool) -> None:
         teaching, write = self._teaching, self._write
         write(f"Teaching {teaching.activity.title}. {HELP}")
         self._tell(teaching.begin(resume=resume))
@@ -133,7 +146,6 @@ class TeachingLines:
                 self._tell(teaching.apply(command))
             if self._ears is not None:
                 self._ears.asking(teaching.question is not None)
-        self._leave()
 
     def _leave(self) -> None:
         """Say what becomes of what was shown, and what to do next."""
@@ -152,17 +164,28 @@ class TeachingLines:
         """Return what comes next: the spoken command if one is due, otherwise a line.
 
         A recording goes before the lines, so that a script can answer it; somebody who is
-        speaking now may as well type.
+        speaking now may as well type. While a question is open, what is spoken waits until it is
+        answered, unless it answers it or stops the robot.
         """
-        if self._ears is None or (self._teaching.question is not None and not self._answers):
+        asks = self._teaching.question is not None
+        if self._ears is None or (asks and not (self._together or self._answers)):
             return await self._line()
         spoken = self._spoken = self._spoken or asyncio.ensure_future(anext(self._ears, None))
+        if asks and _is_command(spoken):
+            return await self._line()
         typed = self._typed = self._typed or (self._reading() if self._together else None)
         waiting: list[asyncio.Future[Any]] = [spoken] if typed is None else [spoken, typed]
         done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
         if typed in done:
             return await self._line()
-        said, self._spoken = await spoken, None
+        self._spoken = None
+        try:
+            said = await spoken
+        except TangyError as error:
+            if not self._together:
+                raise
+            self._write(str(error))
+            said = None
         if said is None:
             self._ears = None
             return await self._line()
@@ -203,7 +226,7 @@ class TeachingLines:
         if self._teaching.question is not None and lower != "quit":
             if lower in ANSWERS:
                 return Reply(yes=ANSWERS[lower])
-            if lower.isdecimal():
+            if lower.isdecimal() and len(lower) < LONGEST_NUMBER:
                 return Reply(yes=False, alternative=int(lower))
             asks_help = lower in ("help", "?")
             question = self._teaching.question
@@ -271,6 +294,13 @@ class TeachingLines:
                 self._write(f"Type next for another demonstration, or quit and `{self._learn}`.")
             if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
                 self._where()
+
+
+def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
+    """Say whether what was spoken is there, and is a new command."""
+    if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
+        return False
+    return isinstance(spoken.result(), Say)
 
 
 def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
