@@ -52,6 +52,7 @@ FESTIVAL = {"ked": "ked_diphone", "kal": "kal_diphone", "slt_hts": "cmu_us_slt_a
 TUNED = ("rms", "awb", "ked")
 QUOTED = ("slt", "slt_hts", "kal16", "kal")
 CONDITIONS = ("clean", "20", "10")  # dB of white noise below the voice
+FITTED = CONDITIONS[:2]  # at 10 dB much is wrong that one could fit to
 HISS = 8.0  # of 32,768: what a clean microphone has
 NOISES = 100
 SPEAKS = 0.25  # s of quiet before and after an utterance
@@ -255,21 +256,23 @@ def figures(job: Job, evidence: Evidence) -> tuple[list[float], bool] | None:
         return None
     known = min(BOOK.known(evidence.words), understanding.MOST_KNOWN)
     ok = right(job[0], job[2], found[0].behaviour, dict(found[0].arguments))
-    return [found[0].confidence, float(known)], ok
+    margin = min(understanding.MOST_MARGIN, max(understanding.LEAST_MARGIN, evidence.margin))
+    return [found[0].confidence, float(known), margin], ok
 
 
 def fit(decoded: Sequence[tuple[Job, Evidence]]) -> None:
     """Print the weights of the likelihood: a logistic regression, right ones against others."""
     from sklearn.linear_model import LogisticRegression
 
-    rows = [row for job, evidence in decoded if (row := figures(job, evidence)) is not None]
+    fitted = [(job, evidence) for job, evidence in decoded if job[3] in FITTED]
+    rows = [row for job, evidence in fitted if (row := figures(job, evidence)) is not None]
     model = LogisticRegression(C=10, class_weight="balanced", max_iter=2000)
     model.fit([x for x, _ in rows], [ok for _, ok in rows])
-    confidence, known = model.coef_[0]
-    understanding.CONFIDENCE_WEIGHT, understanding.KNOWN_WEIGHT = confidence, known
-    understanding.OFFSET = model.intercept_[0]
-    print(f"CONFIDENCE_WEIGHT, KNOWN_WEIGHT, OFFSET = {confidence:.2f}, {known:.2f}, ", end="")
-    print(f"{model.intercept_[0]:.2f}")
+    weights = [*model.coef_[0], model.intercept_[0]]
+    names = ("CONFIDENCE_WEIGHT", "KNOWN_WEIGHT", "MARGIN_WEIGHT", "OFFSET")
+    for name, weight in zip(names, weights, strict=True):
+        setattr(understanding, name, weight)
+    print(f"{', '.join(names)} = {', '.join(f'{weight:.2f}' for weight in weights)}")
     for sure, unsure in ((0.6, 0.3), (0.7, 0.3), (0.8, 0.3), (0.7, 0.2), (0.7, 0.4)):
         understanding.SURE, understanding.UNSURE = sure, unsure
         print(f"SURE, UNSURE = {sure}, {unsure}")

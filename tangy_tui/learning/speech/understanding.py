@@ -17,9 +17,11 @@ from tangy_tui.learning.verifying import Reply, Say, Stop
 from tangy_tui.learning.words import bare, words_of
 
 # How likely words are to be the command they come nearest to: a logistic over the confidence of
-# the phrasebook and over how many telling words it knows. Fitted and the limits set by
-# tests/bench/speech.py on voices and sentences that no figure is quoted for.
-CONFIDENCE_WEIGHT, KNOWN_WEIGHT, OFFSET = 16.53, 0.99, -16.0
+# the phrasebook, over how many telling words it knows, and over how much better words explain the
+# sound than the grammar or any phones do. Fitted, and the limits set, by tests/bench/speech.py on
+# voices and sentences that no figure is quoted for.
+CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 18.94, 0.42, 2.56, -15.32
+LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.7
 UNSURE = 0.3
@@ -61,7 +63,9 @@ def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -
     found = phrasebook.choices(text)
     if not found:
         return Say(text, 0.0, ())
-    confidence = likelihood(found[0].confidence, phrasebook.known(text), settings.shift)
+    confidence = likelihood(
+        found[0].confidence, phrasebook.known(text), evidence.margin, settings.shift
+    )
     if confidence < UNSURE:
         return Say(text, confidence, ())
     commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
@@ -84,9 +88,17 @@ def stops(text: str) -> bool:
     return 1 <= len(words) <= MOST_STOP_WORDS and words[0] in ("stop", "halt")
 
 
-def likelihood(confidence: float, known: int, shift: float = 0.0) -> float:
-    """Return how likely words are to be the command they come nearest to, 0 to 1."""
-    told = CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN) + OFFSET - shift
+def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:
+    """Return how likely words are to be the command they come nearest to, 0 to 1.
+
+    Args:
+        confidence: of the phrasebook, 0 to 1.
+        known: how many telling words it knows.
+        margin: see `Evidence`.
+        shift: see `Settings`.
+    """
+    told = OFFSET - shift + CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN)
+    told += MARGIN_WEIGHT * min(MOST_MARGIN, max(LEAST_MARGIN, margin))
     return 1 / (1 + math.exp(-told))
 
 
