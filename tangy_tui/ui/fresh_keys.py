@@ -35,6 +35,11 @@ class FreshKeys:
         if self._from is None:
             self._from = clock() + SETTLE_SECONDS
 
+    @property
+    def seen(self) -> bool:
+        """Whether the dialog has been painted."""
+        return self._from is not None
+
     def take(self, event: events.Key) -> bool:
         """Keep a key from going further, unless it asks for help; say whether it may answer."""
         if event.key != "question_mark":

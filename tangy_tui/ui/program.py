@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -15,8 +16,8 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
 from tangy_tui.monitoring.drill_sheet import last_sheet
-from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.sounding import SoundingApp
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ STORY_TEACHING = (2.0, 6.0, 12.0)
 """Steps a second of the demo's three demonstrations: slow enough to read at first."""
 
 PLAYING = 20.0
-"""Times life at which a game is watched unless another speed is asked for."""
+"""Times life at which a game is watched unless Tangy speaks or another speed is asked for."""
 
 STORY_PLAYING = 100.0
 """Times life of the demo's game: half an hour in about 20 s."""
@@ -39,12 +40,13 @@ Start = Callable[["Program"], Coroutine[Any, Any, None]]
 """What the program does first, above its home screen."""
 
 
-class Program(TangyApp):
+class Program(SoundingApp):
     """Tangy's screens, put together around one house."""
 
     def __init__(self, house: House, start: Start | None = None, **settings: Any) -> None:
-        """Make the program; without a start it waits at home."""
-        super().__init__(self._home, pictures=house.store.folder, **settings)
+        """Make the program; without a start it waits at home. It may have ears and a voice."""
+        pictures = house.store.folder
+        super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
         self.house = house
         self._start = start
         self._busy = False
@@ -52,7 +54,6 @@ class Program(TangyApp):
 
     def on_mount(self) -> None:
         """Do what comes first."""
-        super().on_mount()
         if self._start is not None:
             self.run_worker(self._start(self))
 
@@ -182,7 +183,7 @@ class Program(TangyApp):
     async def play(
         self,
         games: int = 1,
-        speed: float = PLAYING,
+        speed: float | None = None,
         seed: int | None = None,
         wanted: str = "",
         teacher: str = "",
@@ -191,6 +192,7 @@ class Program(TangyApp):
         """Open the playing screen with a policy, the last one unless another is wanted.
 
         Args:
+            speed: times life; usually as life where Tangy speaks, and faster where it does not.
             teacher: who answers where Tangy asks.
             injections: faults that are to come.
         """
@@ -198,6 +200,7 @@ class Program(TangyApp):
 
         policy = await self._load_policy(wanted)
         if policy is not None:
+            speed = speed or (1.0 if self.speaker.on else PLAYING)
             supervision = self.house.supervision(policy, seed, asks=True, injections=injections)
             screen = PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
             await self.push_screen(screen)
@@ -258,10 +261,16 @@ class Program(TangyApp):
         )
 
     async def action_phrases(self) -> None:
-        """Open the phrasebook."""
+        """Open the phrasebook; while it says a word aloud, the microphone is shut."""
+        from tangy_tui.learning.aloud import hear
         from tangy_tui.ui.screens.phrases import PhrasesScreen
 
-        await self.push_screen(PhrasesScreen(self.house))
+        async def say(phones: str) -> None:
+            with self.hearing.deaf() if self.hearing is not None else nullcontext():
+                await hear(phones)
+
+        if not any(isinstance(screen, PhrasesScreen) for screen in self.screen_stack):
+            await self.push_screen(PhrasesScreen(self.house, say))
 
     def action_other_policy(self) -> None:
         """Look at another policy that was kept."""

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from tangy_tui.learning.speech.ears import Ears
 
 
-def run_program(house: House, *, ascii_only: bool) -> int:
+def run_program(house: House, *, ascii_only: bool, voice: bool = False) -> int:
     """Open the program at its first screen; return the exit status."""
-    return _run(house, None, ascii_only)
+    return _run(house, None, ascii_only, voice=voice)
 
 
 def run_teaching(
@@ -30,8 +30,9 @@ def run_teaching(
     games: int,
     speed: float | None,
     ascii_only: bool,
+    voice: bool = False,
 ) -> int:
-    """Open the teaching screen; return the exit status.
+    """Open the teaching screen; return the exit status. Ears and voice stay the program's.
 
     The scripted teacher gives `games` demonstrations at `speed` steps a second, and the program
     ends; a person goes home from here.
@@ -43,34 +44,40 @@ def run_teaching(
 
         pace = speed if teaching.teacher == SCRIPTED else None
         for number in range(games if pace else 1):
-            screen = TeachScreen(
-                house, teaching, resume=resume, another=number > 0, ears=ears, scripted=pace
-            )
+            screen = TeachScreen(house, teaching, resume=resume, another=number > 0, scripted=pace)
             complete = await program.push_screen_wait(screen)
             if pace and not complete:
                 break
         if pace:
             program.leave()
 
-    return _run(house, start, ascii_only)
+    return _run(house, start, ascii_only, ears, voice=voice)
 
 
 def run_playing(
     house: House,
     *,
     games: int,
-    speed: float,
+    speed: float | None,
     seed: int | None,
     policy: str,
     teacher: str,
     injections: Sequence[str] = (),
     ascii_only: bool,
+    voice: bool = False,
+    ears: Ears | None = None,
 ) -> int:
-    """Open the playing screen; return the exit status."""
+    """Open the playing screen; return the exit status.
+
+    Without a speed the game goes as in life where Tangy speaks, and faster where it does not.
+    Where Tangy asks, answers are heard through the ears, if there are any.
+    """
     return _run(
         house,
         lambda program: program.play(games, speed, seed, policy, teacher, injections),
         ascii_only,
+        ears,
+        voice=voice,
     )
 
 
@@ -79,17 +86,24 @@ def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_on
     return _run(house, lambda program: program.drill(rounds, seed, who), ascii_only)
 
 
-def run_demo(house: House, *, seed: int, ascii_only: bool) -> int:
+def run_demo(house: House, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
     """Tell the whole story in the program; return the exit status."""
 
     async def start(program: Program) -> None:
         await program.tell_story(seed)
         program.leave()
 
-    return _run(house, start, ascii_only)
+    return _run(house, start, ascii_only, voice=voice)
 
 
-def _run(house: House, start: Start | None, ascii_only: bool) -> int:
+def _run(
+    house: House,
+    start: Start | None,
+    ascii_only: bool,
+    ears: Ears | None = None,
+    *,
+    voice: bool = False,
+) -> int:
     outlive_terminal()
     kind = terminal_kind(ascii=True if ascii_only else None)
-    return run_app(Program(house, start, kind=kind))
+    return run_app(Program(house, start, kind=kind, ears=ears, voice=voice))

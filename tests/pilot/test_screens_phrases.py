@@ -41,6 +41,7 @@ def screen(house: House, spoken: list[str]) -> PhrasesScreen:
 
 async def looked_up(pilot: TangyPilot) -> None:
     """Wait until the words were looked up, which happens beside the screen."""
+    await pilot.pause()  # until what was typed has begun it
     await pilot.app.workers.wait_for_complete()
     await pilot.pause()
 

@@ -1,4 +1,8 @@
-"""The verification of a command (III-A-1): a pop-up names the behaviour that was understood."""
+"""The verification of a command (III-A-1): a pop-up names the behaviour that was understood.
+
+Where words are unsure it offers up to three of them; each that is chosen is asked about in its
+turn.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
+from tangy_tui.learning.verifying import WHICH, Asked, Offered, Reply
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
@@ -28,21 +33,132 @@ class Answer:
     yes: bool
     alternative: int | None = None
 
+    @property
+    def reply(self) -> Reply:
+        """The answer as a session takes it."""
+        return Reply(self.yes, None if self.alternative is None else self.alternative + 1)
+
 
 NO = Answer(False)
 
+Parts = list[str | tuple[str, str] | Content]
 
-class QuestionDialog(Dialog[Answer]):
-    """Asks "Did you say: call number?" and takes y for yes, n or esc for no, 1-3 for another.
 
-    Only y and Y execute. Enter and space do nothing. Keys that were typed before the question was
-    on the screen do not answer it. On a no the caller puts the text back into the command bar; an
-    alternative is verified again by the caller, with a question of its own.
+class VerifyingDialog(Dialog[Answer]):
+    """What both have in common: the words that were heard, numbers to choose by, and fresh keys.
+
+    Enter and space do nothing. Keys that were typed before it was on the screen do not answer it,
+    nor does what was said before. On a no the caller puts the text back into the command bar.
     """
 
     DEFAULT_CSS = """
-    QuestionDialog > .box { width: 60; }
+    VerifyingDialog > .box { width: 60; }
     """
+    ID: ClassVar[str]
+
+    def __init__(
+        self,
+        *,
+        heard: str = "",
+        confidence: float | None = None,
+        choices: Sequence[str] = (),
+        aloud: str = "",
+        clock: Clock | None = None,
+    ) -> None:
+        """Make the dialog.
+
+        Args:
+            heard: the words that it was understood from.
+            confidence: from 0 to 1.
+            choices: behaviours in the words of the activity; the first three are offered.
+            aloud: how it can be answered by voice, if it can.
+            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+        """
+        super().__init__(NO)
+        self._heard = shorten(clean(heard), LONGEST_HEARD)
+        self._confidence = confidence
+        self._choices = tuple(clean(choice) for choice in choices[:MOST_ALTERNATIVES])
+        self._numbers = ("1", "2", "3")[: len(self._choices)]
+        self._say = clean(aloud)
+        self._clock = clock
+        self._keys = FreshKeys()
+
+    @property
+    def painted(self) -> bool:
+        """Whether it is on the screen, so that it can be answered."""
+        return self._keys.seen
+
+    def compose(self) -> ComposeResult:
+        """Lay out question, keys, and what it rests on."""
+        box = Static(self._content(), id=self.ID, classes="box")
+        box.border_title = "Question"
+        yield box
+
+    def on_mount(self) -> None:
+        """Take note of the moment from which keys count."""
+        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+
+    def on_key(self, event: events.Key) -> None:
+        """Answer by y, n, esc or a number, if the question was on the screen by then."""
+        if not self._keys.take(event):
+            return
+        if event.key in ("y", "Y"):
+            self._yes()
+        elif event.key in ("n", "N", "escape"):
+            self.answer(NO)
+        elif event.key in self._numbers:
+            self.answer(Answer(False, self._numbers.index(event.key)))
+
+    def hear(self, *, yes: bool) -> str:
+        """Take an answer that was said; return what is wrong with it ("": nothing)."""
+        if not self.painted:
+            return "That was said before the question was on the screen."
+        if yes:
+            return self._yes()
+        self.answer(NO)
+        return ""
+
+    def action_nothing(self) -> None:
+        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def _yes(self) -> str:
+        """Take a yes; return what is wrong with it."""
+        raise NotImplementedError
+
+    def _content(self) -> Content:
+        """Write the question."""
+        raise NotImplementedError
+
+    def _listed(self) -> Parts:
+        parts: Parts = []
+        for number, choice in zip(self._numbers, self._choices, strict=True):
+            parts += ["\n", (number, "$primary bold"), f"  {choice}"]
+        return parts
+
+    def _grounds(self) -> Parts:
+        parts: Parts = []
+        if self._heard:
+            parts += ["\n\n", ("Heard       ", "$ink-dim"), self._heard]
+        if self._confidence is not None:
+            parts += [
+                "\n" if self._heard else "\n\n",
+                ("Confidence  ", "$ink-dim"),
+                f"{self._confidence:.2f}",
+            ]
+        return parts
+
+    def _by_voice(self) -> Parts:
+        return ["\n\n", (self._say, "$ink-dim")] if self._say else []
+
+
+class QuestionDialog(VerifyingDialog):
+    """Asks "Did you say: call number?" and takes y for yes, n or esc for no, 1-3 for another.
+
+    Only y and Y execute. An alternative is verified again by the caller, with a question of its
+    own.
+    """
+
+    ID = "question"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("y", "nothing", "Yes, do it"),
         Binding("n", "nothing", "No, a new command"),
@@ -61,57 +177,32 @@ class QuestionDialog(Dialog[Answer]):
         heard: str = "",
         confidence: float | None = None,
         alternatives: Sequence[str] = (),
+        aloud: str = "",
         clock: Clock | None = None,
     ) -> None:
         """Make the question.
 
         Args:
             behaviour: what was understood, in the words of the activity (with whom, if need be).
-            heard: the words that it was understood from.
-            confidence: from 0 to 1.
+            heard, confidence, aloud, clock: as for every `VerifyingDialog`.
             alternatives: other behaviours it may have been; the first three are offered.
-            clock: seconds, on the scale of `time.monotonic` (default: the app's).
         """
-        super().__init__(NO)
+        super().__init__(
+            heard=heard, confidence=confidence, choices=alternatives, aloud=aloud, clock=clock
+        )
         self._behaviour = clean(behaviour)
-        self._heard = shorten(clean(heard), LONGEST_HEARD)
-        self._confidence = confidence
-        self._alternatives = tuple(clean(a) for a in alternatives[:MOST_ALTERNATIVES])
-        self._numbers = ("1", "2", "3")[: len(self._alternatives)]
-        self._clock = clock
-        self._keys = FreshKeys()
 
     @property
     def behaviour(self) -> str:
         """What is asked about."""
         return self._behaviour
 
-    def compose(self) -> ComposeResult:
-        """Lay out question, keys, and what it rests on."""
-        box = Static(self._content(), id="question", classes="box")
-        box.border_title = "Question"
-        yield box
-
-    def on_mount(self) -> None:
-        """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
-
-    def on_key(self, event: events.Key) -> None:
-        """Answer by y, n, esc or a number, if the question was on the screen by then."""
-        if not self._keys.take(event):
-            return
-        if event.key in ("y", "Y"):
-            self.answer(Answer(True))
-        elif event.key in ("n", "N", "escape"):
-            self.answer(NO)
-        elif event.key in self._numbers:
-            self.answer(Answer(False, self._numbers.index(event.key)))
-
-    def action_nothing(self) -> None:
-        """Do nothing: `on_key` has the keys, so that each can be looked at."""
+    def _yes(self) -> str:
+        self.answer(Answer(True))
+        return ""
 
     def _content(self) -> Content:
-        parts: list[str | tuple[str, str] | Content] = [
+        parts: Parts = [
             "Did you say: ",
             (self._behaviour, "$accent"),
             "?\n\n",
@@ -119,17 +210,56 @@ class QuestionDialog(Dialog[Answer]):
             "  yes, do it\n",
             ("N", "$error bold"),
             "  no, I give the command again",
+            *self._grounds(),
         ]
-        if self._heard:
-            parts += ["\n\n", ("Heard       ", "$ink-dim"), self._heard]
-        if self._confidence is not None:
-            parts += [
-                "\n" if self._heard else "\n\n",
-                ("Confidence  ", "$ink-dim"),
-                f"{self._confidence:.2f}",
-            ]
-        if self._alternatives:
-            parts += ["\n\n", ("Or did you mean", "$ink-dim")]
-            for number, alternative in zip(self._numbers, self._alternatives, strict=True):
-                parts += ["\n", (number, "$primary bold"), f"  {alternative}"]
-        return Content.assemble(*parts)
+        if self._choices:
+            parts += ["\n\n", ("Or did you mean", "$ink-dim"), *self._listed()]
+        return Content.assemble(*parts, *self._by_voice())
+
+
+class ChoicesDialog(VerifyingDialog):
+    """Asks "Did you mean" one of up to three: 1-3 choose one to be asked about, n or esc none."""
+
+    ID = "choices"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("1", "nothing", "Ask me about this one", key_display="1-3"),
+        Binding("n", "nothing", "None of these, a new command"),
+    ]
+    HELP = (
+        "Tangy is not sure what it heard, and does nothing on a guess. Press the number of what "
+        "you meant: it is asked about before it is done. n or esc: none of these; what was heard "
+        "stays in the command line, to be changed."
+    )
+
+    def _yes(self) -> str:
+        return WHICH
+
+    def _content(self) -> Content:
+        return Content.assemble(
+            ("Did you mean", "$accent"),
+            *self._listed(),
+            "\n\n",
+            ("N", "$error bold"),
+            "  none of these, I give the command again",
+            *self._grounds(),
+            *self._by_voice(),
+        )
+
+
+def dialog_for(question: Asked | Offered, aloud: str = "") -> VerifyingDialog:
+    """Make the dialog for what a session asks; words typed letter by letter are not repeated."""
+    if isinstance(question, Offered):
+        return ChoicesDialog(
+            heard=question.heard,
+            confidence=question.confidence,
+            choices=question.questions,
+            aloud=aloud,
+        )
+    certain = question.confidence >= 1
+    return QuestionDialog(
+        question.question,
+        heard="" if certain else question.heard,
+        confidence=None if certain else question.confidence,
+        alternatives=question.others,
+        aloud=aloud,
+    )

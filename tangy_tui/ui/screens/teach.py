@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Sequence
 from typing import ClassVar, TypeVar
 
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
@@ -16,8 +17,6 @@ from textual.worker import Worker
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.scripted_teacher import ScriptedTeacher
-from tangy_tui.learning.speech.ears import Ears
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -30,16 +29,19 @@ from tangy_tui.learning.teaching_events import (
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
-from tangy_tui.learning.verifying import Stop as SpokenStop
-from tangy_tui.ui.base import TangyScreen, on_top
+from tangy_tui.learning.verifying import Asked, NotUnderstood, Offered, Refused, Rejected, Say
+from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.foresight import show_why
+from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
 from tangy_tui.ui.screens import teach_keys
-from tangy_tui.ui.screens.teach_keys import AGAIN, KEYS, WATCHING
+from tangy_tui.ui.screens.teach_hearing import TeachHearing
+from tangy_tui.ui.screens.teach_keys import AGAIN, WATCHING
+from tangy_tui.ui.screens.teach_scripted import follow_script
+from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -52,7 +54,11 @@ T = TypeVar("T")
 
 
 class TeachScreen(TangyScreen[bool]):
-    """One teacher's session. Dismissed with True when the wanted demonstrations are complete."""
+    """One teacher's session. Dismissed with True when the wanted demonstrations are complete.
+
+    Commands are typed, or heard through the ears of the program. A command that is spoken leaves
+    the keys where they are.
+    """
 
     CSS_PATH = "teach.tcss"
     HORIZONTAL_BREAKPOINTS = WIDE
@@ -68,7 +74,6 @@ class TeachScreen(TangyScreen[bool]):
         *,
         resume: bool = True,
         another: bool = False,
-        ears: Ears | None = None,
         scripted: float | None = None,
         begun: Sequence[TeachingEvent] = (),
     ) -> None:
@@ -77,7 +82,6 @@ class TeachScreen(TangyScreen[bool]):
         Args:
             resume: take up an unfinished demonstration of this teacher.
             another: the session has begun already; begin its next demonstration.
-            ears: where spoken commands come from, if they do.
             scripted: let a scripted teacher give the demonstration, this many steps a second.
             begun: the session has begun already, and this is what followed.
         """
@@ -85,14 +89,11 @@ class TeachScreen(TangyScreen[bool]):
         self._house = house
         self._teaching = teaching
         self._resume = resume
-        self._ears = ears
         self._scripted = scripted
         self._another = another
         self._begun = list(begun)
         self._picture = TeachingPicture(self, house, teaching)
-        phrases = (b.phrases[0] for b in teaching.activity.behaviours.values())
-        self.HELP = f"{type(self).HELP} You can say: {', '.join(phrases)}."  # type: ignore[misc]
-        self._free = asyncio.Event()
+        self._listener = TeachHearing(self, house, teaching, self._apply)
         self._thinking: Worker[None] | None = None
 
     def compose(self) -> ComposeResult:
@@ -106,21 +107,33 @@ class TeachScreen(TangyScreen[bool]):
                 yield panel(Transcript(empty="No steps yet. Type what Tangy should do first."))
                 yield panel(CoverageList())
         yield Static(id="now", markup=False)
+        hearing = hearing_of(self.app)
+        if self._scripted is None and hearing is not None:
+            self._listener.hearing = hearing
+            yield HearingLine(hearing)
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
-            resting=WATCHING if self._scripted is not None else KEYS,
+            resting=self._listener.keys if self._scripted is None else WATCHING,
             id="command",
         )
 
     def on_mount(self) -> None:
         """Begin the session."""
+        phrases = (b.phrases[0] for b in self._teaching.activity.behaviours.values())
+        said = f"You can say: {', '.join(phrases)}."
+        self.HELP = f"{type(self).HELP}{self._listener.help} {said}"  # type: ignore[misc]
         self._tell(self._begun or self._begin())
-        self._free.set()
         if self._scripted is not None:
             self.query_one(CommandBar).disabled = True
             self.run_worker(self._follow_script(self._scripted), name="scripted teacher")
-        if self._ears is not None:
-            self.run_worker(self._listen(self._ears), name="ears")
+        if self._listener.by_key:
+            self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once
+        self._listener.attend()
+
+    def on_unmount(self) -> None:
+        """Hear and say no more here."""
+        self._listener.leave()
+        speaker_of(self.app).hush()
 
     def _begin(self) -> list[TeachingEvent]:
         if self._another:
@@ -132,6 +145,7 @@ class TeachScreen(TangyScreen[bool]):
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         """Put a typed command to Tangy."""
         event.stop()
+        self._listener.by_voice = False
         match event.text.strip().lower():
             case "help":
                 self.query_one(CommandBar).ready()
@@ -152,6 +166,9 @@ class TeachScreen(TangyScreen[bool]):
                 self.again(self._teaching.demonstration.id, int(found[1]) - 1)
             case "next":
                 self.action_next()
+            case "phrases" | "voice" as word:
+                self.query_one(CommandBar).ready()
+                self.app.run_worker(self.run_action(f"app.{word}"))
             case "quit" | "exit" | "leave":
                 self.close(False)
             case _:
@@ -161,8 +178,14 @@ class TeachScreen(TangyScreen[bool]):
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
         if action == "think_no_more":
             return self._thinks
+        if action == "talk":
+            return self._listener.by_key
         alone = ("undo", "redo", "again", "next", "learn")
         return self._scripted is None or action not in alone
+
+    async def action_talk(self) -> None:
+        """Push to talk: begin, or end what is being said."""
+        await self.run_action("app.talk")
 
     def action_undo(self) -> None:
         """Take the last step back."""
@@ -205,16 +228,12 @@ class TeachScreen(TangyScreen[bool]):
         self._apply(command)
 
     async def _alone(self, dialog: Screen[T]) -> T:
-        """Wait for an answer, and listen to nothing meanwhile."""
-        self._free.clear()
-        if self._ears is not None:
-            self._ears.shut()
+        """Wait for an answer, and take no command meanwhile."""
+        self._listener.open(False)
         answer = await self.app.push_screen_wait(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
-        if self._ears is not None:
-            self._ears.open()
-        self._free.set()
+        self._listener.open(True)
         return answer
 
     def action_coverage(self) -> None:
@@ -294,7 +313,7 @@ class TeachScreen(TangyScreen[bool]):
             self._log.write(str(error), "bad")
             self.notify(str(error), severity="error", markup=False)
             self.query_one(CommandBar).ready()
-            self._free.set()
+            self._listener.open(True)
         else:
             self._tell(events)
 
@@ -307,87 +326,52 @@ class TeachScreen(TangyScreen[bool]):
         undone = [event for event in events if isinstance(event, StepUndone)]
         for event in events:
             match event:
-                case Asked():
-                    self._ask(event)
+                case Asked() | Offered():
+                    self._listener.open(False)
+                    self.run_worker(self._verify(event), name="question")
                     return
                 case NotUnderstood(heard, suggestions):
                     near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
                     self._log.write(f"I do not know what {heard!r} means.{near}", "warn")
-                    bar.restore(heard)
+                    self._listener.give_back(heard)
                 case Rejected(heard):
                     self._log.write("Not done. Give a new command.", "dim")
-                    bar.restore(heard)
+                    self._listener.give_back(heard)
                 case Refused(reason, heard):
                     self._log.write(reason, "warn")
                     if heard:
-                        bar.restore(heard)
+                        self._listener.give_back(heard)
                 case Executed():
                     self._picture.step(event)
+                    preference = preference_of(self._house, event.action.target)
+                    speaker_of(self.app).interject(event.speech, preference)
                 case StepUndone():
                     self.query_one(Transcript).remove_last()
+                    speaker_of(self.app).hush()
                 case Begun(_, resumed):
                     self._picture.beginning(resumed)
+                    self._listener.refresh()
                 case Finished(demonstration):
                     self._picture.finished(len(demonstration.steps))
         if undone:
             self._picture.undone(undone)
         bar.ready()
         self._picture.state()
-        self._free.set()
+        self._listener.open(True)
 
-    def _ask(self, asked: Asked) -> None:
-        self._free.clear()
-        if self._ears is not None:
-            self._ears.shut()
-        self.run_worker(self._verify(asked), name="question")
-
-    async def _verify(self, asked: Asked) -> None:
+    async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and give its answer to the session when its dialog has gone."""
-        behaviours = self._teaching.activity.behaviours
-        dialog = QuestionDialog(
-            asked.question,
-            heard=asked.heard if asked.confidence < 1 else "",
-            confidence=asked.confidence if asked.confidence < 1 else None,
-            alternatives=[behaviours[name].question for name in asked.alternatives],
-        )
-        answer = await self._alone(dialog)
-        chosen = None if answer.alternative is None else answer.alternative + 1
-        self._apply(Reply(answer.yes, chosen))
+        answer = await self._alone(dialog_for(asked, self._listener.aloud))
+        self._apply(answer.reply)
 
     @property
     def _log(self) -> LogView:
         return self.query_one(LogView)
 
-    # ----------------------------------------------------------------- other ways to command
-
-    async def _listen(self, ears: Ears) -> None:
-        """Take spoken commands, one at a time: the next when the last is answered."""
-        ears.tell = lambda sentence: self._log.write(sentence, "dim")
-        try:
-            async for said in ears:
-                if isinstance(said, SpokenStop):
-                    await self.run_action("app.stop")
-                    continue
-                await self._free.wait()
-                self._apply(said)
-        except TangyError as error:
-            self._log.write(str(error), "bad")
-
     async def _follow_script(self, pace: float) -> None:
-        """Let the scripted teacher type, and answer as a person would; dialogs make it wait."""
-        teacher = ScriptedTeacher(self._teaching)
-        bar = self.query_one(CommandBar)
-        while not self._teaching.demonstration.finished:
-            await on_top(self)
-            command = teacher.command()
-            if isinstance(command, Say):
-                bar.restore(command.text)
-                await asyncio.sleep(0.4 / pace)
-            events = self._teaching.apply(command)
-            if events and isinstance(events[0], Asked):
-                events = self._teaching.apply(Reply(yes=True))
-            bar.restore("")
-            self._tell(events)
-            await asyncio.sleep(0.6 / pace)
-        await on_top(self)
+        await follow_script(self, self._teaching, pace, self._tell)
         self.close(True)
+
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Listen for names as they are said now."""
+        self._listener.refresh()

@@ -277,11 +277,17 @@ class CommandBar(Vertical):
         """Give the keys to the bar."""
         self._input.focus()
 
-    def restore(self, text: str) -> None:
-        """Put a text back to be changed, and open the bar."""
+    @property
+    def typing(self) -> bool:
+        """Whether somebody is typing in it: it has the keys, and there is a text."""
+        return self._input.has_focus and bool(self._input.value)
+
+    def restore(self, text: str, *, focus: bool = True) -> None:
+        """Put a text back to be changed, open the bar, and give it the keys."""
         self._input.put(clean(text)[:LONGEST])
         self.ready()
-        self._input.focus()
+        if focus:
+            self._input.focus()
 
     def ready(self) -> None:
         """Open the bar for the next command."""

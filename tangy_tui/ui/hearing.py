@@ -1,0 +1,255 @@
+"""What the program does with what it hears: commands go to a screen, answers to a question.
+
+The program has one pair of ears at most. Whichever screen takes commands at the moment is their
+listener; while a question is open, or something lies over that screen, only answers and what stops
+the robot are heard.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Awaitable, Callable
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Protocol
+
+from textual.app import App
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.question import VerifyingDialog
+from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.ui.widgets.log_view import Kind
+
+WAITS = 0.05
+"""Seconds between two looks whether the next command of a recording is due."""
+
+STOP = "stop"
+ANSWERS = "yes, no or stop"
+
+
+class Listener(Protocol):
+    """What takes spoken commands: a screen, or a part of one."""
+
+    @property
+    def listens(self) -> bool:
+        """Whether a command could be put to it now: it is seen, and no question is open."""
+
+    @property
+    def spoken(self) -> Phrasebook:
+        """What can be said to it."""
+
+    def hear(self, said: Say) -> None:
+        """Take a command."""
+
+    def told(self, sentence: str, kind: Kind) -> None:
+        """Show a sentence about hearing."""
+
+
+class Hearing:
+    """The ears of the program, and who listens through them."""
+
+    def __init__(
+        self,
+        app: App[Any],
+        ears: Ears,
+        stop: Callable[[], None],
+        hush: Callable[[], Awaitable[None]],
+    ) -> None:
+        """Take the ears; `run` listens.
+
+        Args:
+            stop: stops the robot.
+            hush: lets Tangy fall silent, and returns when it is.
+        """
+        self.ears = ears
+        self._app = app
+        self._stop = stop
+        self._hush = hush
+        self._listeners: list[Listener] = []
+        self._watching: list[Callable[[], None]] = []
+        self._kept: deque[Say] = deque()
+        self._understood: Phrasebook | None = None
+        ears.changed = self._changed
+        ears.tell = self.tell
+
+    @property
+    def by_key(self) -> bool:
+        """Whether a key is pushed to talk."""
+        return self.ears.live and not self.ears.hands_free
+
+    @property
+    def talking(self) -> bool:
+        """Whether somebody is talking who has pushed the key for it."""
+        return self.by_key and self.ears.state in ("listening", "speaking")
+
+    @property
+    def expects(self) -> str:
+        """What alone is listened for; "" if that is commands."""
+        if self._free:
+            return ""
+        answers = self.ears.answers and self._question is not None
+        return ANSWERS if answers else STOP if self.ears.live else ""
+
+    @property
+    def aloud(self) -> str:
+        """How a question can be answered by voice; "" if it cannot."""
+        if not self.ears.answers:
+            return ""
+        return "Or ctrl+t, and say yes or no." if self.by_key else "Or say yes or no."
+
+    def attend(self, listener: Listener) -> None:
+        """Give what is heard to a listener from now on."""
+        self._listeners.append(listener)
+        self.understand()
+        self.look()
+
+    def leave(self, listener: Listener) -> None:
+        """Give nothing more to a listener; the one before it takes commands again."""
+        if listener in self._listeners:
+            self._listeners.remove(listener)
+            self._kept.clear()
+            self.understand()
+            self.look()
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Call this whenever there may be something else to show of the ears."""
+        self._watching.append(changed)
+
+    def watch_no_more(self, changed: Callable[[], None]) -> None:
+        """Call this no longer."""
+        if changed in self._watching:
+            self._watching.remove(changed)
+
+    def understand(self) -> None:
+        """Match what is heard to what can be said to the listener, as it is now."""
+        if self._listeners and (spoken := self._listeners[-1].spoken) is not self._understood:
+            self._understood = spoken
+            self.ears.understand_by(spoken)
+
+    def look(self) -> None:
+        """Look whether commands are taken now, and give what was kept until they are."""
+        if self.ears.live:
+            self.ears.asking(not self._free)
+        else:  # a recording says its next command when it is asked for it
+            self.ears.asking(self.ears.answers and self._question is not None)
+        while self._kept and self._free:
+            self._listeners[-1].hear(self._kept.popleft())
+        self._changed()
+
+    async def talk(self) -> None:
+        """Push to talk: begin, or end what is being said; Tangy does not speak meanwhile."""
+        if not self._watching:
+            return
+        if not self.ears.live:
+            self.tell("A recording is listened to: no key is needed.")
+        elif self.ears.hands_free:
+            self.tell("No key is needed: just speak.")
+        else:
+            if self.ears.state == "shut":
+                await self._hush()
+            self.ears.talk()
+
+    def tell(self, sentence: str, kind: Kind = "dim") -> None:
+        """Show a sentence about hearing."""
+        if self._listeners:
+            self._listeners[-1].told(sentence, kind)
+        elif self._app.is_running:
+            self._app.notify(clean(sentence), markup=False)
+
+    @contextmanager
+    def deaf(self) -> Iterator[None]:
+        """Hear nothing for a while: Tangy speaks."""
+        self.ears.shut()
+        try:
+            yield
+        finally:
+            self.ears.open()
+
+    async def run(self) -> None:
+        """Listen for as long as the program runs or the source lasts."""
+        try:
+            while True:
+                await self._wanted()
+                heard = await anext(self.ears, None)
+                if heard is None:
+                    break
+                self._take(heard)
+        except TangyError as error:
+            self.tell(str(error), "bad")
+        finally:
+            await self.ears.close()
+
+    def _take(self, heard: Say | Stop | Reply) -> None:
+        match heard:
+            case Stop(text):
+                self.tell(f"Heard: {text}.", "warn")
+                self._stop()
+            case Reply(yes):
+                self._answer(yes)
+            case Say():
+                self._kept.append(heard)
+                self.look()
+
+    def _answer(self, yes: bool) -> None:
+        """Answer the open question as its key would."""
+        question = self._question
+        if question is None:
+            return
+        wrong = question.hear(yes=yes)
+        said = f"Heard: {'yes' if yes else 'no'}."
+        self.tell(f"{said} {wrong}".rstrip(), "warn" if wrong else "text")
+
+    async def _wanted(self) -> None:
+        """Wait until something is to be heard: a recording says no more than it is asked for."""
+        while not self.ears.live and not self._free:
+            question = self._question
+            if self.ears.answers and question is not None and question.painted:
+                self.look()
+                return
+            await asyncio.sleep(WAITS)
+
+    @property
+    def _free(self) -> bool:
+        return bool(self._listeners) and self._listeners[-1].listens
+
+    @property
+    def _question(self) -> VerifyingDialog | None:
+        """The question that is open, if one lies over the screens."""
+        screen = self._app.screen_stack[-1] if self._app.screen_stack else None
+        return screen if isinstance(screen, VerifyingDialog) else None
+
+    def _changed(self) -> None:
+        for show in tuple(self._watching):
+            show()
+
+
+def hearing_of(app: object) -> Hearing | None:
+    """Return the ears of Tangy's program, if it has any."""
+    hearing: Hearing | None = getattr(app, "hearing", None)
+    return hearing
+
+
+class HearingLine(MicrophoneLine):
+    """The microphone of the program on one line, for as long as it is on a screen."""
+
+    def __init__(self, hearing: Hearing) -> None:
+        """Make the line."""
+        super().__init__(hearing.ears, lambda: hearing.expects)
+        self._hearing = hearing
+
+    def on_mount(self) -> None:
+        """Follow the ears, and what has the keys."""
+        self._hearing.watch(self.look)
+        self.watch(self.screen, "focused", self.look, init=False)
+
+    def on_unmount(self) -> None:
+        """Follow no longer."""
+        self._hearing.watch_no_more(self.look)

@@ -1,0 +1,114 @@
+"""The teaching screen as a listener: when it takes what is said, and what can be said to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from textual.screen import Screen
+
+from tangy_tui.house import House
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.verifying import Say
+from tangy_tui.ui.hearing import Hearing
+from tangy_tui.ui.screens.teach_keys import BY_KEY, HANDS_FREE, HEARING_KEYS, KEYS
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+
+
+class TeachHearing:
+    """Takes spoken commands for a session, one at a time. Without ears it only keeps count."""
+
+    def __init__(
+        self, screen: Screen[Any], house: House, teaching: Teaching, apply: Callable[[Say], None]
+    ) -> None:
+        """Make the listener; `apply` puts a command to the session."""
+        self.hearing: Hearing | None = None
+        self.by_voice = False
+        """Whether the present command was spoken."""
+        self._screen = screen
+        self._house = house
+        self._teaching = teaching
+        self._apply = apply
+        self._people = house.people  # as they were when the session was made
+        self._present = self._people
+        self._changed: Phrasebook | None = None  # since they are others
+        self._open = False
+
+    @property
+    def by_key(self) -> bool:
+        """Whether a key is pushed to talk."""
+        return self.hearing is not None and self.hearing.by_key
+
+    @property
+    def keys(self) -> str:
+        """The keys of the screen."""
+        return HEARING_KEYS if self.by_key else KEYS
+
+    @property
+    def help(self) -> str:
+        """How to talk to Tangy; "" if nothing listens."""
+        if self.hearing is None:
+            return ""
+        return f" {BY_KEY if self.by_key else HANDS_FREE}"
+
+    @property
+    def aloud(self) -> str:
+        """How a question can be answered by voice; "" if it cannot."""
+        return "" if self.hearing is None else self.hearing.aloud
+
+    def attend(self) -> None:
+        """Listen from now on."""
+        if self.hearing is not None:
+            self.hearing.attend(self)
+
+    def leave(self) -> None:
+        """Listen no more."""
+        if self.hearing is not None:
+            self.hearing.leave(self)
+
+    def open(self, is_open: bool) -> None:
+        """Take note whether commands are taken; what was said meanwhile comes next."""
+        self._open = is_open
+        if self.hearing is not None:
+            self.hearing.look()
+
+    @property
+    def listens(self) -> bool:
+        """Whether a command could be put to the session now."""
+        return self._open and self._screen.is_active
+
+    @property
+    def spoken(self) -> Phrasebook:
+        """What can be said, with the names as they are pronounced now."""
+        present = tuple(p for p in self._house.people if p.id in self._teaching.people)
+        if self._changed is None and self._people is self._house.people:
+            return self._teaching.phrasebook
+        if self._changed is None or self._present != present:
+            self._present, self._changed = present, Phrasebook(self._teaching.activity, present)
+        return self._changed
+
+    def refresh(self) -> None:
+        """Listen for who takes part now, and for names as they are said now."""
+        if self.hearing is not None:
+            self.hearing.understand()
+
+    def hear(self, said: Say) -> None:
+        """Put a spoken command to the session."""
+        self.by_voice = True
+        self._apply(said)
+
+    def told(self, sentence: str, kind: Kind) -> None:
+        """Say something about hearing in the log of the screen."""
+        for log in self._screen.query(LogView):
+            log.write(sentence, kind)
+
+    def give_back(self, heard: str) -> None:
+        """Put a command into the bar to be changed.
+
+        A spoken one leaves the keys where they are, and overwrites nothing that is being typed.
+        """
+        bar = self._screen.query_one(CommandBar)
+        if not (self.by_voice and bar.typing):
+            bar.restore(heard, focus=not self.by_voice)

@@ -1,0 +1,106 @@
+"""The program with its ears and its voice: the keys for both, and that both end with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual.app import SystemCommand
+from textual.binding import Binding, BindingType
+from textual.screen import Screen
+
+from tangy_profiles.activity import Activity
+from tangy_tui.ui.app import FirstScreen, TangyApp
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.hearing import Hearing
+from tangy_tui.ui.speaking import OFF, ON, Speaker
+
+if TYPE_CHECKING:
+    from tangy_tui.learning.speech.ears import Ears
+
+
+VOICE = "Voice on or off"
+
+
+class SoundingApp(TangyApp):
+    """Tangy on a terminal, with a voice that can be switched on, and with ears if it is given any.
+
+    The microphone is shut while Tangy speaks; STOP lets it fall silent.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+t", "talk", "Talk to Tangy", priority=True, show=False, id="app.talk"),
+        Binding("v", "voice", VOICE, id="app.voice"),
+    ]
+
+    def __init__(
+        self,
+        first: FirstScreen | None = None,
+        *,
+        activity: Activity | None = None,
+        ears: Ears | None = None,
+        voice: bool = False,
+        **settings: Any,
+    ) -> None:
+        """Make the program.
+
+        Args:
+            first: makes the first screen.
+            activity: whose lines are spoken.
+            ears: where spoken commands come from, if they do.
+            voice: Tangy speaks from the beginning.
+            settings: as for every `TangyApp`.
+        """
+        super().__init__(first, **settings)
+        self.speaker = Speaker(activity, self._tell_of_voice)
+        self.hearing: Hearing | None = None
+        if ears is not None:
+            self.hearing = Hearing(self, ears, self._told_to_stop, self.speaker.silence)
+            self.speaker.hearing = self.hearing
+        self._speaks = voice
+
+    def on_mount(self) -> None:
+        """Begin to listen, and to speak."""
+        hearing = self.hearing
+        if hearing is not None:
+            self.screen_change_signal.subscribe(self, lambda _: hearing.look(), immediate=True)
+            hearing.look()
+            self.run_worker(hearing.run(), name="ears", group="ears")
+        if self._speaks:
+            self.call_later(self.speaker.switch, True)
+
+    async def on_unmount(self) -> None:
+        """End what runs for the voice; the ears end with the program's workers."""
+        await self.speaker.close()
+
+    def stop(self, reason: str) -> None:
+        """Say to every open screen that the robot must stop, and fall silent."""
+        self.speaker.hush()
+        super().stop(reason)
+
+    async def action_talk(self) -> None:
+        """Push to talk: begin, or end what is being said."""
+        if self.hearing is not None:
+            await self.hearing.talk()
+
+    def action_voice(self) -> None:
+        """Switch the voice on or off."""
+        if self.speaker.on:
+            self.speaker.switch(False)
+            self.say(OFF)
+        elif self.speaker.switch(True):
+            self.say(ON)
+
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """List what the command palette offers, with the voice."""
+        listed = list(super().get_system_commands(screen))
+        yield from listed
+        if VOICE not in (command.title for command in listed):  # v is another key there
+            yield SystemCommand(VOICE, "Tangy speaks what it says", self.action_voice)
+
+    def _told_to_stop(self) -> None:
+        self.action_stop()
+
+    def _tell_of_voice(self, sentence: str) -> None:
+        if self.is_running:
+            self.notify(clean(sentence), severity="warning", markup=False)

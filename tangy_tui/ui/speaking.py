@@ -1,0 +1,222 @@
+"""Tangy's voice in the program: switched on and off while it runs, and never in its way.
+
+What is said stands on the screen in any case. The voice is made when it is first wanted; a
+synthesiser and a player, each a process of its own, do the work.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Protocol
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.voice import VoicePreference
+from tangy_tui.ui.hearing import Hearing
+
+if TYPE_CHECKING:
+    from tangy_hw.sound.voice import Rendered, Voice
+    from tangy_tui.house import House
+
+GAP = 0.15
+"""Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""
+
+ON = "Tangy speaks now. In a game every line is heard to its end at x1; v switches the voice off."
+OFF = "Tangy does not speak any more: what it says is shown."
+
+
+class CanSpeak(Protocol):
+    """What is used of a `Voice`."""
+
+    @property
+    def speaking(self) -> bool:
+        """Whether a line is being spoken, or waits to be."""
+
+    @property
+    def silent(self) -> str:
+        """Why nothing is heard; "" if something is."""
+
+    def say(
+        self, text: str, preference: VoicePreference | None = None, *, interrupt: bool = False
+    ) -> asyncio.Future[bool]:
+        """Speak a line."""
+
+    def hush(self) -> None:
+        """Cut everything."""
+
+    async def quiet(self) -> None:
+        """Wait until nothing is spoken any more."""
+
+    def prerender(
+        self, texts: Iterable[str], preference: VoicePreference | None = None
+    ) -> asyncio.Task[Rendered]:
+        """Make texts ready to be spoken."""
+
+    async def close(self) -> None:
+        """End everything."""
+
+
+Tell = Callable[[str], None]
+MakeVoice = Callable[[Activity, Callable[[], None], Callable[[], None], Tell], CanSpeak]
+"""Makes a voice of an activity, what is called when sound begins and ends, and who is told."""
+
+
+def make_voice(
+    activity: Activity, begin: Callable[[], None], end: Callable[[], None], tell: Tell
+) -> Voice:
+    """Make a voice with what this machine has; where no sound can come out, that is told."""
+    from tangy_hw.sound.player import Player, PlayerError, open_player
+    from tangy_hw.sound.synthesis import Synthesiser
+    from tangy_hw.sound.voice import Voice
+
+    synthesiser = Synthesiser()
+    player: Player | None = None
+    try:
+        player = open_player()
+    except PlayerError as error:
+        if not synthesiser.reason:
+            tell(f"{error} What Tangy says is shown as text.")
+    return Voice(synthesiser, player, deck=activity.deck, on_begin=begin, on_end=end, tell=tell)
+
+
+class Speaker:
+    """Speaks what Tangy says while it is `on`. All of it belongs to one event loop."""
+
+    def __init__(self, activity: Activity | None, tell: Tell, make: MakeVoice = make_voice) -> None:
+        """Make a speaker that is off; `tell` shows a sentence about the voice."""
+        self.on = False
+        self.hearing: Hearing | None = None
+        """The ears that are shut while Tangy speaks."""
+        self._activity = activity
+        self._tell = tell
+        self._make = make
+        self._voice: CanSpeak | None = None
+        self._before: set[asyncio.Task[None]] = set()  # voices that are being ended
+        self._known: tuple[str, ...] = ()
+        self._later: asyncio.TimerHandle | None = None
+
+    @property
+    def speaking(self) -> bool:
+        """Whether a line is being spoken, or waits to be."""
+        return self._later is not None or (self._voice is not None and self._voice.speaking)
+
+    def switch(self, on: bool) -> bool:
+        """Switch the voice on or off; say whether it is on now: it must be able to speak."""
+        self.hush()
+        self.on = on and self._can_speak()
+        if self.on:
+            self.prepare(self._known)
+        return self.on
+
+    def say(self, text: str, preference: VoicePreference) -> asyncio.Future[bool] | None:
+        """Speak a line after those that wait; what is returned is done when it was heard.
+
+        None: it is not spoken, because the voice is off, or somebody is talking to Tangy.
+        """
+        voice = self._voice
+        if not self.on or voice is None or not text or self._is_talked_to:
+            return None
+        return voice.say(text, preference)
+
+    def interject(self, text: str, preference: VoicePreference) -> None:
+        """Speak a line in the place of all others, unless another takes its place at once."""
+        waits = self.speaking
+        self.hush()
+        if waits:
+            loop = asyncio.get_running_loop()
+            self._later = loop.call_later(GAP, self._now, text, preference)
+        else:
+            self.say(text, preference)
+
+    def hush(self) -> None:
+        """Cut what is being spoken, and forget what waits."""
+        if self._later is not None:
+            self._later.cancel()
+            self._later = None
+        if self._voice is not None:
+            self._voice.hush()
+
+    async def silence(self) -> None:
+        """Cut what is being spoken, and wait until the microphone is open again."""
+        self.hush()
+        if self._voice is not None:
+            await self._voice.quiet()
+
+    def prepare(self, texts: Iterable[str]) -> None:
+        """Make lines ready that will be wanted: now if it speaks, or when it does."""
+        self._known = tuple(texts)
+        if self.on and self._voice is not None and self._known:
+            self._voice.prerender(self._known)
+
+    async def close(self) -> None:
+        """End all that runs for the voice."""
+        self.on = False
+        self.hush()
+        if self._voice is not None:
+            await self._voice.close()
+        if self._before:
+            await asyncio.wait(self._before)
+
+    def _now(self, text: str, preference: VoicePreference) -> None:
+        self._later = None
+        self.say(text, preference)
+
+    def _can_speak(self) -> bool:
+        """Make the voice, or make it anew if nothing could be heard of it; tell why it cannot."""
+        if self._activity is None:
+            return False
+        voice = self._voice
+        if voice is None or voice.silent:
+            if voice is not None:
+                ending = asyncio.ensure_future(voice.close())
+                self._before.add(ending)
+                ending.add_done_callback(self._before.discard)
+            told: list[str] = []
+
+            def tell(sentence: str) -> None:
+                told.append(sentence)
+                self._tell(sentence)
+
+            voice = self._voice = self._make(self._activity, self._begin, self._end, tell)
+            if voice.silent and not told:
+                self._tell(voice.silent)
+        return not voice.silent
+
+    @property
+    def _is_talked_to(self) -> bool:
+        return self.hearing is not None and self.hearing.talking
+
+    def _begin(self) -> None:
+        if self.hearing is not None:
+            self.hearing.ears.shut()
+
+    def _end(self) -> None:
+        if self.hearing is not None:
+            self.hearing.ears.open()
+
+
+def opening_lines(activity: Activity) -> tuple[str, ...]:
+    """Return what is said to everybody in every game, whatever becomes of it: the calls above all.
+
+    A line that names somebody cannot be known beforehand.
+    """
+    lines: list[str] = []
+    for behaviour in activity.behaviours.values():
+        template = behaviour.speech[activity.plain_strategy]
+        if "{name}" in template or "{numbers}" in template:
+            continue
+        calls = [(n,) for n in activity.deck.numbers] if "{call}" in template else [()]
+        lines += [activity.fill(template, "", call) for call in calls]
+    return tuple(dict.fromkeys(lines))
+
+
+def preference_of(house: House, person: str | None) -> VoicePreference:
+    """Return how somebody likes to be spoken to; of everybody, as usual."""
+    found = (one.voice for one in house.people if one.id == person)
+    return next(found, VoicePreference())
+
+
+def speaker_of(app: object) -> Speaker:
+    """Return the voice of Tangy's program; of any other app, one that says nothing."""
+    speaker: Speaker | None = getattr(app, "speaker", None)
+    return speaker or Speaker(None, lambda sentence: None)

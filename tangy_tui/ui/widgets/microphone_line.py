@@ -1,0 +1,192 @@
+"""The microphone on one line: what it does, how loud it is, the words so far, and what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, Protocol
+
+from rich.cells import cell_len
+from textual.strip import Strip
+from textual.timer import Timer
+from textual.widget import Widget
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, draw, shorten
+
+HERTZ = 10
+"""How often the line may be drawn in a second."""
+
+LOOKS = 5
+"""Every so many drawings it is asked whether something is wrong."""
+
+BAR = 12  # cells
+OPENS = ("listening", "speaking")
+"""The states in which the microphone is open, so that level, words and trouble may change."""
+
+STATES = {
+    "starting": "getting ready ...",
+    "off": "{key} talk",
+    "listening": "listening{for_what} ...",
+    "speaking": "hearing you ...",
+    "thinking": "thinking ...",
+    "shut": "shut while Tangy speaks",
+    "over": "closed",
+}
+MARKS = {"listening": "●", "speaking": "●", "off": "○", "shut": "○", "over": "○", "thinking": "○"}
+"""What stands before the state: a filled dot while the microphone is open."""
+HINTS = {
+    "off": "then say what Tangy should do",
+    "listening": "{key} ends it",
+    "speaking": "{key} ends it",
+}
+"""What push-to-talk adds, while there are no words yet."""
+
+
+class Level(Protocol):
+    """How loud it is."""
+
+    @property
+    def level(self) -> float:
+        """From 0, silence, to 1."""
+
+
+class Microphone(Protocol):
+    """What the line shows; see `Ears`."""
+
+    @property
+    def live(self) -> bool:
+        """Whether somebody speaks now, rather than on a recording."""
+
+    @property
+    def hands_free(self) -> bool:
+        """Whether it is open all the time."""
+
+    @property
+    def state(self) -> str:
+        """What it is doing."""
+
+    @property
+    def words(self) -> str:
+        """The words so far."""
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong, in a sentence."""
+
+    @property
+    def meter(self) -> Level:
+        """How loud it is."""
+
+
+class MicrophoneLine(Widget):
+    """One line; while the microphone is not open, it costs nothing.
+
+    `look` is to be called when state or words may have changed. Level and trouble are looked at
+    ten times a second at most, and drawn when they are others.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    MicrophoneLine { height: 1; padding: 0 1; background: $panel; }
+    """
+
+    def __init__(
+        self, ears: Microphone, expects: Callable[[], str] = str, *, id: str | None = "microphone"
+    ) -> None:
+        """Make the line; `expects` says what alone is listened for ("": commands)."""
+        super().__init__(id=id)
+        self._ears = ears
+        self._expects = expects
+        self._row: Row = ()
+        self._trouble = ""
+        self._ticks = 0
+        self._timer: Timer | None = None
+
+    @property
+    def text(self) -> str:
+        """What it says."""
+        return "".join(text for text, _ in self._row)
+
+    def on_mount(self) -> None:
+        """Prepare to follow the level."""
+        self._timer = self.set_interval(1 / HERTZ, self._tick, pause=True)
+        self.look()
+
+    def on_resize(self) -> None:
+        """Use the room there is."""
+        self._show()
+
+    def look(self) -> None:
+        """Show what has changed; words that come while it is open are drawn with the level."""
+        if self._timer is None:
+            return
+        follows = self._ears.live and self._ears.state in OPENS
+        if follows:
+            self._timer.resume()
+        else:
+            self._timer.pause()
+            self._ticks, self._trouble = 0, ""
+        if not follows or not self._row or self._row[0] != self._state():
+            self._show()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw the line."""
+        return draw(self, self._row, self.size.width)
+
+    def _tick(self) -> None:
+        if self._ticks % LOOKS == 0:
+            self._trouble = clean(self._ears.trouble)
+        self._ticks += 1
+        self._show()
+
+    def _show(self) -> None:
+        row = self._written(self.size.width)
+        if row != self._row:
+            self._row = row
+            if self.is_attached:
+                self.refresh()
+
+    @property
+    def _key(self) -> str:
+        """The key that is pushed to talk: in a line to type in, a letter is a letter."""
+        from textual.widgets import Input
+
+        return "ctrl+t" if isinstance(self.screen.focused, Input) else "t"
+
+    def _state(self) -> tuple[str, str]:
+        ears = self._ears
+        only = self._expects()
+        words = STATES.get(ears.state, ears.state)
+        words = words.format(key=self._key, for_what=f" for {only}" if only else "")
+        if not ears.live and ears.state == "over":
+            words = "the recording is over"
+        ink = "good" if ears.state in OPENS else "warn" if ears.state == "shut" else "text"
+        return (f"{MARKS.get(ears.state, ' ')} {words}", ink)
+
+    def _written(self, width: int) -> Row:
+        ears = self._ears
+        if not self.is_attached:
+            return ()
+        row: list[tuple[str, str]] = [self._state()]
+        if ears.live and ears.state in OPENS:
+            full = round(BAR * min(1.0, max(0.0, ears.meter.level)))
+            row += [("  ", "text"), ("■" * full, "curve"), ("·" * (BAR - full), "dim")]
+        left = width - sum(cell_len(text) for text, _ in row) - 3
+        if self._trouble:
+            row.append((f"   {shorten(f'! {self._trouble}', left)}", "warn"))
+        elif ears.words:
+            row.append((f"   {_end(clean(ears.words), left)}", "dim"))
+        elif ears.live and not ears.hands_free and ears.state in HINTS and not self._expects():
+            row.append((f"   {shorten(HINTS[ears.state].format(key=self._key), left)}", "dim"))
+        return tuple(row)
+
+
+def _end(words: str, width: int) -> str:
+    """Return the end of words that are too long: what is being said now is looked for."""
+    if cell_len(words) <= width:
+        return words
+    kept = words
+    while kept and cell_len(kept) > width - 1:
+        kept = kept.partition(" ")[2] or kept[1:]
+    return f"…{kept}"
