@@ -1,0 +1,456 @@
+"""Ears: what is said while they listen is heard, and nothing else, whatever happens meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+
+import pytest
+
+from tangy_hw.sound.wav import RATE, SoundError
+from tangy_profiles.activity import load_activity
+from tangy_profiles.person import load_people
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.speech import ears as room
+from tangy_tui.learning.speech.ears import Ears, Heard
+from tangy_tui.learning.speech.recogniser import SpeechUnavailable
+from tangy_tui.learning.verifying import Reply, Say, Stop
+from tests.learning.speech_fakes import PATIENCE, FakeRecogniser, FakeSource, soon, sound
+
+BOOK = Phrasebook(load_activity("bingo"), load_people(4))
+
+
+class Room:
+    """Ears, somebody who speaks into them, and somebody who takes what they hear."""
+
+    def __init__(self, source: FakeSource, **options: bool) -> None:
+        self.source = source
+        self.ears = Ears("socket", BOOK, **options)  # type: ignore[arg-type]
+        self.told: list[str] = []
+        self.states: list[str] = []
+        self.heard: list[Heard] = []
+        self.ears.tell = self.told.append
+        self.ears.changed = lambda: self.states.append(self.ears.state)
+        self.taking = asyncio.create_task(self._take())
+
+    async def _take(self) -> None:
+        async for heard in self.ears:
+            self.heard.append(heard)
+
+    @property
+    def decoder(self) -> FakeRecogniser:
+        return FakeRecogniser.made[-1]
+
+    @property
+    def words(self) -> list[str]:
+        return [heard.text for heard in self.heard if isinstance(heard, Say | Stop)]
+
+    async def ready(self, state: str = "off") -> Room:
+        await soon(lambda: self.ears.state == state)
+        return self
+
+    async def say(self, *chunks: bytes) -> None:
+        """Push to talk, say something, and push again."""
+        await self.ready()
+        self.ears.talk()
+        await self.source.feed(*chunks)
+        self.ears.talk()
+        await self.ready()
+
+    async def over(self) -> None:
+        async with asyncio.timeout(PATIENCE):
+            await self.taking
+
+
+Enter = Callable[..., Room]
+
+
+@pytest.fixture
+async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
+    """Open ears for a source and a decoder of the test's own; nothing may be left of them."""
+    opened: list[Room] = []
+    FakeRecogniser.made = []
+    monkeypatch.setattr(room, "Recogniser", FakeRecogniser)
+
+    def one(*, live: bool = True, **options: bool) -> Room:
+        source = FakeSource(live=live)
+        monkeypatch.setattr(room, "open_source", lambda *_, **__: source)
+        opened.append(Room(source, **options))
+        return opened[-1]
+
+    yield one
+    for each in opened:
+        await asyncio.wait_for(each.ears.close(), PATIENCE)
+        await asyncio.wait({each.taking}, timeout=PATIENCE)
+        assert each.source.closed
+        assert each.ears.state in ("over", "starting")
+    assert all(decoder.closed for decoder in FakeRecogniser.made)
+    assert asyncio.all_tasks() == {asyncio.current_task()}
+
+
+class TestPushToTalk:
+    async def test_what_is_said_between_two_pushes_is_heard(self, enter: Enter) -> None:
+        here = await enter().ready()
+        await here.source.feed(sound("x"))
+        here.ears.talk()
+        assert here.ears.state == "listening"
+        await here.source.feed(sound("c"), sound("c", 0.25))
+        assert here.ears.words == f"{len(sound('c', 0.75))} bytes"
+        here.ears.talk()
+        assert here.ears.state == "thinking"
+        await here.source.feed(sound("x"))
+        await here.ready()
+        await here.source.feed(sound("x"))
+        assert here.decoder.heard == [(sound("c", 0.75), "commands")]
+        assert here.words == ["call number"]
+        assert here.ears.sound == sound("c", 0.75)
+        assert here.ears.words == ""
+
+    async def test_nothing_is_lost_of_what_comes_in_the_same_turn(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        here.source._said.put_nowait(sound("c"))
+        await here.source.feed(sound("c"))
+        here.ears.talk()
+        await here.ready()
+        assert here.decoder.heard == [(sound("c", 1), "commands")]
+
+    async def test_two_pushes_in_one_turn_are_an_utterance_without_sound(
+        self, enter: Enter
+    ) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        here.ears.talk()
+        await soon(lambda: bool(here.decoder.heard))
+        await here.ready()
+        assert here.decoder.heard == [(b"", "commands")]
+        assert (here.heard, here.told) == ([], [])
+        await here.say(sound("c"))
+        assert here.words == ["call number"]
+
+    @pytest.mark.parametrize("size", [0.02, 0.5, 1.7, 30])
+    async def test_it_ends_by_itself_after_six_seconds_of_sound(
+        self, enter: Enter, size: float
+    ) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        for _ in range(round(8 / size) or 1):
+            await here.source.feed(sound("c", size))
+        await here.ready()
+        assert [len(pcm) / 2 / RATE for pcm, _ in here.decoder.heard] == [room.LONGEST_TALK]
+        assert here.words == ["call number"]
+
+    async def test_pushing_while_it_thinks_or_starts_does_nothing(self, enter: Enter) -> None:
+        here = enter()
+        here.ears.talk()
+        assert here.ears.state == "starting"
+        await here.ready()
+        here.decoder.decoding.clear()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.ears.talk()
+        for _ in range(3):
+            here.ears.talk()
+            assert here.ears.state == "thinking"
+        here.decoder.decoding.set()
+        await here.ready()
+        assert here.words == ["call number"]
+
+    async def test_sound_without_words_is_said_and_silence_of_the_source_is_not(
+        self, enter: Enter
+    ) -> None:
+        here = await enter().ready()
+        await here.say(sound("?"))
+        assert here.told == ["I heard something, but no words that I know."]
+        assert here.heard == []
+
+    async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.decoder.failures += [SpeechUnavailable("It died.")] * 4
+        for _ in range(4):
+            await here.say(sound("c"))
+        assert here.told == ["It died. Please say that again."] * 4
+        await here.say(sound("c"))
+        assert here.words == ["call number"]
+
+    async def test_late_words_do_not_change_what_is_shown(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.decoder.speaking()
+        assert here.ears.state == "off"
+
+
+class TestShutting:
+    async def test_what_the_robot_says_is_not_heard_nor_the_room_after_it(
+        self, enter: Enter
+    ) -> None:
+        here = await enter().ready()
+        here.ears.shut()
+        assert here.ears.state == "shut"
+        here.ears.talk()
+        await here.source.feed(sound("x"))
+        here.ears.open()
+        assert here.ears.state == "off"
+        await here.say(sound("x", 0.1), sound("x", 0.2) + sound("c", 0.4))
+        assert here.decoder.heard == [(sound("c", 0.4), "commands")]
+
+    async def test_what_was_being_said_is_dropped(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.ears.shut()
+        here.ears.open()
+        await here.ready()
+        assert here.heard == []
+        await here.say(sound("x", 0.3), sound("j"))
+        assert here.words == ["tell a joke"]
+
+    async def test_what_is_being_decoded_is_dropped(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.decoder.decoding.clear()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.ears.talk()
+        here.ears.shut()
+        here.decoder.decoding.set()
+        await soon(lambda: bool(here.decoder.heard))
+        here.ears.open()
+        await here.ready()
+        assert here.heard == []
+
+    async def test_pushed_and_shut_in_one_turn_nothing_listens_on(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        here.ears.shut()
+        here.ears.open()
+        await here.ready()
+        await here.source.feed(sound("c"))
+        assert here.decoder.heard == [(b"", "commands")]
+        assert here.heard == []
+
+    async def test_a_recording_has_no_robot_in_it(self, enter: Enter) -> None:
+        here = enter(live=False)
+        here.ears.shut()
+        assert here.ears.state == "starting"
+        await here.source.feed(sound("c"))
+        here.source.end()
+        await here.over()
+        assert here.words == ["call number"]
+
+
+class TestAsking:
+    async def test_answers_are_heard_if_that_is_switched_on(self, enter: Enter) -> None:
+        here = await enter(answers=True).ready()
+        here.ears.asking(True)
+        for letter in "yncs":
+            await here.say(sound(letter))
+        assert here.heard == [Reply(True), Reply(False), Stop("stop")]
+        assert [expecting for _, expecting in here.decoder.heard] == ["answers"] * 4
+        here.ears.asking(False)
+        await here.say(sound("c"))
+        assert here.words == ["stop", "call number"]
+
+    async def test_otherwise_only_what_stops(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.asking(True)
+        for letter in "yncs":
+            await here.say(sound(letter))
+        assert here.heard == [Stop("stop")]
+
+    @pytest.mark.parametrize("asks", [True, False])
+    async def test_what_was_said_before_a_question_is_no_answer_to_it(
+        self, enter: Enter, asks: bool
+    ) -> None:
+        here = await enter(answers=True).ready()
+        here.ears.asking(not asks)
+        here.ears.talk()
+        await here.source.feed(sound("y"))
+        here.ears.asking(asks)
+        await here.ready()
+        assert here.heard == []
+        await here.say(sound("s"))
+        assert here.words == ["stop"]
+
+    async def test_a_stop_is_heard_whatever_is_asked(self, enter: Enter) -> None:
+        here = await enter().ready()
+        await here.say(sound("s"))
+        assert here.heard == [Stop("stop")]
+
+
+class TestTheEnd:
+    async def test_a_source_that_ends_in_mid_talk_loses_nothing(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.source.end()
+        await here.over()
+        assert here.words == ["call number"]
+        assert here.told == ["The microphone has closed."]
+
+    @pytest.mark.parametrize("talks", [True, False])
+    async def test_a_source_that_breaks_says_so_after_what_was_said(
+        self, enter: Enter, talks: bool
+    ) -> None:
+        here = await enter().ready()
+        if talks:
+            here.ears.talk()
+            await here.source.feed(sound("c"))
+        here.source.end(SoundError("The cable is out."))
+        with pytest.raises(SoundError, match="cable"):
+            await here.over()
+        assert here.words == ["call number"] * talks
+        assert here.ears.state == "over"
+
+    @pytest.mark.parametrize("hands_free", [True, False])
+    @pytest.mark.parametrize("moment", ["new", "starting", "waiting", "speaking", "thinking"])
+    async def test_closing_at_any_moment(self, enter: Enter, moment: str, hands_free: bool) -> None:
+        here = enter(hands_free=hands_free)
+        if moment != "new":
+            await soon(lambda: bool(FakeRecogniser.made))
+        if moment in ("waiting", "speaking", "thinking"):
+            await here.ready("listening" if hands_free else "off")
+        if moment in ("speaking", "thinking"):
+            here.ears.talk()
+            await here.source.feed(sound("c"))
+        if moment == "thinking":
+            here.decoder.decoding.clear()
+            here.ears.talk()
+            await here.source.feed(*[sound(" ", 0.1)] * hands_free)
+        await asyncio.wait_for(here.ears.close(), PATIENCE)
+        await here.over()
+        assert (here.heard, here.told) == ([], [])
+
+    async def test_closing_while_somebody_looks_at_what_was_heard(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.taking.cancel()
+        await asyncio.wait({here.taking})
+        later = enter()
+        later.taking.cancel()
+        taking = asyncio.create_task(_first(later.ears))
+        await later.ready()
+        later.ears.talk()
+        await later.source.feed(sound("c"))
+        later.ears.talk()
+        assert isinstance(await taking, Say)
+        await later.ears.close()
+        assert later.ears.state == "over"
+        with pytest.raises(StopAsyncIteration):
+            await anext(later.ears)
+
+    async def test_closed_ears_never_begin(self, enter: Enter) -> None:
+        here = enter()
+        here.taking.cancel()
+        await here.ears.close()
+        await here.ears.close()
+        with pytest.raises(StopAsyncIteration):
+            await anext(here.ears)
+        assert FakeRecogniser.made == []
+
+    async def test_an_observer_that_breaks_leaves_nothing_running(self, enter: Enter) -> None:
+        here = await enter().ready()
+
+        def gone() -> None:
+            raise LookupError("the screen has gone")
+
+        here.ears.changed = gone
+        here.source.end()
+        with pytest.raises(LookupError):
+            await here.over()
+        assert here.decoder.closed
+        here.ears.changed = lambda: None
+
+
+class TestHandsFree:
+    async def test_every_utterance_in_a_stream_is_heard(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        stream = b"".join(sound(" ") + sound(letter) for letter in "cjxc") + sound(" ")
+        for place in range(0, len(stream), 640):
+            await here.source.feed(stream[place : place + 640])
+        await soon(lambda: len(here.heard) == 4)
+        assert here.words == ["call number", "tell a joke", "salad", "call number"]
+        assert [pcm for pcm, _ in here.decoder.heard] == [sound(letter) for letter in "cjxc"]
+        assert "speaking" in here.states
+
+    @pytest.mark.parametrize("end", [True, False])
+    async def test_a_stream_that_is_faster_than_the_decoder_is_heard_whole(
+        self, enter: Enter, end: bool
+    ) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        here.decoder.decoding.clear()
+        await here.source.feed(sound("c") + sound(" ") + sound("j") + sound(" ") + sound("x", 0.3))
+        await here.source.feed(sound("x", 0.2) + (b"" if end else sound(" ")))
+        if end:
+            here.source.end()
+            await soon(lambda: here.ears._ended)
+        here.decoder.decoding.set()
+        await soon(lambda: len(here.heard) == 3)
+        assert [pcm for pcm, _ in here.decoder.heard][:3] == [sound(letter) for letter in "cjx"]
+        if end:
+            await here.over()
+
+    async def test_a_question_drops_what_comes_before_it(self, enter: Enter) -> None:
+        here = await enter(hands_free=True, answers=True).ready("listening")
+        await here.source.feed(sound("c"))
+        here.ears.asking(True)
+        await soon(lambda: len(here.decoder.heard) == 1)
+        await here.ready("listening")
+        await here.source.feed(sound("y") + sound(" "))
+        await soon(lambda: bool(here.heard))
+        assert here.heard == [Reply(True)]
+
+    async def test_the_robot_is_not_heard(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        here.ears.shut()
+        await here.source.feed(sound("c") + sound(" "))
+        here.ears.open()
+        await here.source.feed(sound("x", 0.3), sound("j"), sound(" "))
+        await soon(lambda: bool(here.heard))
+        assert here.words == ["tell a joke"]
+
+    async def test_a_key_is_not_needed(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        here.ears.talk()
+        assert here.ears.state == "listening"
+
+    async def test_a_decoder_that_is_of_no_use_is_given_up(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        here.decoder.failures += [SpeechUnavailable("It died.")] * 9
+        for _ in range(room.FAILURES):
+            await here.source.feed(sound("c") + sound(" "))
+            await soon(lambda: here.ears.state in ("listening", "over"))
+        with pytest.raises(SpeechUnavailable):
+            await here.over()
+        assert here.told == ["It died. Please say that again."] * (room.FAILURES - 1)
+
+    async def test_a_stream_that_nobody_takes_does_not_grow_for_ever(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        here.decoder.decoding.clear()
+        await here.source.feed(sound("c") + sound(" "))
+        for _ in range(3 * room.MOST_WAITING):
+            await here.source.feed(sound("x", 1))
+        utterance = here.ears._utterance
+        assert utterance is not None
+        assert utterance.chunks.held <= 2 * RATE * room.MOST_WAITING
+
+
+class TestRecordings:
+    async def test_each_utterance_is_heard_and_the_end_is_said(self, enter: Enter) -> None:
+        here = enter(live=False)
+        await here.source.feed(sound("c") + sound(" ") + sound("j") + sound(" ") + sound("s"))
+        here.source.end()
+        await here.over()
+        assert here.words == ["call number", "tell a joke", "stop"]
+        assert here.told == ["The recording is over."]
+
+    async def test_what_cannot_be_decoded_is_said_and_the_next_is_heard(self, enter: Enter) -> None:
+        here = enter(live=False)
+        await soon(lambda: bool(FakeRecogniser.made))
+        here.decoder.failures.append(SpeechUnavailable("It died."))
+        await here.source.feed(sound("c") + sound(" ") + sound("j"))
+        here.source.end()
+        await here.over()
+        assert here.words == ["tell a joke"]
+        assert here.told[0] == "It died."
+
+
+async def _first(ears: Ears) -> Heard:
+    return await anext(ears)
