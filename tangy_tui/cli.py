@@ -21,6 +21,7 @@ from tangy_tui.verbs import (
     drill,
     experiment,
     learn,
+    listen,
     log,
     machine,
     mic,
@@ -71,7 +72,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     play.play,
     play.demo,
     drill.drill,
-    machine.listen,
+    listen.listen,
     say.say,
     machine.doctor,
 )

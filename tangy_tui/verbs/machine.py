@@ -1,36 +1,8 @@
-"""`tangy listen` and `tangy doctor`: what of this machine works, and what it hears."""
+"""`tangy doctor`: what of this machine works."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
-from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
-
-
-def listen(
-    files: Annotated[list[Path], typer.Argument(help="WAV files with one spoken command each.")],
-    activity: ActivityName = "bingo",
-    seed: Seed = None,
-    data: Data = None,
-    as_json: Json = False,
-) -> None:
-    """Hear spoken commands in WAV files, and say what was understood."""
-    from tangy_profiles.activity import load_activity
-    from tangy_profiles.person import load_people
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.listening import listen as hear
-
-    heard = hear(files, Phrasebook(load_activity(activity), load_people(4)))
-    if as_json:
-        print_json(heard)
-        return
-    for one in heard:
-        meaning = one["behaviour"] or "not understood"
-        print(plain(f"{one['file']}: {one['heard']!r} -> {meaning} ({one['confidence']:.0%})"))
+from tangy_tui.verbs.common import Data, Json, Seed, print_json
 
 
 def doctor(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:

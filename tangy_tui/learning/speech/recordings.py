@@ -1,0 +1,178 @@
+"""What was said while teaching, kept with consent: a labelled set for practice.
+
+Each utterance lies in the folder of what was verified, DATA/recordings/INTENT/TIME-N.wav, so that
+`tangy listen --bench DATA/recordings` reads it as it is. The label is what the teacher said yes to.
+What was rejected or not understood lies in `rejected`, because nobody said what was meant; practice
+leaves it out. What stops the robot, and spoken answers, are not kept: nobody verified them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import wave
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+
+from tangy_hw.sound.wav import RATE
+from tangy_profiles.store import Store
+from tangy_tui.learning.speech.labels import REJECTED
+from tangy_tui.learning.teaching_events import Executed, TeachingEvent
+from tangy_tui.learning.verifying import NotUnderstood, Refused, Rejected, Reply, Say, Stop
+from tangy_tui.learning.words import words_of
+
+FOLDER = "recordings"  # in the data folder
+CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
+"""The kinds of event. Consent has who (a teacher) and yes; forgetting takes back all consent."""
+
+_OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
+
+
+def consent_question(store: Store) -> str:
+    """Return what a teacher is asked before anything is recorded."""
+    return (
+        "May Tangy keep recordings of what you say while you teach, to practise on? They stay on "
+        f"this machine, in {store.folder / FOLDER}; "
+        "`tangy listen --forget-recordings` deletes them all."
+    )
+
+
+def consented(store: Store, teacher: str) -> bool:
+    """Say whether a teacher has agreed to be recorded, and nothing was forgotten since."""
+    agreed = False
+    for event in store.events(CONSENT, FORGOTTEN):
+        if event.kind == FORGOTTEN:
+            agreed = False
+        elif event.body.get("who") == teacher:
+            agreed = event.body.get("yes") is True
+    return agreed
+
+
+def consent(store: Store, teacher: str, yes: bool) -> None:
+    """Note who agreed to be recorded, or did not."""
+    store.append(CONSENT, {"who": teacher, "yes": yes})
+
+
+def forget_recordings(store: Store) -> tuple[int, int]:
+    """Delete every recording, and take back all consent.
+
+    Returns:
+        How many were deleted, and how many files were left because they are something else.
+
+    Raises:
+        StoreError: the log cannot be written.
+        OSError: a recording cannot be deleted.
+    """
+    top = store.folder / FOLDER
+    deleted = left = 0
+    store.append(FORGOTTEN, {})
+    if top.is_symlink() or not top.is_dir():
+        return 0, 0
+    for folder in (one for one in top.iterdir() if one.is_dir() and not one.is_symlink()):
+        for file in folder.iterdir():
+            if _OURS.fullmatch(file.name.removeprefix(".")) and not file.is_symlink():
+                file.unlink()
+                deleted += 1
+            else:
+                left += 1
+        with suppress(OSError):
+            folder.rmdir()  # where something else lies in it, it stays
+    with suppress(OSError):
+        top.rmdir()
+    return deleted, left
+
+
+class Recorder:
+    """Keeps utterances once it is known what was said in them. Ask for consent before.
+
+    Give it every command with `heard`, spoken or typed, then what follows from it: with `follow`,
+    or with `verified` and `rejected`.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        teacher: str,
+        *,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        tell: Callable[[str], None] = lambda sentence: None,
+    ) -> None:
+        """Record into a data folder.
+
+        Args:
+            folder: the data folder.
+            teacher: whose voice it is; is not written down with the recordings.
+            now: the clock that they are named by.
+            tell: is called with a sentence if nothing can be kept any more.
+        """
+        self.folder = folder / FOLDER
+        self.teacher = teacher
+        self.kept = 0
+        """How many recordings were kept, rejected ones among them."""
+        self._now = now
+        self._tell = tell
+        self._pcm = b""  # of the command that is not verified yet
+        self._named: frozenset[tuple[str, str | None]] = frozenset()  # whom it may have named
+        self._works = True
+
+    def heard(self, pcm: bytes, command: Say | Stop | Reply) -> None:
+        """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
+        if isinstance(command, Reply):
+            return  # the question that is answered is still about what was said before
+        self.rejected()
+        if isinstance(command, Say) and command.commands is not None:
+            self._pcm = pcm
+            self._named = frozenset(
+                (c.behaviour, c.arguments.get("user")) for c in command.commands
+            )
+
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed: what was executed was verified."""
+        for event in events:
+            match event:
+                case Executed(step=step):
+                    self.verified(step.behaviour, step.target)
+                case NotUnderstood() | Refused() | Rejected():
+                    self.rejected()
+                case _:
+                    pass
+
+    def verified(self, behaviour: str, target: str | None) -> None:
+        """Keep the last utterance as that of a behaviour, and of the person if it named one.
+
+        Most behaviours are for somebody whom nobody named: whoever Tangy is with.
+        """
+        named = target if (behaviour, target) in self._named else None
+        self._keep(" ".join(filter(None, (behaviour, named))))
+
+    def rejected(self) -> None:
+        """Keep the last utterance apart, if nobody has said what it meant."""
+        self._keep(REJECTED)
+
+    def _keep(self, label: str) -> None:
+        pcm, self._pcm = self._pcm, b""
+        if not pcm or not self._works:
+            return
+        try:
+            self._write(pcm, self.folder / "-".join(words_of(label)))
+            self.kept += 1
+        except OSError as error:
+            self._works = False
+            self._tell(f"Nothing more is recorded: {self.folder} ({error.strerror}).")
+
+    def _write(self, pcm: bytes, folder: Path) -> None:
+        """Write a file that only its owner reads, and that is there as a whole or not at all."""
+        folder.parent.mkdir(mode=0o700, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)
+        time = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%S")
+        number = 1
+        while (file := folder / f"{time}-{number}.wav").exists():
+            number += 1
+        begun = folder / f".{file.name}"
+        descriptor = os.open(begun, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        with os.fdopen(descriptor, "wb") as raw, wave.open(raw, "wb") as written:
+            written.setparams((1, 2, RATE, 0, "NONE", ""))
+            written.writeframes(pcm)
+        begun.rename(file)

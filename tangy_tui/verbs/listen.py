@@ -1,0 +1,156 @@
+"""`tangy listen`: what is understood of recordings, one by one or counted over a folder of them."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, open_house, print_json
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.speech.evidence import Settings
+
+
+def listen(
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="WAV files with one spoken command each.")
+    ] = None,
+    bench: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Count it over all WAVs in DIR, named by what is said."),
+    ] = None,
+    mode: Annotated[
+        str, typer.Option(help="tiers, or paper: n-gram and keywords alone.")
+    ] = "tiers",
+    mic: Annotated[
+        str | None, typer.Option(metavar="SOURCE", help="Listen as it was checked for this one.")
+    ] = None,
+    forget_recordings: Annotated[
+        bool,
+        typer.Option("--forget-recordings", help="Delete all that `teach --record` has kept."),
+    ] = False,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Hear spoken commands in WAV files, and say what was understood.
+
+    With --bench every WAV below DIR is one whole utterance, and what was said in it is its name
+    (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is
+    named none, noise or speech, or lies in a folder of that name.
+    """
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.speech.calibration import settings_for
+
+    if bool(files) + (bench is not None) + forget_recordings != 1:
+        raise TangyError("Give WAV files, or a folder of them with --bench DIR.")
+    with open_house(data, activity, 4, write=forget_recordings) as house:
+        if forget_recordings:
+            _forget(house, as_json)
+            return
+        settings = settings_for(house.store, mic, mode)
+        phrasebook = Phrasebook(house.activity, house.people)
+        if bench is not None:
+            _bench(bench, phrasebook, settings, as_json)
+        else:
+            _listen(files or [], phrasebook, settings, house.names, as_json)
+
+
+def _listen(
+    files: list[Path],
+    phrasebook: Phrasebook,
+    settings: Settings,
+    names: dict[str, str],
+    as_json: bool,
+) -> None:
+    from tangy_tui.learning.speech.listening import listen as hear
+
+    heard = hear(files, phrasebook, settings)
+    if as_json:
+        print_json(heard)
+        return
+    for row in heard:
+        print(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
+
+
+def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
+    """Say in words what a row of `listen` means."""
+    choices = [
+        f"{choice['behaviour']} ({names.get(user, user)})" if user else str(choice["behaviour"])
+        for choice in row["choices"]
+        for user in [choice["arguments"].get("user")]
+    ]
+    sure = f"{row['confidence']:.0%}"
+    match row["tier"]:
+        case "stop":
+            return "stop, at once"
+        case "sure":
+            return f"{choices[0]}, {sure} sure"
+        case "unsure":
+            return f"perhaps {' or '.join(choices)}, {sure} sure"
+        case _:
+            return "not understood"
+
+
+def _bench(folder: Path, phrasebook: Phrasebook, settings: Settings, as_json: bool) -> None:
+    from tangy_tui.learning.speech.labels import Labels
+    from tangy_tui.learning.speech.practice import Practice, practise
+    from tangy_tui.learning.speech.recogniser import Recogniser
+    from tangy_tui.learning.speech.report import practice_lines
+
+    found = Labels(phrasebook).find(folder)
+
+    async def run(tell: Callable[[int, int], None]) -> Practice:
+        recogniser = Recogniser()
+        try:
+            return await practise(found, phrasebook, settings, recogniser, tell)
+        finally:
+            await recogniser.close()
+
+    with _progress() as tell:
+        practice = asyncio.run(run(tell))
+    if not practice.rows:
+        raise TangyError(plain(f"{folder}: {practice.left_out[0][0]} {practice.left_out[0][1]}."))
+    if as_json:
+        print_json(practice.document())
+        return
+    for line in practice_lines(practice):
+        print(line)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[int, int], None]]:
+    """Show a bar on stderr, where somebody can see it."""
+    if not sys.stderr.isatty():
+        yield lambda done, of: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as progress:
+        bar = progress.add_task("Listening", total=None)
+        yield lambda done, of: progress.update(bar, completed=done, total=of)
+
+
+def _forget(house: House, as_json: bool) -> None:
+    from tangy_tui.learning.speech.recordings import FOLDER, forget_recordings
+
+    count, left = forget_recordings(house.store)
+    if as_json:
+        print_json({"deleted": count, "left": left})
+        return
+    print(f"{count} recordings deleted; nothing more is recorded until somebody agrees again.")
+    if left:
+        there = plain(str(house.store.folder / FOLDER))
+        print(f"{left} files that are none of its recordings are left in {there}.")
