@@ -176,7 +176,7 @@ class TeachingLines:
         typed = self._typed = self._typed or (self._reading() if self._together else None)
         waiting: list[asyncio.Future[Any]] = [spoken] if typed is None else [spoken, typed]
         done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        if typed in done:
+        if typed in done or (asks and _is_command(spoken)):
             return await self._line()
         self._spoken = None
         try:

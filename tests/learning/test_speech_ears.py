@@ -30,7 +30,7 @@ class Room:
         self.states: list[str] = []
         self.heard: list[Heard] = []
         self.ears.tell = self.told.append
-        self.ears.changed = lambda: self.states.append(self.ears.state)
+        self.ears.changed = lambda: self.states.append(self.state)
         self.taking = asyncio.create_task(self._take())
 
     async def _take(self) -> None:
@@ -42,11 +42,15 @@ class Room:
         return FakeRecogniser.made[-1]
 
     @property
+    def state(self) -> str:
+        return self.ears.state
+
+    @property
     def words(self) -> list[str]:
         return [heard.text for heard in self.heard if isinstance(heard, Say | Stop)]
 
     async def ready(self, state: str = "off") -> Room:
-        await soon(lambda: self.ears.state == state)
+        await soon(lambda: self.state == state)
         return self
 
     async def say(self, *chunks: bytes) -> None:
@@ -83,7 +87,7 @@ async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
         await asyncio.wait_for(each.ears.close(), PATIENCE)
         await asyncio.wait({each.taking}, timeout=PATIENCE)
         assert each.source.closed
-        assert each.ears.state in ("over", "starting")
+        assert each.state in ("over", "starting")
     assert all(decoder.closed for decoder in FakeRecogniser.made)
     assert asyncio.all_tasks() == {asyncio.current_task()}
 
@@ -93,11 +97,11 @@ class TestPushToTalk:
         here = await enter().ready()
         await here.source.feed(sound("x"))
         here.ears.talk()
-        assert here.ears.state == "listening"
+        assert here.state == "listening"
         await here.source.feed(sound("c"), sound("c", 0.25))
         assert here.ears.words == f"{len(sound('c', 0.75))} bytes"
         here.ears.talk()
-        assert here.ears.state == "thinking"
+        assert here.state == "thinking"
         await here.source.feed(sound("x"))
         await here.ready()
         await here.source.feed(sound("x"))
@@ -143,7 +147,7 @@ class TestPushToTalk:
     async def test_pushing_while_it_thinks_or_starts_does_nothing(self, enter: Enter) -> None:
         here = enter()
         here.ears.talk()
-        assert here.ears.state == "starting"
+        assert here.state == "starting"
         await here.ready()
         here.decoder.decoding.clear()
         here.ears.talk()
@@ -151,7 +155,7 @@ class TestPushToTalk:
         here.ears.talk()
         for _ in range(3):
             here.ears.talk()
-            assert here.ears.state == "thinking"
+            assert here.state == "thinking"
         here.decoder.decoding.set()
         await here.ready()
         assert here.words == ["call number"]
@@ -176,7 +180,7 @@ class TestPushToTalk:
     async def test_late_words_do_not_change_what_is_shown(self, enter: Enter) -> None:
         here = await enter().ready()
         here.decoder.speaking()
-        assert here.ears.state == "off"
+        assert here.state == "off"
 
 
 class TestShutting:
@@ -185,11 +189,11 @@ class TestShutting:
     ) -> None:
         here = await enter().ready()
         here.ears.shut()
-        assert here.ears.state == "shut"
+        assert here.state == "shut"
         here.ears.talk()
         await here.source.feed(sound("x"))
         here.ears.open()
-        assert here.ears.state == "off"
+        assert here.state == "off"
         await here.say(sound("x", 0.1), sound("x", 0.2) + sound("c", 0.4))
         assert here.decoder.heard == [(sound("c", 0.4), "commands")]
 
@@ -230,7 +234,7 @@ class TestShutting:
     async def test_a_recording_has_no_robot_in_it(self, enter: Enter) -> None:
         here = enter(live=False)
         here.ears.shut()
-        assert here.ears.state == "starting"
+        assert here.state == "starting"
         await here.source.feed(sound("c"))
         here.source.end()
         await here.over()
@@ -298,7 +302,7 @@ class TestTheEnd:
         with pytest.raises(SoundError, match="cable"):
             await here.over()
         assert here.words == ["call number"] * talks
-        assert here.ears.state == "over"
+        assert here.state == "over"
 
     @pytest.mark.parametrize("hands_free", [True, False])
     @pytest.mark.parametrize("moment", ["new", "starting", "waiting", "speaking", "thinking"])
@@ -332,7 +336,7 @@ class TestTheEnd:
         later.ears.talk()
         assert isinstance(await taking, Say)
         await later.ears.close()
-        assert later.ears.state == "over"
+        assert later.state == "over"
         with pytest.raises(StopAsyncIteration):
             await anext(later.ears)
 
@@ -409,14 +413,14 @@ class TestHandsFree:
     async def test_a_key_is_not_needed(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.ears.talk()
-        assert here.ears.state == "listening"
+        assert here.state == "listening"
 
     async def test_a_decoder_that_is_of_no_use_is_given_up(self, enter: Enter) -> None:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.failures += [SpeechUnavailable("It died.")] * 9
         for _ in range(room.FAILURES):
             await here.source.feed(sound("c") + sound(" "))
-            await soon(lambda: here.ears.state in ("listening", "over"))
+            await soon(lambda: here.state in ("listening", "over"))
         with pytest.raises(SpeechUnavailable):
             await here.over()
         assert here.told == ["It died. Please say that again."] * (room.FAILURES - 1)

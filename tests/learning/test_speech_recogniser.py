@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -307,7 +308,7 @@ class TestClosing:
         for moment in ("start", "wanted"):
             heard = begin({moment: "hang"})
             starting = asyncio.create_task(heard.recogniser.start(WANTED))
-            await soon(lambda heard=heard: heard.recogniser.pid is not None)
+            await soon(partial(_runs, heard.recogniser))
             await asyncio.wait_for(heard.recogniser.close(), END_SECONDS)
             with pytest.raises(SpeechUnavailable):
                 await starting
@@ -328,3 +329,7 @@ class TestClosing:
         await heard.recogniser.close()
         await heard.recogniser.start(WANTED)
         assert (await heard.recogniser.decode(WHOLE)).words == "call number"
+
+
+def _runs(recogniser: Recogniser) -> bool:
+    return recogniser.pid is not None

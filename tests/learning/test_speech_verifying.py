@@ -1,0 +1,316 @@
+"""Spoken commands at the door: offered, asked about, answered; and in a session by lines."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import load_people
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.house import House
+from tangy_tui.learning.commands import Command, Phrasebook
+from tangy_tui.learning.speech.ears import Heard
+from tangy_tui.learning.verifying import (
+    WHICH,
+    Asked,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Stop,
+    Verified,
+    Verifier,
+    answer_help,
+)
+from tangy_tui.lines import STOPPED, TeachingLines
+
+ACTIVITY = load_activity("bingo")
+PEOPLE = load_people(4)
+BOOK = Phrasebook(ACTIVITY, PEOPLE)
+
+
+def command(name: str, **arguments: str) -> Command:
+    return Command(name, arguments, 0.5, "go somewhere", ())
+
+
+CHOICES = (
+    command("navigate to user", user="user3"),
+    command("navigate to user", user="user2"),
+    command("call number"),
+)
+UNSURE = Say("go to usher three", 0.5, CHOICES, sure=False)
+
+
+@pytest.fixture
+def door() -> Verifier:
+    world = SimulatedWorld(ACTIVITY, [person.id for person in PEOPLE], seed=1)
+    return Verifier(ACTIVITY, BOOK, world.observe, {"user3": "Rosa", "user2": "Ben"})
+
+
+class TestTheDoor:
+    def test_unsure_words_are_offered_and_nothing_is_asked_yet(self, door: Verifier) -> None:
+        offered = door.say(UNSURE)
+        question = ACTIVITY.behaviour("navigate to user").question
+        assert offered == door.question
+        assert offered == Offered(
+            "go to usher three",
+            0.5,
+            ("navigate to user", "navigate to user", "call number"),
+            (f"{question} (Rosa)", f"{question} (Ben)", "call number"),
+        )
+
+    @pytest.mark.parametrize(("number", "user"), [(1, "user3"), (2, "user2"), (3, None)])
+    def test_what_is_chosen_is_asked_about_with_whom_it_is_for(
+        self, door: Verifier, number: int, user: str | None
+    ) -> None:
+        door.say(UNSURE)
+        asked = door.reply(Reply(False, number))
+        assert isinstance(asked, Asked)
+        assert asked.target == user
+        assert len(asked.alternatives) == len(asked.others) == 2
+        done = door.reply(Reply(True))
+        assert isinstance(done, Verified)
+        assert done.behaviour.name == CHOICES[number - 1].behaviour
+        assert done.target == user
+        assert door.question is None
+
+    def test_every_choice_can_still_be_reached_from_every_question(self, door: Verifier) -> None:
+        for first in (1, 2, 3):
+            for second in (1, 2):
+                door.say(UNSURE)
+                one = door.reply(Reply(False, first))
+                assert isinstance(one, Asked)
+                other = door.reply(Reply(False, second))
+                assert isinstance(other, Asked)
+                assert other.question == one.others[second - 1]
+                assert one.question in other.others
+
+    @pytest.mark.parametrize("reply", [Reply(True), Reply(False, 4), Reply(False, 0)])
+    def test_an_answer_that_fits_no_choice_leaves_the_offer_open(
+        self, door: Verifier, reply: Reply
+    ) -> None:
+        offered = door.say(UNSURE)
+        assert isinstance(door.reply(reply), Refused)
+        assert door.question == offered
+        assert isinstance(door.reply(Reply(False, 3)), Asked)
+
+    def test_none_of_them_gives_back_what_was_heard(self, door: Verifier) -> None:
+        door.say(UNSURE)
+        assert door.reply(Reply(False)) == Rejected("go to usher three")
+        assert door.question is None
+
+    def test_sure_words_are_asked_about_at_once_with_the_rest_beside_them(
+        self, door: Verifier
+    ) -> None:
+        asked = door.say(Say("go to user three", 0.9, CHOICES))
+        assert isinstance(asked, Asked)
+        assert (asked.target, asked.alternatives) == ("user3", ("navigate to user", "call number"))
+        second = door.reply(Reply(False, 1))
+        assert isinstance(second, Asked)
+        assert second.target == "user2"
+        assert second.others[0] == asked.question
+
+    def test_spoken_words_that_mean_nothing_are_not_guessed_at_again(self, door: Verifier) -> None:
+        found = door.say(Say("call number", 0.1, ()))
+        assert not isinstance(found, Asked | Offered)
+        assert door.question is None
+
+    def test_what_cannot_be_done_now_gives_back_what_was_heard(self, door: Verifier) -> None:
+        offered = door.say(Say("mark the number", 0.5, (command("mark numbers"),), sure=False))
+        assert isinstance(offered, Offered)
+        refused = door.reply(Reply(False, 1))
+        assert isinstance(refused, Refused)
+        assert refused.heard == "go somewhere"
+        assert door.question is None
+
+    def test_help_for_an_offer_says_that_a_number_is_wanted(self, door: Verifier) -> None:
+        offered = door.say(UNSURE)
+        assert isinstance(offered, Offered)
+        assert answer_help(offered)[0] == WHICH
+        assert not any(line.strip().startswith("y") for line in answer_help(offered))
+
+
+class ScriptedEars:
+    """Ears that hear what the test says, when it says so."""
+
+    def __init__(self, *, live: bool, answers: bool = False) -> None:
+        self.live, self.answers = live, answers
+        self.tell: Callable[[str], None] = lambda sentence: None
+        self.asked: list[bool] = []
+        self.closed = 0
+        self._coming: asyncio.Queue[Heard | Exception | None] = asyncio.Queue()
+
+    def hear(self, *heard: Heard | Exception | None) -> None:
+        for one in heard:
+            self._coming.put_nowait(one)
+
+    def asking(self, asks: bool) -> None:
+        self.asked.append(asks)
+
+    def __aiter__(self) -> AsyncIterator[Heard]:
+        return self
+
+    async def __anext__(self) -> Heard:
+        heard = await self._coming.get()
+        if isinstance(heard, Exception):
+            raise heard
+        if heard is None:
+            raise StopAsyncIteration
+        return heard
+
+    async def close(self) -> None:
+        self.closed += 1
+        self._coming.put_nowait(None)
+
+
+class Session:
+    """A session by lines, in which somebody types and somebody speaks, each when it is time."""
+
+    def __init__(self, house: House, ears: ScriptedEars) -> None:
+        self.ears = ears
+        self.written: list[str] = []
+        self.script: list[tuple[str, str | Heard | Exception]] = []
+        self.teaching = house.teaching("Ada", 1)
+        self._typed: Iterator[str] = iter(())
+
+    def run(self, *typed: str, scripted: bool = False) -> list[str]:
+        """Type some lines; what waits for a written line is spoken when it is there."""
+        from queue import Queue
+
+        lines: Queue[str | None] = Queue()
+        for line in typed:
+            lines.put(line)
+        if typed:
+            lines.put(None)
+
+        def write(line: str) -> None:
+            self.written.append(line)
+            while self.script and self.script[0][0] in line:
+                _, then = self.script.pop(0)
+                if isinstance(then, str):
+                    lines.put(then)
+                else:
+                    self.ears.hear(then)
+
+        session = TeachingLines(
+            self.teaching,
+            lines.get,
+            write,
+            self.ears,  # type: ignore[arg-type]
+            scripted=scripted,
+        )
+        asyncio.run(asyncio.wait_for(session.run(), 10))
+        return self.written
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    opened = House(tmp_path / "data")
+    yield opened
+    opened.close()
+
+
+GREET = Say("greet everyone", 0.9, (command("greeting"),))
+
+
+class TestBySpeech:
+    def test_a_spoken_command_is_asked_about_and_answered_by_key(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=True))
+        session.script = [
+            ("Now: start", GREET),
+            ("Did you say", "y"),
+            ("-> greeting", "quit"),
+        ]
+        written = session.run()
+        assert any("-> greeting" in line for line in written)
+        assert session.ears.closed == 1
+        assert session.ears.asked[:2] == [True, False]
+
+    def test_a_choice_is_offered_and_answered_by_its_number(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=True))
+        offer = Say("greet the group", 0.5, (command("joke"), command("greeting")), sure=False)
+        session.script = [
+            ("Now: start", offer),
+            ("Did you mean", "9" * 5_000),
+            (WHICH, "y"),
+            (WHICH, "7"),
+            ("There is no choice 7.", "2"),
+            ("Did you say", "y"),
+            ("-> greeting", "quit"),
+        ]
+        written = session.run()
+        assert session.script == []
+        assert any("-> greeting" in line for line in written)
+
+    def test_a_stop_is_heard_while_a_question_is_open_and_the_question_stays(
+        self, house: House
+    ) -> None:
+        session = Session(house, ScriptedEars(live=True))
+        session.script = [
+            ("Now: start", GREET),
+            ("Did you say", Stop("stop")),
+            (STOPPED, "y"),
+            ("-> greeting", "quit"),
+        ]
+        assert any("-> greeting" in line for line in session.run())
+
+    @pytest.mark.parametrize("yes", [True, False])
+    def test_an_answer_can_be_spoken_where_that_is_switched_on(
+        self, house: House, yes: bool
+    ) -> None:
+        session = Session(house, ScriptedEars(live=True, answers=True))
+        session.script = [
+            ("Now: start", GREET),
+            ("Did you say", Reply(yes)),
+            ("-> greeting" if yes else "Not done", "quit"),
+        ]
+        session.run()
+        assert session.script == []
+
+    def test_a_command_that_was_spoken_too_early_waits_for_the_answer(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=True))
+        later = Say("call number", 0.9, (command("call number"),))
+        session.ears.hear(GREET, later)
+        session.script = [
+            ("Did you say: greet", "y"),
+            ("-> greeting", "#"),
+            ("Did you say: call", "n"),
+            ("Not done", "quit"),
+        ]
+        session.run()
+        assert session.script == []
+
+    def test_a_microphone_that_breaks_leaves_the_keys(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=True))
+        session.ears.hear(TangyError("The cable is out."))
+        session.script = [("The cable is out.", "greet everyone"), ("Did you say", "quit")]
+        session.run()
+        assert session.script == []
+
+    def test_a_recording_that_cannot_be_heard_ends_a_script(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=False))
+        session.ears.hear(TangyError("Speech needs the package pocketsphinx."))
+        with pytest.raises(TangyError, match="pocketsphinx"):
+            session.run("quit")
+        assert session.ears.closed == 1
+
+    def test_a_script_answers_a_recording(self, house: House) -> None:
+        session = Session(house, ScriptedEars(live=False))
+        session.ears.hear(GREET, Stop("stop"), None)
+        written = session.run("y", "where")
+        assert any("-> greeting" in line for line in written)
+        assert STOPPED in written
+
+    @pytest.mark.parametrize("live", [True, False])
+    def test_the_ears_end_with_the_session_whatever_they_do(self, house: House, live: bool) -> None:
+        session = Session(house, ScriptedEars(live=live))
+        if not live:
+            session.ears.hear(None)
+        session.run("quit")
+        assert session.ears.closed == 1
