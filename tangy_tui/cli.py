@@ -25,6 +25,7 @@ from tangy_tui.verbs import (
     log,
     machine,
     mic,
+    mic_check,
     people,
     people_speech,
     play,
@@ -82,6 +83,7 @@ people.app.command("pronounce")(people_speech.people_pronounce)
 people.app.command("voice")(people_speech.people_voice)
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
+mic.app.command("check")(mic_check.check)
 app.add_typer(mic.app, name="mic")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(activity.app, name="activity")

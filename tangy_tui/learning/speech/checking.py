@@ -1,0 +1,332 @@
+"""A microphone checked in a minute: the quiet room, a few commands, a few other sentences.
+
+Nothing of what is recorded here is kept; what comes of it are figures and settings.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Protocol
+
+from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS, Meter
+from tangy_hw.sound.source import Source
+from tangy_hw.sound.wav import SoundError
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.lexicon import Lexicon
+from tangy_tui.learning.speech.calibration import (
+    WEIGHTS,
+    Asked,
+    Chosen,
+    Score,
+    choose,
+    score,
+    spare,
+)
+from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.learning.speech.labels import Label
+from tangy_tui.learning.speech.understanding import stops, wanted
+
+COMMANDS = 6
+SENTENCES = (  # of everyday speech; one that means something in the activity is not used
+    "I would like a cup of tea and a biscuit.",
+    "My sister came to see me yesterday afternoon.",
+    "It is rather warm in here, could you open the window?",
+    "There was a lot of rain over the weekend.",
+    "What are we having for dinner this evening?",
+    "He has lived in that house for a very long time.",
+)
+OTHERS = 3
+QUIET_SECONDS = 3.0  # of the room alone
+WAIT_SECONDS = 6.0  # for a phrase to begin
+LONGEST_SECONDS = 6.0  # of a phrase
+GIVE_UP_SECONDS = 30.0  # when nothing at all comes
+LOOK_SECONDS = 0.5  # between two looks at the meter
+TIMES = 2  # that a phrase is asked for
+FRAME = 320  # samples, 20 ms
+LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be
+CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
+
+Tell = Callable[[str], None]
+
+
+class Hearing(Protocol):
+    """The part of a recogniser that a check needs."""
+
+    said: bytes
+    speaking: Callable[[], None]
+
+    async def start(self, wanted: Wanted) -> None:
+        """Listen for something."""
+
+    async def hear(
+        self, sound: asyncio.Queue[bytes], expecting: Expecting = ..., *, endpoint: bool = ...
+    ) -> Evidence:
+        """Hear one utterance as it is spoken."""
+
+    async def decode(self, pcm: bytes, expecting: Expecting = ...) -> Evidence:
+        """Decode one utterance."""
+
+    async def pieces(self, pcm: bytes) -> list[bytes]:
+        """Cut a recording at its pauses."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What came of a check; loudness in dB below full scale (negative).
+
+    `heard` has for each text that was asked for the words that were heard with the settings that
+    were chosen, None where nothing was said. `advice` is what to change, a sentence each.
+    """
+
+    room: float
+    voice: float
+    heard: tuple[tuple[Asked, str | None], ...]
+    chosen: Chosen
+    parted: bool
+    advice: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Return it as one JSON document."""
+        return {
+            "room_db": round(self.room, 1),
+            "voice_db": round(self.voice, 1),
+            "heard": [
+                {"asked": a.text, "command": a.meant is not None, "heard": words}
+                for a, words in self.heard
+            ],
+            "settings": asdict(self.chosen.settings),
+            "figures": asdict(self.chosen.figures),
+            "usual": asdict(self.chosen.usual),
+            "parted": self.parted,
+            "advice": list(self.advice),
+        }
+
+
+def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[Asked]:
+    """Return what is to be said: commands of different behaviours, then other sentences.
+
+    The commands have many different words, and none has just one, because that proves little.
+    """
+    heard = set(lexicon.heard())
+    phrases = [p for p in phrasebook.table.all() if p.heard and p.said in heard and len(p.bare) > 1]
+    chosen: list[Asked] = []
+    known: set[str] = set()
+    behaviours: set[str] = set()
+    while len(chosen) < COMMANDS:
+        rest = [p for p in phrases if p.behaviour not in behaviours] or [
+            p for p in phrases if p.said not in {a.text for a in chosen}
+        ]
+        if not rest:
+            break
+        best = max(rest, key=lambda p: (len({*p.bare} - known), -p.rank[0], -p.rank[1]))
+        known.update(best.bare)
+        behaviours.add(best.behaviour)
+        chosen.append(Asked(best.said, Label(best.behaviour, best.user)))
+    others = [s for s in SENTENCES if phrasebook.understand(s) is None and not stops(s)]
+    return [*chosen, *(Asked(text, None) for text in others[:OTHERS])]
+
+
+class MicrophoneCheck:
+    """One check of one source. A recording is taken for the answers, one after the other."""
+
+    def __init__(
+        self,
+        source: Source,
+        phrasebook: Phrasebook,
+        recogniser: Hearing,
+        asked: Sequence[Asked],
+        tell: Tell,
+        meter: Meter | None = None,
+    ) -> None:
+        """Make a check that says what to do, and what is wrong, with `tell`."""
+        self._source = source
+        self._phrasebook = phrasebook
+        self._recogniser = recogniser
+        self._asked = asked
+        self._tell = tell
+        self._meter = meter or Meter()
+        self._sound: asyncio.Queue[bytes] | None = None
+        self._left = 0  # bytes for which it is still listened
+        self._spoke = False
+        self._ended = False
+        self._room = bytearray()
+        self._quiet = asyncio.Event()
+        self._wrong = ""
+
+    async def run(self) -> Checked:
+        """Listen, and find the settings. The source is closed in the end.
+
+        Raises:
+            SoundError: the source gives nothing.
+            SpeechUnavailable: the worker cannot run here.
+        """
+        try:
+            await self._recogniser.start(wanted(self._phrasebook, USUAL))
+            if self._source.live:
+                room, sounds = await self._live()
+            else:
+                room, sounds = await self._recorded()
+        finally:
+            await self._source.close()
+        if not any(sounds):
+            raise SoundError(f"{self._source.name}: nobody was heard, so nothing was changed.")
+        return await self._find(room, sounds)
+
+    async def _recorded(self) -> tuple[float, list[bytes]]:
+        pcm = b"".join([chunk async for chunk in self._source])
+        found = await self._recogniser.pieces(pcm)
+        sounds = [*found, *([b""] * len(self._asked))][: len(self._asked)]
+        return loudness(pcm, 1 - LOUD), sounds
+
+    async def _live(self) -> tuple[float, list[bytes]]:
+        self._source.tell = self._tell
+        self._recogniser.speaking = self._began
+        pump = asyncio.create_task(self._pump())
+        watch = asyncio.create_task(self._watch())
+        try:
+            self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
+            await self._quiet.wait()
+            room = loudness(bytes(self._room), LOUD)
+            sounds: list[bytes] = []
+            self._tell(f"Now say each of these, as you would to Tangy ({len(self._asked)} in all).")
+            for number, asked in enumerate(self._asked, 1):
+                sounds.append(await self._say(number, asked))
+            if self._ended and not any(sounds):
+                await pump  # says why
+            return room, sounds
+        finally:
+            for task in (pump, watch):
+                task.cancel()
+            await asyncio.wait({pump, watch})
+
+    async def _say(self, number: int, asked: Asked) -> bytes:
+        """Ask for one text, twice if nothing is heard; return its sound."""
+        for again in range(TIMES):
+            if self._ended:
+                break
+            request = "I heard nothing. Please say it again:" if again else f"{number}."
+            self._tell(f"{request} {asked.text}")
+            self._spoke, self._sound = False, asyncio.Queue()
+            self._left = 2 * round(WAIT_SECONDS * RATE)
+            self._meter.begin()
+            await self._recogniser.hear(self._sound, endpoint=True)
+            self._sound = None
+            if self._spoke:
+                return self._recogniser.said
+        return b""
+
+    async def _pump(self) -> None:
+        """Take the sound as it comes, and keep what is to be heard."""
+        try:
+            async for chunk in self._source:
+                self._meter.feed(chunk)
+                if not self._quiet.is_set():
+                    self._room += chunk
+                    if len(self._room) >= 2 * RATE * QUIET_SECONDS:
+                        self._quiet.set()
+                elif self._sound is not None:
+                    self._sound.put_nowait(chunk)
+                    self._left -= len(chunk)
+                    if self._left <= 0:
+                        self._stop()
+        finally:
+            self._end()
+
+    def _began(self) -> None:
+        self._spoke, self._left = True, 2 * round(LONGEST_SECONDS * RATE)
+
+    def _stop(self) -> None:
+        if self._sound is not None:
+            self._sound.put_nowait(b"")
+            self._sound = None
+
+    def _end(self) -> None:
+        self._ended = True
+        self._quiet.set()
+        self._stop()
+
+    async def _watch(self) -> None:
+        """Say what is wrong with the sound, once for each thing."""
+        while True:
+            await asyncio.sleep(LOOK_SECONDS)
+            words = self._meter.words(speaking=self._spoke)
+            kind = words.partition(":")[0].rstrip("0123456789 s")
+            if words and kind != self._wrong:
+                self._tell(words)
+            self._wrong = kind
+            if self._meter.seconds_since_data >= GIVE_UP_SECONDS:
+                self._end()
+
+    async def _find(self, room: float, sounds: Sequence[bytes]) -> Checked:
+        """Decode what was said, with one weight or with all of them."""
+        self._tell("Thank you. One moment.")
+        scores: dict[float, list[Score]] = {}
+        words: dict[float, list[str | None]] = {}
+        for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):
+            settings = Settings(garbage=weight)
+            if weight != USUAL.garbage:
+                await self._recogniser.start(wanted(self._phrasebook, settings))
+            heard = [await self._decoded(pcm) for pcm in sounds]
+            words[weight] = [
+                one.words if pcm else None for one, pcm in zip(heard, sounds, strict=True)
+            ]
+            scores[weight] = [
+                score(one, asked, self._phrasebook, settings)
+                for one, asked, pcm in zip(heard, self._asked, sounds, strict=True)
+                if pcm or asked.meant  # silence proves nothing of other sentences
+            ]
+            if spare(scores[USUAL.garbage]):
+                break
+        chosen = choose(scores)
+        voice = loudness(b"".join(sounds), LOUD)
+        figures = chosen.figures
+        return Checked(
+            room,
+            voice,
+            tuple(zip(self._asked, words[chosen.settings.garbage], strict=True)),
+            chosen,
+            figures.parted and figures.others > 0,
+            tuple(advice(room, voice, sounds, figures.perfect)),
+        )
+
+    async def _decoded(self, pcm: bytes) -> Evidence:
+        return await self._recogniser.decode(pcm) if pcm else Evidence()
+
+
+def loudness(pcm: bytes, share: float) -> float:
+    """Return how loud a sound is in dB below full scale: a share of it is less loud than that."""
+    import numpy as np
+
+    frames = np.frombuffer(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)], "<i2").reshape(-1, FRAME)
+    if not len(frames):
+        return -100.0
+    level = float(np.quantile(frames.astype(np.float64).std(axis=1), share))
+    return 20 * math.log10(max(level, 0.33) / 32_768)
+
+
+def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
+    """Say what to change, a sentence each: nothing if the sound is as it should be."""
+    said = []
+    if sum(_cut_off(pcm) for pcm in sounds) > 1:
+        said.append("Some of it was too loud: move a little away, or turn the microphone down.")
+    elif voice < 20 * math.log10(QUIET / 32_768):
+        said.append("Your voice comes in very quietly: move closer, or turn the microphone up.")
+    if voice - room < FAIR:
+        said.append("The room is nearly as loud as your voice: a headset helps most.")
+    elif voice - room < CLEAR and not perfect:
+        said.append("The room is rather loud: move closer to the microphone, or use a headset.")
+    if sum(not pcm for pcm in sounds) > 1:
+        said.append("Some phrases were not heard at all: speak soon after they are shown.")
+    if not said and not perfect:
+        said.append("The sound is good; say each phrase as it stands there, without a pause in it.")
+    return said
+
+
+def _cut_off(pcm: bytes) -> bool:
+    import numpy as np
+
+    samples = np.frombuffer(pcm, "<i2").astype(np.int32)
+    return int((abs(samples) >= RAILS).sum()) >= CLIPPED

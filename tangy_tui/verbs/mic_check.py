@@ -1,0 +1,114 @@
+"""`tangy mic check`: find out how Tangy listens best with this microphone in this room."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import ActivityName, Data, Json, open_house, print_json, print_line
+
+if TYPE_CHECKING:
+    from tangy_hw.sound.source import Source
+    from tangy_tui.house import House
+    from tangy_tui.learning.speech.checking import Checked
+
+
+def check(
+    mic: Annotated[
+        str,
+        typer.Option(metavar="SOURCE", help="arecord, socket, - (standard input) or FILE.wav."),
+    ] = "arecord",
+    forget: Annotated[
+        bool, typer.Option("--forget", help="Listen as usual again with this microphone.")
+    ] = False,
+    activity: ActivityName = "bingo",
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Check a microphone in a minute, and listen with it as suits it and the room from then on.
+
+    Be quiet for 3 seconds, then say what is shown: six commands, three other sentences. Nothing
+    of it is kept but the settings. A WAV is taken for what you say, in the same order.
+    """
+    from tangy_hw.sound.sources import open_source
+    from tangy_tui.learning.speech.calibration import forget as forget_check
+    from tangy_tui.learning.speech.calibration import keep
+
+    with open_house(data, activity, 4) as house:
+        if forget:
+            dropped = forget_check(house.store, mic)
+            if as_json:
+                print_json({"source": mic, "forgotten": dropped})
+            else:
+                print(plain(f"{mic}: {'forgotten' if dropped else 'nothing was stored'}."))
+            return
+        source = open_source(mic, folder=house.store.folder)
+        checked = asyncio.run(_run(house, source, as_json))
+        stored = checked.parted
+        if stored:
+            keep(house.store, mic, checked.chosen)
+        if as_json:
+            print_json({"source": mic, "stored": stored, **checked.document()})
+            return
+        for line in _lines(checked, mic):
+            print(plain(line))
+
+
+async def _run(house: House, source: Source, as_json: bool) -> Checked:
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.lexicon import Lexicon
+    from tangy_tui.learning.speech.checking import MicrophoneCheck, to_say
+    from tangy_tui.learning.speech.recogniser import Recogniser
+
+    def on_stderr(sentence: str) -> None:
+        print(plain(sentence), file=sys.stderr, flush=True)
+
+    def on_stdout(sentence: str) -> None:
+        print_line(plain(sentence))
+
+    phrasebook = Phrasebook(house.activity, house.people)
+    asked = to_say(phrasebook, Lexicon(phrasebook))
+    recogniser = Recogniser()
+    try:
+        return await MicrophoneCheck(
+            source, phrasebook, recogniser, asked, on_stderr if as_json else on_stdout
+        ).run()
+    finally:
+        await recogniser.close()
+
+
+def _lines(checked: Checked, mic: str) -> list[str]:
+    """Say what came of it."""
+    from tangy_tui.learning.speech.checking import CLEAR, FAIR
+    from tangy_tui.learning.speech.evidence import USUAL
+
+    figures, above = checked.chosen.figures, checked.voice - checked.room
+    how = "clear" if above >= CLEAR else "enough" if above >= FAIR else "too little"
+    lines = [f"Your voice is {max(0.0, above):.0f} dB louder than the room: {how}."]
+    lines += [
+        f"  asked for {asked.text!r}, heard {words!r}" if words is not None
+        else f"  asked for {asked.text!r}, heard nothing"
+        for asked, words in checked.heard
+        if asked.meant and words != asked.text
+    ]  # fmt: skip
+    offered = f", {figures.offered} offered as a choice" if figures.offered else ""
+    result = (
+        f"{figures.understood} of {figures.commands} commands understood{offered}; "
+        f"{figures.taken} of {figures.others} other sentences taken for one"
+    )
+    if not checked.parted:
+        lines.append(f"{result}. That is not good enough: nothing was stored.")
+    elif checked.chosen.settings == USUAL:
+        lines.append(f"{result}; the usual settings suit this microphone. Stored for {mic}.")
+    else:
+        usual = checked.chosen.usual
+        lines.append(f"{result}; stored for {mic}.")
+        lines.append(
+            f"  With the usual settings: {usual.understood} understood, "
+            f"{usual.offered} offered, {usual.taken} taken for one."
+        )
+    return lines + list(checked.advice)
