@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 import re
 import shlex
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from threading import Thread
 from typing import Any
@@ -279,7 +279,9 @@ class TeachingLines:
             + state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
         )
 
-    def _tell(self, events: Iterable[TeachingEvent]) -> None:
+    def _tell(self, events: Sequence[TeachingEvent]) -> None:
+        if self._ears is not None:
+            self._ears.follow(events)
         for event in events:
             match event:
                 case Begun():

@@ -53,6 +53,9 @@ def play(
         str,
         typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you."),
     ] = "",
+    voice: Annotated[
+        bool, typer.Option("--voice", help="Let Tangy speak (on the screen).")
+    ] = False,
     speed: Annotated[float, typer.Option(min=1, max=1000, help="Times life, 1 to 1000.")] = 10,
     seed: Seed = None,
     data: Data = None,
@@ -88,6 +91,7 @@ def play(
                     teacher=who,
                     injections=faults,
                     ascii_only=ascii_only,
+                    voice=voice,
                 )
             )
         learnt, notices = load_policy(house.store, house.activity, policy)

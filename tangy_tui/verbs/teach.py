@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from collections.abc import Callable
 from inspect import signature
 from pathlib import Path
@@ -57,6 +58,13 @@ def teach(
     plain_lines: Annotated[
         bool, typer.Option("--plain", help="By lines, for any terminal.")
     ] = False,
+    record: Annotated[
+        bool,
+        typer.Option("--record", help="Keep what you say, if you agree, to practise on."),
+    ] = False,
+    voice: Annotated[
+        bool, typer.Option("--voice", help="Let Tangy speak (on the screen).")
+    ] = False,
     teacher: Annotated[
         str | None, typer.Option(help="Whose demonstration it is; 'scripted' for the built-in one.")
     ] = None,
@@ -92,13 +100,13 @@ def teach(
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
         screen = not (plain_lines or script or as_json) and full_screen()
-        if mic is None and (hands_free or spoken_answers or mode):
+        if mic is None and (hands_free or spoken_answers or mode or record):
             raise TangyError("There is nothing to listen to: name a microphone with --mic.")
         ears = None
         if mic is not None:
             ears = _ears(
                 mic, teaching, sound, house, mode,
-                hands_free=hands_free or not screen, answers=spoken_answers,
+                hands_free=hands_free or not screen, answers=spoken_answers, record=record,
             )  # fmt: skip
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
@@ -107,7 +115,7 @@ def teach(
 
             status = run_teaching(
                 house, teaching, ears=ears, resume=not new, games=games, speed=speed,
-                ascii_only=ascii_only,
+                ascii_only=ascii_only, voice=voice,
             )  # fmt: skip
             raise typer.Exit(status)
         else:
@@ -199,25 +207,39 @@ def _ears(
     *,
     hands_free: bool,
     answers: bool,
+    record: bool,
 ) -> Ears:
-    from tangy_profiles.activity import LISTENING
-    from tangy_profiles.reading import nearest
+    from tangy_tui.learning.speech.calibration import settings_for
     from tangy_tui.learning.speech.ears import Ears
-    from tangy_tui.learning.speech.evidence import Settings
+    from tangy_tui.learning.speech.recordings import Recorder
 
-    chosen = mode or house.activity.listening
-    if chosen not in LISTENING:
-        raise TangyError(plain(f"--mode {chosen}: there is no such mode; ")
-                         + nearest(chosen, LISTENING))  # fmt: skip
+    settings = settings_for(house.store, mic, mode or house.activity.listening)
+    recorder = None
+    if record and _agrees(house, teaching.teacher):
+        recorder = Recorder(house.store.folder, teaching.teacher)
     return Ears(
         mic,
         teaching.phrasebook,
-        settings=Settings(mode=chosen),
+        settings=settings,
+        recorder=recorder,
         hands_free=hands_free,
         answers=answers,
         stdin=sound,
         folder=house.store.folder,
     )
+
+
+def _agrees(house: House, teacher: str) -> bool:
+    """Ask a teacher who has not agreed to recordings yet; nothing is recorded without a yes."""
+    from tangy_tui.learning.speech.recordings import consent, consent_question, consented
+
+    if consented(house.store, teacher):
+        return True
+    if not sys.stdin.isatty():
+        raise TangyError("--record: say yes to it once on a terminal; nothing is recorded before.")
+    yes = typer.confirm(plain(consent_question(house.store)), default=False, err=True)
+    consent(house.store, teacher, yes)
+    return yes
 
 
 def _seen(house: House, teaching: Teaching) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator, AsyncIterator, Callable
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -14,7 +14,9 @@ from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Settings
 from tangy_tui.learning.speech.recogniser import Recogniser, SpeechUnavailable
+from tangy_tui.learning.speech.recordings import Recorder
 from tangy_tui.learning.speech.understanding import answer, understand, wanted
+from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verifying import Reply, Say, Stop
 
 LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
@@ -99,6 +101,7 @@ class Ears:
         settings: Settings = USUAL,
         hands_free: bool = False,
         answers: bool = False,
+        recorder: Recorder | None = None,
         stdin: int = 0,
         folder: Path | None = None,
     ) -> None:
@@ -110,6 +113,7 @@ class Ears:
             settings: how it is listened with this microphone.
             hands_free: listen all the time, and find out where an utterance begins and ends.
             answers: also hear yes and no while a question is open.
+            recorder: keeps what is heard, with the teacher's consent.
             stdin: the file descriptor that `-` stands for.
             folder: the data folder, for the socket and the messages of the decoder.
 
@@ -133,6 +137,7 @@ class Ears:
         self._state: State = "starting"
         self._phrasebook = phrasebook
         self._settings = settings
+        self._recorder = recorder
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
         self._heard: AsyncGenerator[Heard, None] | None = None
         self._recogniser: Recogniser | None = None
@@ -195,6 +200,11 @@ class Ears:
         """Match what is heard to these phrases from now on; they are listened for later."""
         self._phrasebook = phrasebook
 
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed from commands, so that recordings get their names."""
+        if self._recorder is not None:
+            self._recorder.follow(events)
+
     def __aiter__(self) -> AsyncIterator[Heard]:
         return self
 
@@ -238,6 +248,8 @@ class Ears:
             async with contextlib.aclosing(spoken):
                 async for evidence in spoken:
                     heard = self._understand(evidence)
+                    if heard is not None and self._recorder is not None:
+                        self._recorder.heard(self.sound, heard)
                     if heard is not None and not self._closed:
                         yield heard
             if pump is not None:
