@@ -100,15 +100,16 @@ def _lines(checked: Checked, mic: str) -> list[str]:
         f"{figures.understood} of {figures.commands} commands understood{offered}; "
         f"{figures.taken} of {figures.others} other sentences taken for one"
     )
+    lines.append(f"{result}.")
+    usual = checked.chosen.usual
     if not checked.parted:
-        lines.append(f"{result}. That is not good enough: nothing was stored.")
+        lines.append("That is not good enough: nothing was stored.")
     elif checked.chosen.settings == USUAL:
-        lines.append(f"{result}; the usual settings suit this microphone. Stored for {mic}.")
+        lines.append(f"The usual settings suit this microphone; stored for {mic}.")
     else:
-        usual = checked.chosen.usual
-        lines.append(f"{result}; stored for {mic}.")
         lines.append(
-            f"  With the usual settings: {usual.understood} understood, "
-            f"{usual.offered} offered, {usual.taken} taken for one."
+            f"With the usual settings: {usual.understood} understood, {usual.offered} offered, "
+            f"{usual.taken} taken for one."
         )
+        lines.append(f"Other settings suit this microphone better; stored for {mic}.")
     return lines + list(checked.advice)

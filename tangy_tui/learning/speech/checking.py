@@ -13,6 +13,7 @@ from typing import Any, Protocol
 
 from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS, Meter
 from tangy_hw.sound.source import Source
+from tangy_hw.sound.utterances import split
 from tangy_hw.sound.wav import SoundError
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
@@ -178,6 +179,8 @@ class MicrophoneCheck:
     async def _recorded(self) -> tuple[float, list[bytes]]:
         pcm = b"".join([chunk async for chunk in self._source])
         found = await self._recogniser.pieces(pcm)
+        if len(found) < len(self._asked):
+            found = max(found, split(pcm), key=len)  # noise has no pauses, but is less loud
         sounds = [*found, *([b""] * len(self._asked))][: len(self._asked)]
         return loudness(pcm, 1 - LOUD), sounds
 
@@ -319,7 +322,7 @@ def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) ->
     elif voice - room < CLEAR and not perfect:
         said.append("The room is rather loud: move closer to the microphone, or use a headset.")
     if sum(not pcm for pcm in sounds) > 1:
-        said.append("Some phrases were not heard at all: speak soon after they are shown.")
+        said.append("Some phrases were not heard: speak soon after they are shown, then pause.")
     if not said and not perfect:
         said.append("The sound is good; say each phrase as it stands there, without a pause in it.")
     return said

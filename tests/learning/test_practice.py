@@ -1,0 +1,246 @@
+"""Recordings are labelled by their names, counted right, and reported in 80 columns."""
+
+from __future__ import annotations
+
+import wave
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.sound.wav import RATE
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.learning.speech.labels import STOP, Label, Labels
+from tangy_tui.learning.speech.practice import Practice, practise, unnamed
+from tangy_tui.learning.speech.recogniser import SpeechUnavailable
+from tangy_tui.learning.speech.report import practice_lines
+
+BROKEN = "broken"
+
+
+@pytest.fixture
+def book(activity: Activity, people: tuple[Person, ...]) -> Phrasebook:
+    return Phrasebook(activity, people)
+
+
+def write(file: Path, number: int = 0) -> Path:
+    """Write a WAV whose first sample is a number, by which the recogniser below knows it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with wave.open(str(file), "wb") as out:
+        out.setparams((1, 2, RATE, 0, "NONE", ""))
+        out.writeframes(number.to_bytes(2, "little") + bytes(RATE))
+    return file
+
+
+class Hears:
+    """A recogniser that hears of each recording what the test says."""
+
+    pid = None
+
+    def __init__(self, words: dict[int, str]) -> None:
+        self.words = words
+        self.settings: list[Settings] = []
+
+    async def start(self, wanted: Wanted) -> None:
+        self.settings.append(wanted.settings)
+
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+        words = self.words[int.from_bytes(pcm[:2], "little")]
+        if words == BROKEN:
+            raise SpeechUnavailable("It died twice.")
+        return Evidence(words, words, 0.5, 1.0, len(pcm) / 2 / RATE)
+
+
+async def heard(folder: Path, book: Phrasebook, said: dict[str, str]) -> Practice:
+    """Practise on recordings by name, with the words that are heard of each."""
+    for number, name in enumerate(said, 1):
+        write(folder / name, number)
+    hears = Hears(dict(enumerate(said.values(), 1)))
+    return await practise(Labels(book).find(folder), book, USUAL, hears)
+
+
+class TestNames:
+    @pytest.mark.parametrize(
+        ("name", "said"),
+        [
+            ("call_number.wav", Label("call number")),
+            ("CALL-NUMBER 2.wav", Label("call number")),
+            ("Call.Number.rms.003.WAV", Label("call number")),
+            ("tell a joke-slt.wav", Label("joke")),
+            ("celebrate the winner_kal.wav", Label("celebrate")),
+            ("navigate to user-slt.wav", Label("navigate to user")),
+            ("navigate_to_user-user2-003.wav", Label("navigate to user", "user2")),
+            ("navigate_to_user-003.wav", Label("navigate to user")),
+            ("navigate_to_user_2.wav", Label("navigate to user", "user2")),
+            ("go to user two-rms-001.wav", Label("navigate to user", "user2")),
+            ("navigate_to_user-slt-user3.wav", Label("navigate to user", "user3")),
+            ("encourage-user3.wav", Label("encourage")),
+            ("stop.wav", Label(STOP)),
+            ("stop_now-4.wav", Label(STOP)),
+            ("slt/stop.wav", Label(STOP)),
+            ("call number/007.wav", Label("call number")),
+            ("call number/joke.wav", Label("call number")),
+            ("navigate-to-user-user2/20260101T101112-1.wav", Label("navigate to user", "user2")),
+            ("navigate_to_user/user4-1.wav", Label("navigate to user", "user4")),
+            ("navigate_to_user/2.wav", Label("navigate to user")),
+            ("call_number/slt/003.wav", Label("call number")),
+            ("none/call number.wav", Label(None)),
+            ("other speech/7.wav", Label(None)),
+            ("far_1/tea.wav", Label(None)),
+            ("noise-03.wav", Label(None)),
+            ("speech test/call number.wav", Label("call number")),
+            ("call nmber.wav", Label(None, named=False)),
+            ("017.wav", Label(None, named=False)),
+        ],
+    )
+    def test_say_what_was_said(
+        self, name: str, said: Label, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        assert Labels(book).of(tmp_path / name, tmp_path) == said
+
+    def test_the_folder_itself_may_be_an_intent_but_not_no_command(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        labels = Labels(book)
+        for folder, name, said in (
+            ("joke", "1.wav", Label("joke")),
+            ("speech", "call number.wav", Label("call number")),
+            ("noise", "1.wav", Label(None, named=False)),
+        ):
+            assert labels.of(tmp_path / folder / name, tmp_path / folder) == said
+
+    def test_of_another_activity_are_read_by_its_own_words(
+        self, lanterns: Activity, people: tuple[Person, ...], tmp_path: Path
+    ) -> None:
+        labels = Labels(Phrasebook(lanterns, people))
+        for behaviour in lanterns.behaviours.values():
+            for phrase in (behaviour.name, *behaviour.phrases):
+                file = tmp_path / f"{phrase.upper().replace(' ', '_')}-rms-001.wav"
+                assert labels.of(file, tmp_path).behaviour == behaviour.name
+
+
+class TestFolders:
+    def test_recordings_are_found_at_any_depth_and_the_rest_is_said(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        there = write(tmp_path / "a" / "b" / "joke.wav")
+        write(tmp_path / "rejected" / "20260101T101112-1.wav")
+        write(tmp_path / ".hidden" / "joke.wav")
+        (tmp_path / "again.wav").symlink_to(there)
+        (tmp_path / "loop").symlink_to(tmp_path)
+        (tmp_path / "notes.txt").write_text("x")
+        found = Labels(book).find(tmp_path)
+        assert found.recordings == ((Path("a/b/joke.wav"), Label("joke")),)
+        assert {str(file): why for file, why in found.left_out} == {
+            "again.wav": "is a symbolic link",
+            "loop": "is a symbolic link",
+            "notes.txt": "is not a WAV file",
+            "rejected/20260101T101112-1.wav": "was not verified",
+        }
+
+    def test_without_recordings_are_refused_in_a_sentence(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        with pytest.raises(TangyError, match="there are no WAV files"):
+            Labels(book).find(tmp_path)
+        with pytest.raises(TangyError, match="there is no such folder"):
+            Labels(book).find(tmp_path / "none")
+
+
+class TestCounting:
+    SAID = {  # noqa: RUF012
+        "call number/1.wav": "call the next number",
+        "call number/2.wav": "tell a joke",
+        "call number/3.wav": "banana",
+        "call number/4.wav": "stop",
+        "joke.wav": "tell a joke",
+        "navigate_to_user-user2.wav": "go to user two",
+        "navigate_to_user-user3.wav": "go to user two",
+        "navigate_to_user.wav": "go to user two",
+        "stop.wav": "stop",
+        "none/1.wav": "i would like a cup of tea",
+        "none/2.wav": "tell a joke",
+        "none/3.wav": "stop",
+        "jke.wav": "tell a joke",
+    }
+
+    async def test_every_outcome_is_counted(self, book: Phrasebook, tmp_path: Path) -> None:
+        document = (await heard(tmp_path, book, self.SAID)).document()
+        assert document["files"] == 13
+        assert document["intents"]["call number"] == {
+            "said": 4, "right": 1, "offered": 0, "wrong": 2, "nothing": 1
+        }  # fmt: skip
+        assert document["intents"]["navigate to user user3"]["wrong"] == 1
+        assert document["intents"]["navigate to user user2"]["right"] == 1
+        assert document["intents"]["navigate to user"]["right"] == 1
+        assert document["accuracy"] == round(5 / 9, 4)
+        assert document["wrong"] == round(3 / 9, 4)
+        assert document["false_accepts"] == {"sure": 3, "offered": 0, "of": 4}
+        assert document["confusion"]["call number"] == {
+            "call number": 1, "joke": 1, "nothing": 1, "stop": 1
+        }  # fmt: skip
+        assert document["confusion"]["no command"] == {"joke": 2, "nothing": 1, "stop": 1}
+        assert sum(sum(row.values()) for row in document["confusion"].values()) == 13
+        assert len(document["rows"]) == 13
+
+    async def test_an_unsure_one_is_offered_or_wrong(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        unsure = "it was a joke for the group over there"
+        practice = await heard(
+            tmp_path, book, {"joke.wav": unsure, "celebrate.wav": unsure, "none.wav": unsure}
+        )
+        assert {row.tier for row in practice.rows} == {"unsure"}
+        by_file = {row.file: row.outcome for row in practice.rows}
+        assert by_file["joke.wav"] == "offered"
+        assert by_file["celebrate.wav"] == "wrong"
+        assert practice.false_accepts() == (0, 1)
+        assert practice.share("right", "offered") == 0.5
+
+    async def test_what_cannot_be_read_or_decoded_is_told_and_the_rest_goes_on(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        (tmp_path / "celebrate.wav").write_bytes(b"no sound at all")
+        practice = await heard(tmp_path, book, {"joke-1.wav": "tell a joke", "joke-2.wav": BROKEN})
+        assert [row.file for row in practice.rows] == ["joke-1.wav"]
+        assert dict(practice.left_out) == {
+            "celebrate.wav": "is not a WAV file", "joke-2.wav": "could not be decoded"
+        }  # fmt: skip
+
+    async def test_a_misspelt_name_is_seen(self, book: Phrasebook, tmp_path: Path) -> None:
+        practice = await heard(tmp_path, book, self.SAID)
+        assert unnamed(practice.rows) == ["jke.wav"]
+        assert "  jke.wav" in practice_lines(practice)
+
+    async def test_only_sounds_that_are_no_command_have_no_accuracy(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        practice = await heard(tmp_path, book, {"noise.wav": ""})
+        document = practice.document()
+        assert (document["accuracy"], document["intents"]) == (None, {})
+        assert practice_lines(practice)
+
+
+class TestReport:
+    async def test_fits_into_80_columns_however_much_there_is(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        said = {}
+        for number, phrase in enumerate(book.spoken()):
+            said[f"{'x' * 60}/{phrase}-{number:03}.wav"] = phrase
+            said[f"\x1b[2J{'y' * 90}{number:03}.wav"] = phrase
+        lines = practice_lines(await heard(tmp_path, book, said))
+        assert max(map(len, lines)) <= 80
+        assert not any("\x1b" in line for line in lines)
+        assert "  and " in lines[-1]
+
+    async def test_every_column_of_the_matrix_is_explained(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        practice = await heard(tmp_path, book, {"joke.wav": "call number", "none.wav": ""})
+        lines = practice_lines(practice)
+        assert any(line.split()[:1] == ["a"] and "call number" in line for line in lines)
+        assert any(line.strip().startswith("joke") for line in lines)
