@@ -1,0 +1,283 @@
+"""A microphone check chooses settings that part commands from the rest, and is shy of odd ones."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.sound.source import Chunks, Recording, Source
+from tangy_hw.sound.wav import RATE, SoundError
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.lexicon import Lexicon
+from tangy_tui.learning.speech.calibration import (
+    SHIFTS,
+    SURELY,
+    WEIGHTS,
+    Asked,
+    Chosen,
+    Figures,
+    Score,
+    choose,
+    forget,
+    keep,
+    microphone,
+    settings_for,
+)
+from tangy_tui.learning.speech.checking import Checked, MicrophoneCheck, to_say
+from tangy_tui.learning.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.learning.speech.labels import Label
+
+COMMAND, OTHER = Asked("call number", Label("call number")), Asked("tea", None)
+
+
+def scores(commands: list[float], others: list[float]) -> list[Score]:
+    """Commands that are understood right with these scores, and other sentences."""
+    said = [Score(told, COMMAND, True) for told in commands]
+    return said + [Score(told, OTHER, False) for told in others]
+
+
+def everywhere(graded: list[Score]) -> dict[float, list[Score]]:
+    return dict.fromkeys(WEIGHTS, graded)
+
+
+class TestChoosing:
+    def test_nothing_changes_where_the_usual_settings_part_all(self) -> None:
+        chosen = choose(everywhere(scores([3.5, 3.0, 2.5], [-6, -4, -3])))
+        assert chosen.settings == USUAL
+        assert chosen.figures == chosen.usual == Figures(3, 3, 0, 3, 0)
+        assert chosen.figures.perfect
+
+    def test_a_shy_voice_is_met_half_way(self) -> None:
+        chosen = choose(everywhere(scores([0.5, 0.4, 0.6, 0.3, 0.5, 0.4], [-6, -6, -6])))
+        assert chosen.usual == Figures(6, 0, 6, 3, 0)
+        assert chosen.settings.shift < 0
+        assert chosen.figures == Figures(6, 6, 0, 3, 0)
+
+    def test_other_speech_that_sounds_like_commands_makes_it_stricter(self) -> None:
+        chosen = choose(everywhere(scores([4.0] * 6, [0.2, 0.0, -0.4])))
+        assert chosen.usual.taken == 3
+        assert chosen.settings.shift > 0
+        assert chosen.figures.taken < 3
+        assert chosen.figures.understood == 6
+
+    def test_the_weight_with_which_more_is_understood_is_taken(self) -> None:
+        lost = [*scores([3.5] * 3, [-6] * 3), *[Score(-6.0, COMMAND, False)] * 3]
+        chosen = choose(everywhere(lost) | {0.1: scores([3.5] * 6, [-6] * 3)})
+        assert chosen.settings.garbage == 0.1
+        assert (chosen.usual.understood, chosen.figures.understood) == (3, 6)
+
+    def test_what_no_setting_parts_is_no_good(self) -> None:
+        nothing = [Score(-6.0, COMMAND, False)] * 6 + scores([], [-6.0] * 3)
+        chosen = choose(everywhere(nothing))
+        assert not chosen.figures.parted
+        assert abs(chosen.settings.shift) <= 0.5
+        mixed = choose(everywhere(scores([1.0, 1.0, -6.0], [1.0, 1.0, 1.0])))
+        assert not mixed.figures.parted
+
+    @given(
+        st.lists(st.tuples(st.floats(-6, 6), st.booleans()), min_size=1, max_size=9),
+        st.lists(st.floats(-6, 6), max_size=4),
+    )
+    def test_settings_stay_within_bounds_and_never_understand_less_for_nothing(
+        self, said: list[tuple[float, bool]], others: list[float]
+    ) -> None:
+        graded = [Score(told, COMMAND, right) for told, right in said] + scores([], others)
+        chosen = choose(everywhere(graded))
+        assert chosen.settings.garbage in WEIGHTS
+        assert SHIFTS[0] <= chosen.settings.shift <= SHIFTS[-1]
+        was, now = chosen.usual, chosen.figures
+        assert (now.understood + now.offered, -now.taken) >= (0, -len(others))
+        if was.understood > now.understood:
+            assert now.taken < was.taken or chosen.settings.shift > 0
+        if was.perfect and all(told >= SURELY + 0.6 for told, _ in said):
+            assert now.perfect
+
+
+class TestStore:
+    CHOSEN = Chosen(Settings("tiers", 0.9, -0.5), Figures(6, 6, 0, 3, 0), Figures(6, 4, 1, 3, 1))
+
+    def test_settings_are_kept_for_each_microphone(self, store: Store) -> None:
+        keep(store, "arecord", self.CHOSEN)
+        assert settings_for(store, "arecord") == Settings("tiers", 0.9, -0.5)
+        assert settings_for(store, "arecord", "paper") == Settings("paper", 0.9, -0.5)
+        assert settings_for(store, "socket") == settings_for(store, None) == USUAL
+
+    def test_the_last_check_counts_and_can_be_forgotten(self, store: Store) -> None:
+        keep(store, "socket", self.CHOSEN)
+        keep(store, "socket", Chosen(USUAL, Figures(6, 6, 0, 3, 0), Figures(6, 6, 0, 3, 0)))
+        assert settings_for(store, "socket") == USUAL
+        keep(store, "socket", self.CHOSEN)
+        assert forget(store, "socket")
+        assert settings_for(store, "socket") == USUAL
+        assert not forget(store, "socket")
+
+    def test_an_unknown_mode_is_refused(self, store: Store) -> None:
+        with pytest.raises(TangyError, match="tiers"):
+            settings_for(store, None, "teirs")
+
+    def test_no_path_is_written_down(self, store: Store) -> None:
+        for source in ("/home/rosa/voice.wav", "socket:/home/rosa/mic"):
+            keep(store, source, self.CHOSEN)
+            assert settings_for(store, source) == self.CHOSEN.settings
+        assert "rosa" not in json.dumps([event.body for event in store.events()])
+        assert microphone("arecord:plughw:1") == "arecord:plughw:1"
+
+    @pytest.mark.parametrize(
+        "written", [None, 3, {}, {"garbage": "x", "shift": 0}, {"garbage": 0.0, "shift": 0.0},
+                    {"garbage": 0.4, "shift": 9}, {"garbage": float(10**9), "shift": 0}]
+    )  # fmt: skip
+    def test_odd_settings_in_the_log_are_as_good_as_none(
+        self, written: object, store: Store
+    ) -> None:
+        store.append("microphone checked", {"source": "arecord", "settings": written})
+        assert settings_for(store, "arecord") == USUAL
+
+
+class Hears:
+    """A recogniser: an utterance of n samples is the n-th text; zeros are no voice."""
+
+    def __init__(self, texts: list[str]) -> None:
+        self.texts = texts
+        self.said = b""
+        self.speaking: Callable[[], None] = lambda: None
+        self.weights: list[float] = []
+
+    async def start(self, wanted: Wanted) -> None:
+        self.weights.append(wanted.settings.garbage)
+
+    async def hear(
+        self,
+        sound: asyncio.Queue[bytes],
+        expecting: Expecting = "commands",
+        *,
+        endpoint: bool = False,
+    ) -> Evidence:
+        while chunk := await sound.get():
+            if any(chunk):
+                self.speaking()
+                self.said = chunk
+                return Evidence(seconds=1.0)
+        return Evidence()
+
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+        return Evidence(self.texts[pcm[0] - 1], "", 0.5, 1.0, 1.0)
+
+    async def pieces(self, pcm: bytes) -> list[bytes]:
+        return [pcm[place : place + 2] for place in range(0, len(pcm), 2)]
+
+
+class Microphone(Source):
+    """A microphone that is quiet for 3 s, and then says the next thing whenever it is asked."""
+
+    def __init__(self, said: list[int | None]) -> None:
+        super().__init__("microphone", live=True)
+        self.said = said
+        self.asked = asyncio.Event()
+
+    def told(self, sentence: str) -> None:
+        if sentence[0].isdigit() or sentence.startswith("I heard nothing"):
+            self.asked.set()
+
+    async def _sound(self) -> Chunks:
+        yield bytes(2 * 3 * RATE)
+        for number in self.said:
+            await self.asked.wait()
+            self.asked.clear()
+            await asyncio.sleep(0)
+            yield bytes(2 * 7 * RATE) if number is None else bytes([number, 0]) * 4000
+        await asyncio.Event().wait()
+
+
+@pytest.fixture
+def asked(activity: Activity, people: tuple[Person, ...]) -> list[Asked]:
+    book = Phrasebook(activity, people)
+    return to_say(book, Lexicon(book))
+
+
+class TestChecking:
+    def test_what_is_said_spans_the_behaviours(
+        self, activity: Activity, lanterns: Activity, people: tuple[Person, ...]
+    ) -> None:
+        for one in (activity, lanterns):
+            book = Phrasebook(one, people)
+            said = to_say(book, Lexicon(book))
+            commands = [a for a in said if a.meant]
+            others = [a for a in said if not a.meant]
+            assert len({a.meant.behaviour for a in commands if a.meant}) == min(
+                6, len(one.behaviours)
+            )
+            assert len(others) == 3
+            for a in commands:
+                command = book.understand(a.text)
+                assert command is not None and a.meant is not None
+                assert command.behaviour == a.meant.behaviour
+            assert not any(book.understand(a.text) for a in others)
+
+    async def test_a_recording_is_taken_in_order(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        pcm = b"".join(bytes([number, 0]) for number in range(1, len(asked) + 1))
+        checked = await self.check(Recording("a.wav", pcm), activity, people, asked)
+        assert checked.parted
+        assert checked.chosen.figures.perfect
+        assert [words for _, words in checked.heard] == [a.text for a in asked]
+
+    async def test_a_live_one_is_asked_again_once(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        microphone = Microphone([1, None, 2, *range(3, len(asked) + 1)])
+        told: list[str] = []
+        checked = await self.check(microphone, activity, people, asked, told)
+        assert checked.chosen.figures.perfect
+        again = [line for line in told if line.startswith("I heard nothing")]
+        assert again == [f"I heard nothing. Please say it again: {asked[1].text}"]
+        assert told[0] == "Please be quiet for 3 seconds."
+
+    async def test_what_is_not_said_at_all_counts_as_not_understood(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        checked = await self.check(Recording("a.wav", b"\1\0\2\0"), activity, people, asked)
+        assert checked.chosen.figures == Figures(6, 2, 0, 0, 0)
+        assert not checked.parted
+        assert checked.advice
+
+    async def test_silence_changes_nothing(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        with pytest.raises(SoundError, match="nobody was heard"):
+            await self.check(Recording("a.wav", b""), activity, people, asked)
+
+    @staticmethod
+    async def check(
+        source: Source,
+        activity: Activity,
+        people: tuple[Person, ...],
+        asked: list[Asked],
+        told: list[str] | None = None,
+    ) -> Checked:
+        def tell(sentence: str) -> None:
+            if told is not None:
+                told.append(sentence)
+            if isinstance(source, Microphone):
+                source.told(sentence)
+
+        book = Phrasebook(activity, people)
+        hears = Hears([a.text for a in asked])
+        async with asyncio.timeout(20):
+            return await MicrophoneCheck(source, book, hears, asked, tell).run()
+
+
+def test_reading_makes_no_data_folder(tmp_path: Path) -> None:
+    with Store.open(tmp_path / "none", write=False) as empty:
+        assert settings_for(empty, "arecord") == USUAL
+    assert not (tmp_path / "none").exists()
