@@ -77,6 +77,7 @@ class Hearing:
         self._watching: list[Callable[[], None]] = []
         self._kept: deque[Say] = deque()
         self._understood: Phrasebook | None = None
+        self._failed = ""
         ears.changed = self._changed
         ears.tell = self.tell
 
@@ -108,6 +109,8 @@ class Hearing:
     def attend(self, listener: Listener) -> None:
         """Give what is heard to a listener from now on."""
         self._listeners.append(listener)
+        if self._failed:
+            listener.told(self._failed, "bad")
         self.understand()
         self.look()
 
@@ -183,7 +186,8 @@ class Hearing:
                     break
                 self._take(heard)
         except TangyError as error:
-            self.tell(str(error), "bad")
+            self._failed = str(error)
+            self.tell(self._failed, "bad")
         finally:
             await self.ears.close()
 
@@ -194,7 +198,7 @@ class Hearing:
                 self._stop()
             case Reply(yes):
                 self._answer(yes)
-            case Say():
+            case Say() if self._listeners:
                 self._kept.append(heard)
                 self.look()
 

@@ -23,6 +23,7 @@ from tangy_tui.learning.explaining import Why
 from tangy_tui.learning.verifying import (
     Asked,
     NotUnderstood,
+    Offered,
     Refused,
     Rejected,
     Reply,
@@ -34,12 +35,13 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.question import QuestionDialog
+from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.fresh_keys import SETTLE_SECONDS
+from tangy_tui.ui.hearing import hearing_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.reasons import why_of
 from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
-from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.wording import ALL_RIGHT, counted, state_words
 
 ResultT = TypeVar("ResultT")
@@ -50,6 +52,8 @@ HELD = "Tangy was stopped: press p to go on first, then answer."
 KEYS = "w why   : answer   p {}   esc give the game up"
 ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
 """The keys that count while the line does not have them."""
+TALK = "t talk   "
+"""What stands before them where a key is pushed to talk."""
 
 
 class Instead(Enum):
@@ -104,7 +108,8 @@ async def learn_answer(
 class AskingPanel(Vertical):
     """What Tangy asks and why, and the line to answer in; `answer()` waits for the answer.
 
-    While the robot is stopped it is `held`: commands are given back.
+    It listens through the ears of the program, if there are any; an answer that is spoken is
+    verified as one that is typed. While the robot is stopped it is `held`: commands are given back.
     """
 
     DEFAULT_CSS = """
@@ -133,6 +138,9 @@ class AskingPanel(Vertical):
         self._answer = asyncio.get_running_loop().create_future()
         self._dialog: Dialog[Any] | None = None
         self._held = False
+        self._open = False  # for an answer: the line is seen, and no question waits for its own
+        self._by_voice = False  # the present command was spoken
+        self._hearing = hearing_of(self.app)
         self._before = clean(before)
         self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"
@@ -151,15 +159,34 @@ class AskingPanel(Vertical):
         )
 
     def on_mount(self) -> None:
-        """Take the keys, but none that was typed before the question could be seen."""
-        line = self.query_one(CommandInput)
-        line.closed = True
-        line.focus()
-        self.set_timer(SETTLE_SECONDS, self._open)
+        """Take the keys, but none that was typed before the question could be seen.
+
+        Where a key is pushed to talk, the screen keeps them.
+        """
+        self.query_one(CommandInput).closed = True
+        self._take_keys()
+        self.set_timer(SETTLE_SECONDS, self._ready)
+        if self._hearing is not None:
+            self._hearing.attend(self)
+
+    def on_unmount(self) -> None:
+        """Hear no more here."""
+        if self._hearing is not None:
+            self._hearing.leave(self)
+
+    @property
+    def _by_key(self) -> bool:
+        return self._hearing is not None and self._hearing.by_key
 
     @property
     def _keys(self) -> str:
-        return ACCEPTING_KEYS if self._acceptable else KEYS
+        return (TALK if self._by_key else "") + (ACCEPTING_KEYS if self._acceptable else KEYS)
+
+    def _take_keys(self) -> None:
+        if self._by_key:
+            self.screen.set_focus(None)
+        else:
+            self.query_one(CommandBar).focus_input()
 
     async def answer(self) -> Verified | Instead:
         """Wait for an answer that was verified, or for what came in its place."""
@@ -227,11 +254,12 @@ class AskingPanel(Vertical):
             self.say(HELD)
         else:
             self.say("")
-            self.query_one(CommandBar).focus_input()
+            self._take_keys()
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         """Put a typed answer to Tangy."""
         event.stop()
+        self._by_voice = False
         bar = self.query_one(CommandBar)
         match event.text.lower():
             case "why":
@@ -246,6 +274,9 @@ class AskingPanel(Vertical):
             case "stop":
                 bar.ready()
                 self.app.run_worker(self.run_action("app.stop"))
+            case "phrases" | "voice" as word:
+                bar.ready()
+                self.app.run_worker(self.run_action(f"app.{word}"))
             case words if words.strip(" .!") in ALL_RIGHT and self._acceptable:
                 bar.ready()
                 self.accept()
@@ -256,7 +287,8 @@ class AskingPanel(Vertical):
 
     def _tell(self, said: Verification) -> None:
         match said:
-            case Asked():
+            case Asked() | Offered():
+                self._be_open(False)
                 self.screen.run_worker(self._verify(said), name="question", group="question")
             case NotUnderstood(heard, suggestions):
                 near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
@@ -267,32 +299,61 @@ class AskingPanel(Vertical):
                 self._return(heard, reason)
             case Verified():
                 self._settle(said)
+        if not isinstance(said, Asked | Offered):
+            self._be_open(True)
 
-    async def _verify(self, asked: Asked) -> None:
+    async def _verify(self, asked: Asked | Offered) -> None:
         """Put the question, and take its answer when its dialog has gone."""
-        behaviours = self._house.activity.behaviours
-        sure = asked.confidence >= 1
-        dialog = QuestionDialog(
-            asked.question,
-            heard="" if sure else asked.heard,
-            confidence=None if sure else asked.confidence,
-            alternatives=[behaviours[name].question for name in asked.alternatives],
-        )
+        dialog = dialog_for(asked, self._hearing.aloud if self._hearing is not None else "")
         answer = await self._put(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
         if self._answer.done():
             return
-        chosen = None if answer.alternative is None else answer.alternative + 1
-        self._tell(self._verifier.reply(Reply(answer.yes and not self._held, chosen)))
+        reply = Reply(answer.yes and not self._held, answer.reply.alternative)
+        self._tell(self._verifier.reply(reply))
 
     def _return(self, heard: str, sentence: str) -> None:
         """Give a command back with what is to be said of it."""
         self.say(sentence)
         self.screen.query_one(LogView).write(sentence, "warn")
-        self.query_one(CommandBar).restore(heard)
+        bar = self.query_one(CommandBar)
+        if not (self._by_voice and bar.typing):
+            bar.restore(heard, focus=not self._by_voice)
         if self._held:
             self.screen.set_focus(None)
+
+    # ------------------------------------------------------------------------------- hearing
+
+    @property
+    def listens(self) -> bool:
+        """Whether a spoken answer could be taken now."""
+        free = self._open and self._dialog is None and not self._answer.done()
+        return free and self.screen.is_active
+
+    @property
+    def spoken(self) -> Phrasebook:
+        """What can be said."""
+        return self._phrasebook
+
+    def hear(self, said: Say) -> None:
+        """Put a spoken answer to Tangy."""
+        self._by_voice = True
+        if self._held:
+            self._return(said.text, HELD)
+        else:
+            self._tell(self._verifier.say(said))
+
+    def told(self, sentence: str, kind: Kind) -> None:
+        """Say something about hearing, under the question and in the log."""
+        self.say(sentence)
+        self.screen.query_one(LogView).write(sentence, kind)
+
+    def _be_open(self, is_open: bool) -> None:
+        """Take note whether an answer can be taken; what was said meanwhile comes next."""
+        self._open = is_open
+        if self._hearing is not None:
+            self._hearing.look()
 
     def say(self, sentence: str) -> None:
         """Say a sentence under the question, in the place of the last one."""
@@ -305,8 +366,9 @@ class AskingPanel(Vertical):
         for bar in self.query(AnswerBar):
             bar.rest(self._keys.format("pause" if going else "go on"))
 
-    def _open(self) -> None:
+    def _ready(self) -> None:
         self.query_one(CommandBar).ready()
+        self._be_open(True)
 
     def _asks(self) -> str:
         """Write why Tangy asks; where answers were given, which."""

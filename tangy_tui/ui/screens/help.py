@@ -44,6 +44,8 @@ def help_for(screen: Screen[Any]) -> Help:
         if binding.description and binding.show and _works(screen, binding.action):
             keys = everywhere if active.node is screen.app else here
             keys.setdefault(binding.description, screen.app.get_key_display(binding))
+    if _has_phrases(screen):
+        here.setdefault("All that can be said or typed", "p")
     title = str(screen.TITLE or "Tangy")
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"
@@ -63,6 +65,11 @@ def _works(screen: Screen[Any], action: str) -> bool:
     return True
 
 
+def _has_phrases(screen: Screen[Any]) -> bool:
+    """Say whether there is a page of what can be said on a screen."""
+    return bool(screen.query("#command-input")) and hasattr(screen.app, "action_phrases")
+
+
 def _pairs(keys: dict[str, str]) -> Keys:
     return tuple((key, does) for does, key in keys.items())
 
@@ -76,6 +83,7 @@ class HelpScreen(Dialog[None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,enter,question_mark,f1", "close", "Close", show=False),
+        Binding("p", "phrases", "All that can be said", show=False),
     ]
 
     def __init__(self, help: Help) -> None:
@@ -96,6 +104,14 @@ class HelpScreen(Dialog[None]):
     def action_close(self) -> None:
         """Go back."""
         self.answer(None)
+
+    async def action_phrases(self) -> None:
+        """Go on to all that can be said, where commands are given."""
+        app = self.app
+        below = [screen for screen in app.screen_stack if screen is not self]
+        if below and _has_phrases(below[-1]):
+            self.answer(None)
+            app.call_next(app.run_action, "app.phrases")
 
     def on_click(self, event: events.Click) -> None:
         """Close when something else is clicked on."""

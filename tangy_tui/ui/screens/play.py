@@ -10,9 +10,8 @@ from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
-from tangy_tui.interaction.facilitation import GameEnded, Unsure
+from tangy_tui.interaction.facilitation import GameEnded
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.learning.verifying import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -20,24 +19,22 @@ from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
-from tangy_tui.ui.screens.asking import AskingPanel, Instead, learn_answer
+from tangy_tui.ui.screens.play_asking import PlayAsking
 from tangy_tui.ui.screens.play_keys import (
     ASKS_FIRST,
-    NOT_ACCEPTABLE,
     NOT_IN_THE_DEMO,
     STOPPED_FIRST,
     TRIES_AGAIN,
     faster,
     keys,
 )
-from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 
 
-class PlayScreen(PlayPanels):
+class PlayScreen(PlayAsking):
     """Games by the learnt policy, watched at any speed. Dismissed with what they added up to."""
 
     CSS_PATH = "play.tcss"
@@ -64,8 +61,7 @@ class PlayScreen(PlayPanels):
             leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
         """
-        self._teacher = teacher or teacher_name()
-        super().__init__(house, supervision, self._teacher)
+        super().__init__(house, supervision, teacher or teacher_name())
         self._games = games
         self._speed = speed
         self._leave_after = leave_after
@@ -76,15 +72,14 @@ class PlayScreen(PlayPanels):
         self._skipping = False
         self._single = False
         self._left = 0.0  # s of a drive that STOP or a fault broke off
-        self._stopped = False
         self._halted = False
-        self._learning = False
         self._leaving = False
 
     def on_mount(self) -> None:
         """Show what is known, and begin."""
         self._picture.begin()
         self._faults.begin()
+        self._voice.begin(self.app)
         self.action_panel("transcript")
         self.run_worker(self._play(), name="game", exclusive=True)
 
@@ -125,6 +120,7 @@ class PlayScreen(PlayPanels):
         if self._refused() or self._supervision.over:
             return
         self._skipping = True
+        self._voice.hush()
         self._going.set()
         self._nudge.set()
 
@@ -184,11 +180,13 @@ class PlayScreen(PlayPanels):
     def on_unmount(self) -> None:
         """End a game whose program is being left."""
         self._end_game()
+        self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
         self._skipping = False
         self._stopped = True
+        self._voice.hush()
         self._going.clear()
         self._nudge.set()
         self._write("STOP. Press p to go on.", "bad")
@@ -242,6 +240,9 @@ class PlayScreen(PlayPanels):
                 continue
             if self._left and not self._skipping and not self._single:
                 await self._wait(self._left)  # it walks on to where it was going
+                continue
+            alone = self._skipping or self._single
+            if not alone and not await self._voice.heard(self._speed, self._nudge):
                 continue
             if self._single:
                 self._single = False
@@ -305,6 +306,8 @@ class PlayScreen(PlayPanels):
         if self._faults.urgent(events):
             self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
+        if not self._skipping:
+            self._voice.tell(events, self._speed if self._going.is_set() else 0)
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
                 self._halted = True
@@ -318,48 +321,7 @@ class PlayScreen(PlayPanels):
             text = f"{reason}\n{then}"
             await self.app.push_screen_wait(MessageDialog(text, title="The game stopped"))
 
-    # -------------------------------------------------------------------------------- asking
-
-    async def _ask(self, question: Unsure) -> None:
-        """Wait for the teacher's answer, learn it beside the screen, and go on."""
-        self.minimize()
-        self.app.clear_notifications()  # they would lie over the question
-        learnt, self._picture.lesson = self._picture.lesson, ""
-        asking = AskingPanel(self._house, self._supervision, question, learnt)
-        self.add_class("-asking")
-        await self.mount(asking, before="#keys")
-        if self._stopped:
-            asking.hold(True)
-        self._show_status()
-        try:
-            answer = await asking.answer()
-        finally:
-            self.remove_class("-asking")
-            with suppress(Exception):  # the screen may be going as well
-                await asking.remove()
-        match answer:
-            case Instead.WITHDRAWN:
-                pass
-            case Instead.GIVE_UP:
-                self._tell(self._supervision.give_up(), True)
-            case Instead.ACCEPT:
-                self._tell(self._supervision.accept(self._teacher))
-            case Verified():
-                self._tell(await self._learn(answer))
-
-    async def _learn(self, answer: Verified) -> list[Event]:
-        """Act on an answer and learn from it; nothing else is done or looked at meanwhile."""
-        self._learning = self._faults.busy = True
-        self._show_status()
-        try:
-            return await learn_answer(self, self._supervision, answer, self._teacher)
-        finally:
-            self._learning = self._faults.busy = False
-
-    def action_accept(self) -> None:
-        """Say that what Tangy asks about is all right."""
-        if (asking := self._asking) is None or not asking.accept():
-            self._tell_now(NOT_ACCEPTABLE, "dim")
+    # -------------------------------------------------------------------------------- status
 
     def action_inject(self) -> None:
         """Bring about a fault in the simulated room, or lift one."""
@@ -367,8 +329,6 @@ class PlayScreen(PlayPanels):
             self._tell_now(NOT_IN_THE_DEMO, "warn")
         else:
             super().action_inject()
-
-    # -------------------------------------------------------------------------------- status
 
     def _show_status(self) -> None:
         asking = self._asking

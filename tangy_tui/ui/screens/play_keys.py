@@ -49,11 +49,14 @@ HELP = (
     "what, what Tangy does about it and what it asks for; a says that you have seen it and takes "
     "the line away, 6 shows all faults of this "
     "game, and Enter there what to do. When it is critical Tangy stands still until you clear it. "
-    "f brings about a fault in the simulated room."
+    "f brings about a fault in the simulated room. v lets Tangy speak, or be quiet: as fast as "
+    "in life (x1) every line is heard to its end, and in a faster game the next one cuts it. With "
+    "a microphone, t talks where Tangy asks, and stop, said at any time, stops the robot."
 )
 
 BINDINGS: list[BindingType] = [
     Binding("p", "pause", "Pause or go on"),
+    Binding("t", "talk", "Talk to Tangy, or end what you say"),
     Binding("n", "one_step", "One step"),
     Binding("greater_than_sign,full_stop", "speed(1)", "Faster", key_display=">"),
     Binding("less_than_sign,comma", "speed(-1)", "Slower", key_display="<"),

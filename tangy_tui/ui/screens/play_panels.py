@@ -15,6 +15,7 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
+from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
 from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.play_keys import keys
@@ -34,7 +35,7 @@ ON_THE_LEFT = ("log", "faults")
 class PlayPanels(TangyScreen[Tally]):
     """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
 
-    ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner"
+    ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
     def __init__(self, house: House, supervision: Supervision, who: str) -> None:
         """Make the panels; `who` answers, acknowledges and clears."""
@@ -67,6 +68,8 @@ class PlayPanels(TangyScreen[Tally]):
                 yield panel(Transcript(id="transcript"))
                 yield panel(PolicyTable())
                 yield panel(Posteriors())
+        if (hearing := hearing_of(self.app)) is not None:
+            yield HearingLine(hearing)
         yield KeyLine(*keys(going=True))
 
     def action_panel(self, name: str) -> None:
@@ -149,6 +152,15 @@ class PlayPanels(TangyScreen[Tally]):
             self._write(said, "dim")
         elif said:
             self._tell_now(said, "dim")
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave out the key to talk where nobody listens, or always."""
+        hearing = hearing_of(self.app)
+        return action != "talk" or (hearing is not None and hearing.by_key)
+
+    async def action_talk(self) -> None:
+        """Push to talk: begin, or end what is being said."""
+        await self.run_action("app.talk")
 
     @property
     def _asking(self) -> AskingPanel | None:

@@ -110,6 +110,8 @@ class TeachScreen(TangyScreen[bool]):
         hearing = hearing_of(self.app)
         if self._scripted is None and hearing is not None:
             self._listener.hearing = hearing
+            if hearing.by_key:
+                self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once
             yield HearingLine(hearing)
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
@@ -126,8 +128,6 @@ class TeachScreen(TangyScreen[bool]):
         if self._scripted is not None:
             self.query_one(CommandBar).disabled = True
             self.run_worker(self._follow_script(self._scripted), name="scripted teacher")
-        if self._listener.by_key:
-            self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once
         self._listener.attend()
 
     def on_unmount(self) -> None:
@@ -224,16 +224,16 @@ class TeachScreen(TangyScreen[bool]):
                 no="go on here",
             )
             if not await self._alone(dialog):
+                self._listener.open(True)
                 return
         self._apply(command)
 
     async def _alone(self, dialog: Screen[T]) -> T:
-        """Wait for an answer, and take no command meanwhile."""
+        """Wait for an answer; no command is taken before it has been acted upon."""
         self._listener.open(False)
         answer = await self.app.push_screen_wait(dialog)
         while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
             await asyncio.sleep(0)
-        self._listener.open(True)
         return answer
 
     def action_coverage(self) -> None:

@@ -251,8 +251,8 @@ class CommandBar(Vertical):
         super().__init__(id=id)
         self._complete = complete
         self._matches = Matches()
-        self._input = CommandInput(complete, placeholder)
         self._texts = (placeholder, resting or placeholder)
+        self._input = CommandInput(complete, self._texts[1])
         self._prompt = Static("> ", classes="prompt", markup=False)
         self._reopen: Timer | None = None
 

@@ -1,0 +1,79 @@
+"""What Tangy says in a game, spoken: heard to its end in life's pace, cut by the next in others."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from typing import Any
+
+from textual.app import App
+
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.monitoring.fault import Moved
+from tangy_tui.monitoring.supervision import Event
+from tangy_tui.ui.speaking import opening_lines, preference_of, speaker_of
+
+AS_IN_LIFE = 1.0
+"""The pace up to which a line is waited for, times life."""
+
+
+class GameVoice:
+    """Speaks the lines of a game."""
+
+    def __init__(self, house: House) -> None:
+        self._house = house
+        self._app: App[Any] | None = None
+        self._line: asyncio.Future[bool] | None = None
+
+    def begin(self, app: App[Any]) -> None:
+        """Make ready what is said in every game, beside the screen."""
+        self._app = app
+        speaker_of(app).prepare(opening_lines(self._house.activity))
+
+    def tell(self, events: Sequence[Event], pace: float) -> None:
+        """Speak what is said in these events.
+
+        Args:
+            pace: times life; 0 if they come one by one or all at once, as keys want them.
+        """
+        if self._app is None:
+            return
+        speaker = speaker_of(self._app)
+        for event in events:
+            if isinstance(event, Acted):
+                speech, person = event.speech, event.action.target
+            elif isinstance(event, Moved) and event.move.speech:
+                speech, person = event.move.speech, None
+            else:
+                continue
+            preference = preference_of(self._house, person)
+            if 0 < pace <= AS_IN_LIFE:
+                self._line = speaker.say(speech, preference)
+            else:
+                self._line = None
+                speaker.interject(speech, preference)
+
+    def hush(self) -> None:
+        """Say no more."""
+        self._line = None
+        if self._app is not None:
+            speaker_of(self._app).hush()
+
+    async def heard(self, pace: float, nudge: asyncio.Event) -> bool:
+        """Wait until the last line was heard, in life's pace; a nudge ends that.
+
+        Returns:
+            Whether there is nothing to wait for (any more).
+        """
+        line = self._line
+        if line is None or line.done() or pace > AS_IN_LIFE:
+            return True
+        nudge.clear()
+        nudged: asyncio.Future[Any] = asyncio.ensure_future(nudge.wait())
+        either: set[asyncio.Future[Any]] = {line, nudged}
+        try:
+            await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            nudged.cancel()
+        return line.done() and not nudge.is_set()

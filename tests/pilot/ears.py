@@ -1,0 +1,164 @@
+"""Ears and a voice that hear and say what a test wants, when it wants it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+from tangy_profiles.voice import VoicePreference
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.speech.ears import Ears
+from tangy_tui.learning.verifying import Reply, Say, Stop
+
+
+@dataclass
+class FakeMeter:
+    """Shows the level it was given."""
+
+    level: float = 0.0
+
+
+class FakeEars:
+    """Stands in for `Ears`: a test says what is heard. As with those, an open question shuts out
+    commands, and answers are heard only if that is switched on.
+    """
+
+    def __init__(
+        self, *, live: bool = True, hands_free: bool = False, answers: bool = False
+    ) -> None:
+        self.live = live
+        self.hands_free = hands_free
+        self.answers = answers
+        self.state = "off" if live and not hands_free else "listening"
+        self.words = ""
+        self.trouble = ""
+        self.sound = b""
+        self.meter = FakeMeter()
+        self.tell: Callable[[str], None] = lambda sentence: None
+        self.changed: Callable[[], None] = lambda: None
+        self.asks = False
+        self.shuts = 0
+        self.closed = False
+        self.books: list[Phrasebook] = []
+        self.pulled = 0
+        self._coming: asyncio.Queue[Say | Stop | Reply | None] = asyncio.Queue()
+
+    @property
+    def ears(self) -> Ears:
+        """Itself, for those who want real ears."""
+        return cast(Ears, self)
+
+    def be(self, state: str, words: str = "", level: float = 0.0, trouble: str = "") -> None:
+        """Be in another state."""
+        self.state, self.words, self.trouble = state, words, trouble
+        self.meter.level = level
+        self.changed()
+
+    def talk(self) -> None:
+        """Begin to listen, or end it."""
+        if self.state in ("off", "listening"):
+            self.be("listening" if self.state == "off" else "thinking")
+
+    def shut(self) -> None:
+        """Hear nothing."""
+        self.shuts += 1
+        self.be("shut")
+
+    def open(self) -> None:
+        """Hear again."""
+        self.be("off" if self.live and not self.hands_free else "listening")
+
+    def asking(self, asks: bool) -> None:
+        """Take note that a question is open."""
+        self.asks = asks
+
+    def understand_by(self, phrasebook: Phrasebook) -> None:
+        """Take note of what can be said."""
+        self.books.append(phrasebook)
+
+    def hear(self, *heard: Say | Stop | Reply) -> None:
+        """Let this be heard, unless it cannot be because a question is open."""
+        for one in heard:
+            wanted = isinstance(one, Stop) or (self.answers if isinstance(one, Reply) else True)
+            if not self.live or wanted:
+                self._coming.put_nowait(one)
+
+    def say(self, words: str, *, sure: bool = True) -> Say:
+        """Make a command of words, as the decoder understands them."""
+        confidence = 0.83 if sure else 0.52
+        found = self.books[-1].choices(words) if self.books else ()
+        commands = tuple(replace(command, confidence=confidence) for command in found)
+        return Say(words, confidence, commands, sure)
+
+    def end(self) -> None:
+        """Let the source be over."""
+        self._coming.put_nowait(None)
+
+    def __aiter__(self) -> FakeEars:
+        return self
+
+    async def __anext__(self) -> Say | Stop | Reply:
+        self.pulled += 1
+        heard = await self._coming.get()
+        if heard is None:
+            self.be("over")
+            raise StopAsyncIteration
+        return heard
+
+    async def close(self) -> None:
+        """Take note."""
+        self.closed = True
+
+
+class FakeVoice:
+    """Stands in for `Voice`: a test says when a line was heard."""
+
+    def __init__(
+        self, begin: Callable[[], None], end: Callable[[], None], silent: str = ""
+    ) -> None:
+        self.lines: list[str] = []
+        self.preferences: list[VoicePreference | None] = []
+        self.prepared: tuple[str, ...] = ()
+        self.silent = silent
+        self.hushed = 0
+        self.closed = False
+        self._begin, self._end = begin, end
+        self._line: asyncio.Future[bool] | None = None
+
+    @property
+    def speaking(self) -> bool:
+        return self._line is not None
+
+    def say(
+        self, text: str, preference: VoicePreference | None = None, *, interrupt: bool = False
+    ) -> asyncio.Future[bool]:
+        assert not interrupt
+        assert self._line is None, "two lines at once"
+        self.lines.append(text)
+        self.preferences.append(preference)
+        self._line = asyncio.get_running_loop().create_future()
+        self._begin()
+        return self._line
+
+    def heard(self, to_the_end: bool = True) -> None:
+        """Let the line be heard."""
+        line, self._line = self._line, None
+        if line is not None:
+            line.set_result(to_the_end)
+            self._end()
+
+    def hush(self) -> None:
+        self.hushed += 1
+        self.heard(False)
+
+    async def quiet(self) -> None:
+        while self._line is not None:  # noqa: ASYNC110 - it is a test's
+            await asyncio.sleep(0)
+
+    def prerender(self, texts: Iterable[str], preference: VoicePreference | None = None) -> Any:
+        self.prepared = tuple(texts)
+
+    async def close(self) -> None:
+        self.closed = True

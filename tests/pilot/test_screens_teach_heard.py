@@ -1,0 +1,422 @@
+"""The teaching screen with ears: push-to-talk, three tiers, answers, and what stops the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from textual.app import App
+
+from tangy_tui.house import House
+from tangy_tui.learning.library import read_demonstrations
+from tangy_tui.learning.verifying import Reply, Stop
+from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.phrases import PhrasesScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
+from tangy_tui.ui.widgets.room_view import RoomView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import Run, StillClock, TangyPilot, screen_text
+from tests.pilot.ears import FakeEars
+
+UNSURE = "call a joke number"
+
+
+def teaching(house: House, ears: FakeEars) -> Program:
+    """Make the program with ears and the teaching screen open."""
+
+    async def start(started: Program) -> None:
+        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+
+    return Program(house, start, clock=StillClock(), ears=ears.ears)
+
+
+def line_of(pilot: TangyPilot) -> str:
+    """Return what the microphone's line says."""
+    return pilot.app.screen_stack[-1].query_one(MicrophoneLine).text
+
+
+def bar_of(pilot: TangyPilot) -> CommandBar:
+    """Return the bar of the teaching screen."""
+    return next(s for s in pilot.app.screen_stack if isinstance(s, TeachScreen)).query_one(
+        CommandBar
+    )
+
+
+def log_of(pilot: TangyPilot) -> str:
+    """Return what the log of the teaching screen says."""
+    screen = next(s for s in pilot.app.screen_stack if isinstance(s, TeachScreen))
+    return " ".join(screen.query_one(LogView).sentences)
+
+
+def steps(house: House) -> list[str]:
+    """Return the behaviours that the log has of the last demonstration."""
+    shown = read_demonstrations(house.store, house.activity.name)
+    return [s.behaviour for s in shown[-1].steps] if shown else []
+
+
+async def test_without_ears_there_is_no_line_and_no_key_to_talk(run: Run, house: House) -> None:
+    async def start(started: Program) -> None:
+        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+
+    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+        assert not pilot.app.screen.query(MicrophoneLine)
+        await pilot.press("escape", "t", "ctrl+t")
+        assert "talk" not in screen_text(pilot.app)
+
+
+async def test_t_talks_at_once_and_ends_it(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        assert "t talk" in line_of(pilot)
+        assert "t talk" in pilot.lines()[-1]  # the bar is at rest, and says so
+        await pilot.press("t")
+        assert ears.state == "listening"
+        assert "listening ..." in line_of(pilot)
+        await pilot.press("t")
+        assert "thinking ..." in line_of(pilot)
+
+
+async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        await pilot.press("colon", "t")
+        await pilot.pause()
+        assert bar_of(pilot).text == "t"
+        assert ears.state == "off"
+        assert "ctrl+t talk" in line_of(pilot)
+        await pilot.press("ctrl+t")
+        assert ears.state == "listening"
+        assert bar_of(pilot).text == "t"
+
+
+@pytest.mark.parametrize("ears", [FakeEars(hands_free=True), FakeEars(live=False)])
+async def test_where_no_key_is_pushed_the_bar_has_the_keys(
+    run: Run, house: House, ears: FakeEars
+) -> None:
+    async with run(app=teaching(house, ears)) as pilot:
+        await pilot.press("t")
+        assert bar_of(pilot).text == "t"
+        await pilot.press("ctrl+t")
+        assert "key is needed" in log_of(pilot)
+
+
+async def test_sure_words_are_asked_about_and_become_a_step(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert "Heard       greet everyone" in screen_text(pilot.app)
+        assert ears.asks
+        await pilot.press("y")
+        await pilot.pause()
+        assert steps(house) == ["greeting"]
+        assert not ears.asks
+
+
+async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
+    run: Run, house: House
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+        assert "Did you mean" in screen_text(pilot.app)
+        await pilot.press("y", "enter", "space")  # none of them says which
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+        await pilot.press("1")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert steps(house) == []
+        await pilot.press("y")
+        await pilot.pause()
+        assert len(steps(house)) == 1
+
+
+@pytest.mark.parametrize("key", ["n", "N", "escape"])
+async def test_none_of_the_choices_gives_the_words_back_and_leaves_the_keys(
+    run: Run, house: House, key: str
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        await pilot.press(key)
+        await pilot.pause()
+        assert bar_of(pilot).text == UNSURE
+        await pilot.press("t")  # is still a key
+        assert ears.state == "listening"
+        assert steps(house) == []
+
+
+async def test_keys_typed_before_the_choices_were_seen_choose_nothing(
+    run: Run, house: House
+) -> None:
+    ears = FakeEars()
+    app = teaching(house, ears)
+    app.clock = StillClock(1e9)
+    async with run(app=app) as pilot:
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        await pilot.press("1", "n", "escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+
+
+async def test_words_that_are_nothing_are_said_and_put_into_the_bar(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("the weather"))
+        await pilot.pause()
+        assert "I do not know what 'the weather' means" in log_of(pilot)
+        assert bar_of(pilot).text == "the weather"
+
+
+async def test_what_is_heard_overwrites_nothing_that_is_being_typed(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        await pilot.press(*"call")
+        ears.hear(ears.say("the weather"))
+        await pilot.pause()
+        assert bar_of(pilot).text == "call"
+        assert "'the weather'" in log_of(pilot)
+
+
+async def test_stop_acts_at_once_also_while_a_question_is_open(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(Stop("stop tangy"))
+        await pilot.pause()
+        assert "STOP: the simulated robot stands still" in log_of(pilot)
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        ears.hear(Stop("stop"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert "Heard: stop." in log_of(pilot)
+        assert steps(house) == []
+        assert pilot.app.screen.query_one(RoomView).going is None
+
+
+async def test_yes_and_no_are_heard_when_that_is_switched_on(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        assert "Or say yes or no." in screen_text(pilot.app)
+        ears.hear(Reply(False))
+        await pilot.pause()
+        assert (steps(house), bar_of(pilot).text) == ([], "greet everyone")
+        assert "Heard: no." in log_of(pilot)
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert steps(house) == ["greeting"]
+        assert "Heard: yes." in log_of(pilot)
+
+
+async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+        assert "say which" in log_of(pilot)
+        ears.hear(Reply(False))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+
+
+async def test_a_yes_that_no_question_waits_for_does_nothing(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(Reply(True))
+        await pilot.press("f1")
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HelpScreen)
+        assert ears.asks
+        assert steps(house) == []
+
+
+async def test_what_was_said_while_a_question_was_open_comes_next(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("greet everyone"), ears.say("call number"))
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert pilot.app.screen.behaviour == "call number"
+        await pilot.press("y")
+        await pilot.pause()
+        assert steps(house) == ["greeting", "call number"]
+
+
+async def test_a_recording_is_listened_to_only_when_a_command_is_due(
+    run: Run, house: House
+) -> None:
+    ears = FakeEars(live=False)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("greet everyone"), ears.say("call number"))
+        await pilot.pause()
+        pulled = ears.pulled
+        for _ in range(4):
+            await pilot.pause(0.03)
+        assert ears.pulled == pulled
+        await pilot.press("y")
+        while not isinstance(pilot.app.screen, QuestionDialog):
+            await pilot.pause(0.02)
+        assert ears.pulled == pulled + 1
+        ears.end()
+        await pilot.press("n")
+        while "over" not in line_of(pilot) if pilot.app.screen.query(MicrophoneLine) else True:
+            await pilot.pause(0.02)
+        assert "the recording is over" in line_of(pilot)
+
+
+async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        line = pilot.app.screen.query_one(MicrophoneLine)
+        ears.be("speaking", "call a", 0.5)
+        line._tick()
+        assert "■■■■■■······" in line.text
+        assert line.text.endswith("call a")
+        ears.be("listening", "", 0.0, "No sound for 2 s: is the microphone plugged in?")
+        line._ticks = 0
+        line._tick()
+        assert "! No sound for 2 s" in line.text
+        ears.be("shut")
+        assert line.text.strip("○ ") == "shut while Tangy speaks"
+
+
+async def test_the_line_is_drawn_only_when_it_shows_something_else(
+    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        line = pilot.app.screen.query_one(MicrophoneLine)
+        drawn: list[int] = []
+        monkeypatch.setattr(line, "refresh", lambda *regions, **more: drawn.append(1))
+        assert line._timer is not None
+        assert not line._timer._active.is_set()  # no work while it is off
+        ears.be("speaking", "call", 0.5)
+        assert line._timer._active.is_set()
+        assert len(drawn) == 1
+        for words in ("call a", "call a num", "call a number"):
+            ears.be("speaking", words, 0.5)
+        assert len(drawn) == 1  # until the next tenth of a second
+        for _ in range(10):
+            line._tick()
+        assert len(drawn) == 2
+
+
+async def test_names_are_listened_for_as_they_are_said_now(run: Run, house: House) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears)) as pilot:
+        await pilot.press("colon", *"phrases", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PhrasesScreen)
+        assert ears.asks  # commands are not for this screen
+        house.pronounce(house.people[0], "Y UW Z ER, W AH N")
+        before = len(ears.books)
+        await pilot.app.workers.wait_for_complete(
+            [worker for worker in pilot.app.workers if worker.group == "read"]
+        )
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert len(ears.books) == before + 1
+        assert ears.books[-1].pronunciations() != ears.books[before - 1].pronunciations()
+
+
+async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(run: Run, house: House) -> None:
+    async with run(app=teaching(house, FakeEars())) as pilot:
+        await pilot.press("question_mark")
+        await pilot.pause()
+        assert "press t" in screen_text(pilot.app)
+        await pilot.press("p")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PhrasesScreen)
+
+
+async def test_the_ears_stay_with_the_program_and_end_with_it(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        await pilot.press("escape", "escape")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, HomeScreen)
+        await pilot.press("t")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, TeachScreen)
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        assert not ears.closed
+    assert ears.closed
+
+
+async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
+    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tangy_profiles.errors import TangyError
+
+    ears = FakeEars()
+
+    async def fail(self: FakeEars) -> None:
+        raise TangyError("The microphone is in use.")
+
+    monkeypatch.setattr(FakeEars, "__anext__", fail)
+    async with run(app=teaching(house, ears)) as pilot:
+        assert "The microphone is in use." in log_of(pilot)
+        await pilot.press("colon", *"greet everyone", "enter")
+        await pilot.pause()
+        await pilot.press("y")
+        await pilot.pause()
+        assert pilot.app.screen.query_one(Transcript).count == 1
+
+
+SIZES = pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["small", "large"])
+
+
+@SIZES
+@pytest.mark.parametrize("shows", ["words", "trouble", "choices", "others"])
+async def test_how_hearing_looks(
+    run: Run,
+    house: House,
+    size: tuple[int, int],
+    shows: str,
+    picture: Callable[[App[None]], None],
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears), size=size) as pilot:
+        line = pilot.app.screen.query_one(MicrophoneLine)
+        if shows == "words":
+            ears.be("speaking", "call the next", 0.6)
+        elif shows == "trouble":
+            trouble = "No sound for 2 s: is the microphone plugged in? It may be muted."
+            ears.be("listening", "", 0.0, trouble)
+        else:
+            ears.hear(
+                ears.say(
+                    "go to user two please" if shows == "others" else UNSURE, sure=shows == "others"
+                )
+            )
+        line._ticks = 0
+        line._tick()
+        await pilot.pause()
+        picture(pilot.app)
