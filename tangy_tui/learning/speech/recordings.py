@@ -21,7 +21,6 @@ from tangy_profiles.store import Store
 from tangy_tui.learning.speech.labels import REJECTED
 from tangy_tui.learning.teaching_events import Executed, TeachingEvent
 from tangy_tui.learning.verifying import NotUnderstood, Refused, Rejected, Reply, Say, Stop
-from tangy_tui.learning.words import words_of
 
 FOLDER = "recordings"  # in the data folder
 CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
@@ -156,7 +155,7 @@ class Recorder:
         if not pcm or not self._works:
             return
         try:
-            self._write(pcm, self.folder / "-".join(words_of(label)))
+            self._write(pcm, self.folder / re.sub(r"\W+", "-", label))
             self.kept += 1
         except OSError as error:
             self._works = False

@@ -1,0 +1,236 @@
+"""What is said while teaching is kept only with consent, under what was verified, and forgotten."""
+
+from __future__ import annotations
+
+import stat
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.sound.wav import read_wav
+from tangy_profiles.activity import Activity
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_sim.users import load_users
+from tangy_sim.world import SimulatedWorld
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.speech.labels import Labels
+from tangy_tui.learning.speech.recordings import (
+    FOLDER,
+    Recorder,
+    consent,
+    consent_question,
+    consented,
+    forget_recordings,
+)
+from tangy_tui.learning.verifying import Reply, Say, Stop
+
+SOUND = b"\1\0" * 8000
+NOON = datetime(2026, 1, 2, 12, 0, 0, tzinfo=UTC)
+
+
+@pytest.fixture
+def book(activity: Activity, people: tuple[Person, ...]) -> Phrasebook:
+    return Phrasebook(activity, people)
+
+
+@pytest.fixture
+def spoken(book: Phrasebook) -> Callable[[str], Say]:
+    """A text as it comes from the ears."""
+    return lambda text: Say(text, 0.9, book.choices(text))
+
+
+@pytest.fixture
+def recorder(tmp_path: Path) -> Recorder:
+    (tmp_path / "data").mkdir(exist_ok=True)
+    return Recorder(tmp_path / "data", "rosa", now=lambda: NOON)
+
+
+def kept(recorder: Recorder) -> list[str]:
+    if not recorder.folder.exists():
+        return []
+    files = (file for file in recorder.folder.rglob("*") if file.is_file())
+    return sorted(file.relative_to(recorder.folder).as_posix() for file in files)
+
+
+class TestConsent:
+    def test_is_asked_of_each_teacher_and_can_be_taken_back(self, store: Store) -> None:
+        assert not consented(store, "rosa")
+        consent(store, "rosa", True)
+        assert consented(store, "rosa")
+        assert not consented(store, "ben")
+        consent(store, "rosa", False)
+        assert not consented(store, "rosa")
+
+    def test_forgetting_takes_it_back_for_everybody(self, store: Store) -> None:
+        for teacher in ("rosa", "ben"):
+            consent(store, teacher, True)
+        forget_recordings(store)
+        assert not consented(store, "rosa")
+        assert not consented(store, "ben")
+        consent(store, "ben", True)
+        assert consented(store, "ben")
+
+    def test_the_question_says_where_they_lie_and_how_they_are_deleted(self, store: Store) -> None:
+        question = consent_question(store)
+        assert str(store.folder / FOLDER) in question
+        assert "tangy listen --forget-recordings" in question
+        assert question.count("?") == 1
+
+
+class TestKeeping:
+    def test_what_was_verified_is_kept_under_its_name(
+        self, recorder: Recorder, spoken: Callable[[str], Say], book: Phrasebook
+    ) -> None:
+        for text, behaviour, target in (
+            ("call the next number", "call number", None),
+            ("call number", "call number", None),
+            ("go to user two", "navigate to user", "user2"),
+            ("go to user", "navigate to user", "user3"),
+            ("encourage the player", "encourage", "user3"),
+        ):
+            recorder.heard(SOUND, spoken(text))
+            recorder.heard(b"", Reply(yes=True))
+            recorder.verified(behaviour, target)
+        assert kept(recorder) == [
+            "call-number/20260102T120000-1.wav",
+            "call-number/20260102T120000-2.wav",
+            "encourage/20260102T120000-1.wav",
+            "navigate-to-user-user2/20260102T120000-1.wav",
+            "navigate-to-user/20260102T120000-1.wav",
+        ]
+        found = Labels(book).find(recorder.folder)
+        assert [(label.behaviour, label.user) for _, label in found.recordings] == [
+            ("call number", None),
+            ("call number", None),
+            ("encourage", None),
+            ("navigate to user", None),
+            ("navigate to user", "user2"),
+        ]
+        assert recorder.kept == 5
+
+    def test_it_is_the_sound_that_was_heard_and_only_its_owner_reads_it(
+        self, recorder: Recorder, spoken: Callable[[str], Say]
+    ) -> None:
+        recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.verified("joke", None)
+        file = recorder.folder / kept(recorder)[0]
+        assert read_wav(file) == SOUND
+        assert stat.S_IMODE(file.stat().st_mode) == 0o600
+        for folder in (file.parent, recorder.folder):
+            assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+    def test_what_was_not_verified_is_no_label(
+        self, recorder: Recorder, spoken: Callable[[str], Say], book: Phrasebook
+    ) -> None:
+        recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.rejected()
+        recorder.heard(SOUND, Say("banana", 0.0, ()))
+        recorder.heard(SOUND, spoken("call number"))  # nobody answered about the one before
+        recorder.verified("call number", None)
+        assert [name.partition("/")[0] for name in kept(recorder)] == [
+            "call-number", "rejected", "rejected"
+        ]  # fmt: skip
+        found = Labels(book).find(recorder.folder)
+        assert len(found.recordings) == 1
+        assert len(found.left_out) == 2
+
+    def test_what_was_typed_is_never_the_label_of_what_was_said_before(
+        self, recorder: Recorder
+    ) -> None:
+        recorder.heard(SOUND, Say("banana", 0.0, ()))
+        recorder.heard(b"", Say("tell a joke"))
+        recorder.verified("joke", None)
+        assert [name.partition("/")[0] for name in kept(recorder)] == ["rejected"]
+
+    def test_what_stops_is_not_kept_nor_anything_twice(
+        self, recorder: Recorder, spoken: Callable[[str], Say]
+    ) -> None:
+        recorder.heard(SOUND, Stop("stop"))
+        recorder.verified("joke", None)
+        assert kept(recorder) == []
+        recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.verified("joke", None)
+        recorder.verified("joke", None)
+        recorder.rejected()
+        assert len(kept(recorder)) == 1
+
+    def test_a_full_disk_is_told_once_and_teaching_goes_on(
+        self, tmp_path: Path, spoken: Callable[[str], Say]
+    ) -> None:
+        told: list[str] = []
+        recorder = Recorder(tmp_path / "data", "rosa", tell=told.append)
+        recorder.folder.parent.mkdir()
+        recorder.folder.write_text("in the way")
+        for _ in range(2):
+            recorder.heard(SOUND, spoken("tell a joke"))
+            recorder.verified("joke", None)
+        assert len(told) == 1
+        assert told[0].startswith("Nothing more is recorded: ")
+        assert recorder.kept == 0
+
+    def test_a_session_of_teaching_can_be_followed(
+        self,
+        recorder: Recorder,
+        spoken: Callable[[str], Say],
+        activity: Activity,
+        people: tuple[Person, ...],
+        store: Store,
+    ) -> None:
+        teaching = Teaching(
+            activity,
+            people,
+            store,
+            lambda shown: SimulatedWorld(
+                activity, shown.people, seed=shown.seed, users=load_users().teaching()
+            ),
+            teacher="rosa",
+            seed=1,
+        )
+        teaching.begin()
+        for pcm, command in (
+            (SOUND, spoken("greet everyone")),
+            (b"", Reply(yes=True)),
+            (SOUND, spoken("tell a joke")),
+            (b"", Reply(yes=False)),
+            (SOUND, Say("banana", 0.0, ())),
+            (b"", Say("call number")),
+            (b"", Reply(yes=True)),
+        ):
+            recorder.heard(pcm, command)
+            recorder.follow(teaching.apply(command))
+        assert [name.partition("/")[0] for name in kept(recorder)] == [
+            "greeting", "rejected", "rejected"
+        ]  # fmt: skip
+
+
+class TestForgetting:
+    def test_deletes_what_was_recorded_and_nothing_else(
+        self, store: Store, spoken: Callable[[str], Say]
+    ) -> None:
+        recorder = Recorder(store.folder, "rosa", now=lambda: NOON)
+        for text, behaviour in (("tell a joke", "joke"), ("call number", "call number")):
+            recorder.heard(SOUND, spoken(text))
+            recorder.verified(behaviour, None)
+        own = recorder.folder / "joke" / "mine.wav"
+        own.write_bytes(b"RIFF")
+        assert forget_recordings(store) == (2, 1)
+        assert kept(recorder) == ["joke/mine.wav"]
+        own.unlink()
+        assert forget_recordings(store) == (0, 0)
+        assert not recorder.folder.exists()
+
+    def test_follows_no_link(self, store: Store, tmp_path: Path) -> None:
+        elsewhere = tmp_path / "elsewhere" / "joke"
+        elsewhere.mkdir(parents=True)
+        (elsewhere / "20260102T120000-1.wav").write_bytes(b"x")
+        (store.folder / FOLDER).symlink_to(elsewhere.parent)
+        assert forget_recordings(store) == (0, 0)
+        (store.folder / FOLDER).unlink()
+        (store.folder / FOLDER).mkdir()
+        (store.folder / FOLDER / "joke").symlink_to(elsewhere)
+        assert forget_recordings(store) == (0, 0)
+        assert list(elsewhere.iterdir())
