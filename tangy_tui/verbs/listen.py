@@ -30,8 +30,9 @@ def listen(
         typer.Option(metavar="DIR", help="Count it over all WAVs in DIR, named by what is said."),
     ] = None,
     mode: Annotated[
-        str, typer.Option(help="tiers, or paper: n-gram and keywords alone.")
-    ] = "tiers",
+        str | None,
+        typer.Option(help="tiers, or paper (n-gram and keywords); else as the activity has it."),
+    ] = None,
     mic: Annotated[
         str | None, typer.Option(metavar="SOURCE", help="Listen as it was checked for this one.")
     ] = None,
@@ -59,7 +60,7 @@ def listen(
         if forget_recordings:
             _forget(house, as_json)
             return
-        settings = settings_for(house.store, mic, mode)
+        settings = settings_for(house.store, mic, mode or house.activity.listening)
         phrasebook = Phrasebook(house.activity, house.people)
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
@@ -104,17 +105,19 @@ def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
 
 
 def _bench(folder: Path, phrasebook: Phrasebook, settings: Settings, as_json: bool) -> None:
+    from tangy_tui.learning.lexicon import Lexicon
     from tangy_tui.learning.speech.labels import Labels
     from tangy_tui.learning.speech.practice import Practice, practise
     from tangy_tui.learning.speech.recogniser import Recogniser
     from tangy_tui.learning.speech.report import practice_lines
 
     found = Labels(phrasebook).find(folder)
+    heard = Lexicon(phrasebook, suggest=lambda word: "").heard()
 
     async def run(tell: Callable[[int, int], None]) -> Practice:
         recogniser = Recogniser()
         try:
-            return await practise(found, phrasebook, settings, recogniser, tell)
+            return await practise(found, phrasebook, settings, recogniser, tell, phrases=heard)
         finally:
             await recogniser.close()
 

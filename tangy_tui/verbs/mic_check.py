@@ -71,11 +71,13 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
         print_line(plain(sentence))
 
     phrasebook = Phrasebook(house.activity, house.people)
-    asked = to_say(phrasebook, Lexicon(phrasebook))
+    lexicon = Lexicon(phrasebook, suggest=lambda word: "")
+    tell = on_stderr if as_json else on_stdout
     recogniser = Recogniser()
     try:
+        asked = to_say(phrasebook, lexicon)
         return await MicrophoneCheck(
-            source, phrasebook, recogniser, asked, on_stderr if as_json else on_stdout
+            source, phrasebook, recogniser, asked, tell, lexicon.heard()
         ).run()
     finally:
         await recogniser.close()

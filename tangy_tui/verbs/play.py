@@ -23,6 +23,14 @@ from tangy_tui.verbs.common import (
     print_line,
     say_notices,
 )
+from tangy_tui.verbs.hearing import (
+    HandsFree,
+    Listening,
+    Mic,
+    Mode,
+    SpokenAnswers,
+    WithVoice,
+)
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -53,10 +61,15 @@ def play(
         str,
         typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you."),
     ] = "",
-    voice: Annotated[
-        bool, typer.Option("--voice", help="Let Tangy speak (on the screen).")
-    ] = False,
-    speed: Annotated[float, typer.Option(min=1, max=1000, help="Times life, 1 to 1000.")] = 10,
+    mic: Mic = None,
+    hands_free: HandsFree = False,
+    spoken_answers: SpokenAnswers = False,
+    mode: Mode = None,
+    voice: WithVoice = False,
+    speed: Annotated[
+        float | None,
+        typer.Option(min=1, max=1000, help="Times life; 10, or 1 where Tangy speaks."),
+    ] = None,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -69,6 +82,8 @@ def play(
     from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
     """
     from tangy_tui.house import teacher_name
+    from tangy_tui.inputs import keys_from_terminal
+    from tangy_tui.learning.commands import Phrasebook
     from tangy_tui.learning.policies import load_policy, need_policy
     from tangy_tui.monitoring.games import uncleared
 
@@ -76,9 +91,15 @@ def play(
     if expert not in ("", "scripted"):
         raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
     faults = tuple(inject or ())
+    screen = not (headless or as_json) and full_screen()
+    listening = Listening(mic, hands_free, spoken_answers, mode)
+    listening.check()
+    if mic is not None and not screen:
+        raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
+    sound = keys_from_terminal(None) if mic == "-" else 0
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity, policy)
-        if not (headless or as_json) and full_screen():
+        if screen:
             from tangy_tui.ui.run import run_playing
 
             raise typer.Exit(
@@ -92,6 +113,9 @@ def play(
                     injections=faults,
                     ascii_only=ascii_only,
                     voice=voice,
+                    ears=listening.ears(
+                        house, Phrasebook(house.activity, house.people), who, sound=sound
+                    ),
                 )
             )
         learnt, notices = load_policy(house.store, house.activity, policy)

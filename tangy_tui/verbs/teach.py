@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from collections.abc import Callable
+from dataclasses import replace
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -26,6 +26,15 @@ from tangy_tui.verbs.common import (
     print_json,
     print_line,
 )
+from tangy_tui.verbs.hearing import (
+    HandsFree,
+    Listening,
+    Mic,
+    Mode,
+    Record,
+    SpokenAnswers,
+    WithVoice,
+)
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -37,34 +46,15 @@ if TYPE_CHECKING:
 def teach(
     activity: ActivityName = "bingo",
     script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
-    mic: Annotated[
-        str | None,
-        typer.Option(
-            metavar="SOURCE",
-            help="Listen to arecord (a local microphone; arecord:DEVICE for one of several), "
-            "socket (a laptop's, see `tangy mic`), FILE.wav or - (standard input).",
-        ),
-    ] = None,
-    hands_free: Annotated[
-        bool, typer.Option("--hands-free", help="Listen all the time, not only after t.")
-    ] = False,
-    spoken_answers: Annotated[
-        bool, typer.Option("--spoken-answers", help="Also take yes and no by voice.")
-    ] = False,
-    mode: Annotated[
-        str | None,
-        typer.Option(help="How spoken words are matched: tiers, or paper (n-gram and keywords)."),
-    ] = None,
+    mic: Mic = None,
+    hands_free: HandsFree = False,
+    spoken_answers: SpokenAnswers = False,
+    mode: Mode = None,
     plain_lines: Annotated[
         bool, typer.Option("--plain", help="By lines, for any terminal.")
     ] = False,
-    record: Annotated[
-        bool,
-        typer.Option("--record", help="Keep what you say, if you agree, to practise on."),
-    ] = False,
-    voice: Annotated[
-        bool, typer.Option("--voice", help="Let Tangy speak (on the screen).")
-    ] = False,
+    record: Record = False,
+    voice: WithVoice = False,
     teacher: Annotated[
         str | None, typer.Option(help="Whose demonstration it is; 'scripted' for the built-in one.")
     ] = None,
@@ -95,19 +85,16 @@ def teach(
     if who == "scripted" and script is not None:
         raise TangyError("--teacher scripted gives its own lines: leave out --script.")
 
+    screen = not (plain_lines or script or as_json) and full_screen()
+    listening = Listening(mic, hands_free, spoken_answers, mode, record)
+    listening.check()
+    if not screen:
+        listening = replace(listening, hands_free=True)  # there is no key to talk with
     sound = keys_from_terminal(script) if mic == "-" else 0
     with open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
-        screen = not (plain_lines or script or as_json) and full_screen()
-        if mic is None and (hands_free or spoken_answers or mode or record):
-            raise TangyError("There is nothing to listen to: name a microphone with --mic.")
-        ears = None
-        if mic is not None:
-            ears = _ears(
-                mic, teaching, sound, house, mode,
-                hands_free=hands_free or not screen, answers=spoken_answers, record=record,
-            )  # fmt: skip
+        ears = listening.ears(house, teaching.phrasebook, who, sound=sound)
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif screen:
@@ -196,50 +183,6 @@ def _teach_by_lines(
     asyncio.run(lines.run(resume=resume))
     if as_json:
         print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
-
-
-def _ears(
-    mic: str,
-    teaching: Teaching,
-    sound: int,
-    house: House,
-    mode: str | None,
-    *,
-    hands_free: bool,
-    answers: bool,
-    record: bool,
-) -> Ears:
-    from tangy_tui.learning.speech.calibration import settings_for
-    from tangy_tui.learning.speech.ears import Ears
-    from tangy_tui.learning.speech.recordings import Recorder
-
-    settings = settings_for(house.store, mic, mode or house.activity.listening)
-    recorder = None
-    if record and _agrees(house, teaching.teacher):
-        recorder = Recorder(house.store.folder, teaching.teacher)
-    return Ears(
-        mic,
-        teaching.phrasebook,
-        settings=settings,
-        recorder=recorder,
-        hands_free=hands_free,
-        answers=answers,
-        stdin=sound,
-        folder=house.store.folder,
-    )
-
-
-def _agrees(house: House, teacher: str) -> bool:
-    """Ask a teacher who has not agreed to recordings yet; nothing is recorded without a yes."""
-    from tangy_tui.learning.speech.recordings import consent, consent_question, consented
-
-    if consented(house.store, teacher):
-        return True
-    if not sys.stdin.isatty():
-        raise TangyError("--record: say yes to it once on a terminal; nothing is recorded before.")
-    yes = typer.confirm(plain(consent_question(house.store)), default=False, err=True)
-    consent(house.store, teacher, yes)
-    return yes
 
 
 def _seen(house: House, teaching: Teaching) -> list[str]:

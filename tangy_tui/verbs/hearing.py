@@ -1,0 +1,99 @@
+"""The options by which a verb listens to somebody who speaks, and the ears they ask for."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.learning.speech.recordings import Recorder
+
+Mic = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SOURCE",
+        help="Listen to arecord (a local microphone; arecord:DEVICE for one of several), "
+        "socket (a laptop's, see `tangy mic`), FILE.wav or - (standard input).",
+    ),
+]
+HandsFree = Annotated[
+    bool, typer.Option("--hands-free", help="Listen all the time, not only after t.")
+]
+SpokenAnswers = Annotated[
+    bool, typer.Option("--spoken-answers", help="Also take yes and no by voice.")
+]
+Mode = Annotated[
+    str | None,
+    typer.Option(help="How spoken words are matched: tiers, or paper (n-gram and keywords)."),
+]
+Record = Annotated[
+    bool, typer.Option("--record", help="Keep what you say, if you agree, to practise on.")
+]
+WithVoice = Annotated[bool, typer.Option("--voice", help="Let Tangy speak (on the screen).")]
+
+
+@dataclass(frozen=True, slots=True)
+class Listening:
+    """What was asked for on the command line about listening."""
+
+    mic: str | None
+    hands_free: bool = False
+    answers: bool = False
+    mode: str | None = None
+    record: bool = False
+
+    def check(self) -> None:
+        """Check that there is something to listen to.
+
+        Raises:
+            TangyError: an option says how, and there is no microphone.
+        """
+        if self.mic is None and (self.hands_free or self.answers or self.mode or self.record):
+            raise TangyError("There is nothing to listen to: name a microphone with --mic.")
+
+    def ears(self, house: House, phrasebook: Phrasebook, who: str, *, sound: int) -> Ears | None:
+        """Open the ears, if any are wanted; `sound` is the descriptor that - stands for.
+
+        Raises:
+            TangyError: the microphone cannot be used, or nobody can be asked for consent.
+        """
+        if self.mic is None:
+            return None
+        from tangy_tui.learning.speech.calibration import settings_for
+        from tangy_tui.learning.speech.ears import Ears
+
+        return Ears(
+            self.mic,
+            phrasebook,
+            settings=settings_for(house.store, self.mic, self.mode or house.activity.listening),
+            recorder=_recorder(house, who) if self.record else None,
+            hands_free=self.hands_free,
+            answers=self.answers,
+            stdin=sound,
+            folder=house.store.folder,
+        )
+
+
+def _recorder(house: House, teacher: str) -> Recorder | None:
+    """Record a teacher who agrees; nothing is recorded without a yes."""
+    from tangy_tui.learning.speech.recordings import Recorder, consent, consent_question, consented
+
+    if not consented(house.store, teacher):
+        if not sys.stdin.isatty():
+            raise TangyError(
+                "--record: say yes to it once on a terminal; nothing is recorded before."
+            )
+        yes = typer.confirm(plain(consent_question(house.store)), default=False, err=True)
+        consent(house.store, teacher, yes)
+        if not yes:
+            return None
+    return Recorder(house.store.folder, teacher)
