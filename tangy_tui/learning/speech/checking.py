@@ -140,15 +140,25 @@ class MicrophoneCheck:
         recogniser: Hearing,
         asked: Sequence[Asked],
         tell: Tell,
-        meter: Meter | None = None,
+        phrases: Sequence[str] | None = None,
     ) -> None:
-        """Make a check that says what to do, and what is wrong, with `tell`."""
+        """Make a check.
+
+        Args:
+            source: is closed when it is over.
+            phrasebook: what can be said.
+            recogniser: is started and told what to listen for.
+            asked: what is to be said, from `to_say`.
+            tell: says what to do, and what is wrong.
+            phrases: those that are listened for, if not all that can be said.
+        """
         self._source = source
         self._phrasebook = phrasebook
         self._recogniser = recogniser
         self._asked = asked
         self._tell = tell
-        self._meter = meter or Meter()
+        self._meter = Meter()
+        self._phrases = phrases
         self._sound: asyncio.Queue[bytes] | None = None
         self._left = 0  # bytes for which it is still listened
         self._spoke = False
@@ -165,7 +175,7 @@ class MicrophoneCheck:
             SpeechUnavailable: the worker cannot run here.
         """
         try:
-            await self._recogniser.start(wanted(self._phrasebook, USUAL))
+            await self._recogniser.start(wanted(self._phrasebook, USUAL, self._phrases))
             if self._source.live:
                 room, sounds = await self._live()
             else:
@@ -271,7 +281,7 @@ class MicrophoneCheck:
         for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):
             settings = Settings(garbage=weight)
             if weight != USUAL.garbage:
-                await self._recogniser.start(wanted(self._phrasebook, settings))
+                await self._recogniser.start(wanted(self._phrasebook, settings, self._phrases))
             heard = [await self._decoded(pcm) for pcm in sounds]
             words[weight] = [
                 one.words if pcm else None for one, pcm in zip(heard, sounds, strict=True)

@@ -148,6 +148,8 @@ async def practise(
     settings: Settings,
     recogniser: Hearing,
     tell: Callable[[int, int], None] = lambda done, of: None,
+    *,
+    phrases: Sequence[str] | None = None,
 ) -> Practice:
     """Decode every recording as one whole utterance.
 
@@ -157,11 +159,12 @@ async def practise(
         settings: how it is listened.
         recogniser: decodes; is started here, and left running.
         tell: is called after each with how many are done, and of how many.
+        phrases: those that are listened for, if not all that can be said.
 
     Raises:
         SpeechUnavailable: the worker cannot run here.
     """
-    await recogniser.start(wanted(phrasebook, settings))
+    await recogniser.start(wanted(phrasebook, settings, phrases))
     began = cpu_seconds(recogniser.pid)
     rows: list[Row] = []
     left_out = [(os.fspath(file), why) for file, why in found.left_out]
