@@ -67,7 +67,7 @@ class SoundingApp(TangyApp):
             hearing.look()
             self.run_worker(hearing.run(), name="ears", group="ears")
         if self._speaks:
-            self.call_later(self.speaker.switch, True)
+            self.speaker.switch(True)
 
     async def on_unmount(self) -> None:
         """End what runs for the voice; the ears end with the program's workers."""
@@ -102,5 +102,7 @@ class SoundingApp(TangyApp):
         self.action_stop()
 
     def _tell_of_voice(self, sentence: str) -> None:
-        if self.is_running:
+        def tell() -> None:
             self.notify(clean(sentence), severity="warning", markup=False)
+
+        self.call_later(tell)  # at the very beginning there is no screen yet

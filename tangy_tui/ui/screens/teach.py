@@ -98,17 +98,18 @@ class TeachScreen(TangyScreen[bool]):
 
     def compose(self) -> ComposeResult:
         """Lay out status, room, what was said, the trajectory, the situation, the commands."""
+        hearing = hearing_of(self.app) if self._scripted is None else None
+        how = "Type" if hearing is None else "Say or type"
         yield StatusLine()
         with Horizontal(id="body"):
             with Vertical(id="left"):
                 yield room_panel(self._house)
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
-                yield panel(Transcript(empty="No steps yet. Type what Tangy should do first."))
+                yield panel(Transcript(empty=f"No steps yet. {how} what Tangy should do first."))
                 yield panel(CoverageList())
         yield Static(id="now", markup=False)
-        hearing = hearing_of(self.app)
-        if self._scripted is None and hearing is not None:
+        if hearing is not None:
             self._listener.hearing = hearing
             if hearing.by_key:
                 self.AUTO_FOCUS = ""  # type: ignore[misc]  # so that t is a key at once

@@ -12,7 +12,7 @@ from textual.widget import Widget
 
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, draw, shorten
+from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 HERTZ = 10
 """How often the line may be drawn in a second."""
@@ -21,6 +21,7 @@ LOOKS = 5
 """Every so many drawings it is asked whether something is wrong."""
 
 BAR = 12  # cells
+GAP = 3  # cells between level and text
 OPENS = ("listening", "speaking")
 """The states in which the microphone is open, so that level, words and trouble may change."""
 
@@ -152,7 +153,8 @@ class MicrophoneLine(Widget):
         """The key that is pushed to talk: in a line to type in, a letter is a letter."""
         from textual.widgets import Input
 
-        return "ctrl+t" if isinstance(self.screen.focused, Input) else "t"
+        typing = isinstance(self.screen.focused, Input)
+        return "t" if self.screen.is_active and not typing else "ctrl+t"
 
     def _state(self) -> tuple[str, str]:
         ears = self._ears
@@ -168,18 +170,27 @@ class MicrophoneLine(Widget):
         ears = self._ears
         if not self.is_attached:
             return ()
-        row: list[tuple[str, str]] = [self._state()]
+        row: list[Span] = [self._state()]
         if ears.live and ears.state in OPENS:
             full = round(BAR * min(1.0, max(0.0, ears.meter.level)))
             row += [("  ", "text"), ("■" * full, "curve"), ("·" * (BAR - full), "dim")]
-        left = width - sum(cell_len(text) for text, _ in row) - 3
         if self._trouble:
-            row.append((f"   {shorten(f'! {self._trouble}', left)}", "warn"))
-        elif ears.words:
-            row.append((f"   {_end(clean(ears.words), left)}", "dim"))
-        elif ears.live and not ears.hands_free and ears.state in HINTS and not self._expects():
-            row.append((f"   {shorten(HINTS[ears.state].format(key=self._key), left)}", "dim"))
-        return tuple(row)
+            trouble = f"! {self._trouble}"
+            while row and _cells(row) + GAP + cell_len(trouble) > width:
+                row.pop()  # what is wrong is to be read whole
+            gap = " " * GAP if row else ""
+            return (*row, (f"{gap}{shorten(trouble, width)}", "warn"))
+        left = width - _cells(row) - GAP
+        text = ""
+        if ears.words:
+            text = _end(clean(ears.words), left)
+        elif ears.live and not ears.hands_free and not self._expects():
+            text = shorten(HINTS.get(ears.state, "").format(key=self._key), left)
+        return (*row, (f"{' ' * GAP}{text}", "dim")) if text else tuple(row)
+
+
+def _cells(row: list[Span]) -> int:
+    return sum(cell_len(text) for text, _ in row)
 
 
 def _end(words: str, width: int) -> str:

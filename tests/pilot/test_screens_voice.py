@@ -1,0 +1,284 @@
+"""Tangy's voice on the screens: on and off, shut ears, life's pace, and silence after STOP."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+import pytest
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.voice import VoicePreference
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui import speaking
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.teach import TeachScreen
+from tangy_tui.ui.speaking import opening_lines
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.transcript import Transcript
+from tests.pilot.conftest import Run, StillClock, TangyPilot, screen_text
+from tests.pilot.ears import FakeEars, FakeVoice
+
+SILENT = "espeak-ng is not installed; until it is, what Tangy says is shown as text."
+
+
+@pytest.fixture
+def voices(monkeypatch: pytest.MonkeyPatch) -> list[FakeVoice]:
+    """The voices that were made, the last one at the end."""
+    made: list[FakeVoice] = []
+
+    def make_voice(
+        activity: Activity,
+        begin: Callable[[], None],
+        end: Callable[[], None],
+        tell: Callable[[str], None],
+    ) -> FakeVoice:
+        made.append(FakeVoice(begin, end))
+        return made[-1]
+
+    monkeypatch.setattr(speaking.Speaker.__init__, "__defaults__", (make_voice,))
+    monkeypatch.setattr(speaking, "GAP", 0.0)
+    return made
+
+
+def teaching(house: House, *, voice: bool = True, ears: FakeEars | None = None) -> Program:
+    """Make the program with a voice and the teaching screen open."""
+
+    async def start(started: Program) -> None:
+        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+
+    real = None if ears is None else ears.ears
+    return Program(house, start, clock=StillClock(), voice=voice, ears=real)
+
+
+def playing(house: House, policy: Policy, speed: float) -> Program:
+    """Make the program with a voice and the playing screen open."""
+
+    async def start(started: Program) -> None:
+        supervision = house.supervision(policy, 5)
+        await started.push_screen(PlayScreen(house, supervision, speed=speed))
+
+    return Program(house, start, clock=StillClock(), voice=True)
+
+
+async def do(pilot: TangyPilot, words: str) -> None:
+    """Type a command and confirm it."""
+    await pilot.press(*words, "enter")
+    await pilot.pause()
+    await pilot.press("y")
+    await pilot.pause()
+
+
+async def until(pilot: TangyPilot, there: Callable[[], bool]) -> None:
+    """Wait until something is so."""
+    for _ in range(500):
+        if there():
+            return
+        await pilot.pause(0.01)
+    raise AssertionError("it never was")
+
+
+async def test_what_tangy_says_while_teaching_is_spoken(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    house.prefer_voice(house.people[2], VoicePreference(100, "en-gb"))
+    async with run(app=teaching(house)) as pilot:
+        await do(pilot, "greet everyone")
+        assert len(voices) == 1
+        assert voices[0].lines[0].startswith("Hello, everybody")
+        assert voices[0].preferences == [VoicePreference()]
+        voices[0].heard()
+        await do(pilot, "go to user 3")
+        assert voices[0].preferences[-1] == VoicePreference(100, "en-gb")
+        voices[0].heard()
+        await pilot.press("ctrl+z")
+        await pilot.pause()
+    assert voices[0].closed
+
+
+async def test_a_new_step_cuts_what_was_said_for_the_last(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    async with run(app=teaching(house)) as pilot:
+        await do(pilot, "greet everyone")
+        await do(pilot, "call number")
+        await until(pilot, lambda: len(voices[0].lines) == 2)
+        assert "number is" in voices[0].lines[-1]
+
+
+async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
+    run: Run, house: House, voices: list[FakeVoice], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(speaking, "GAP", 0.05)
+    async with run(app=teaching(house)) as pilot:
+        assert isinstance(pilot.app, Program)
+        for line in ("one", "two", "three", "four"):
+            pilot.app.speaker.interject(line, VoicePreference())
+        await until(pilot, lambda: len(voices[0].lines) == 2)
+        assert voices[0].lines == ["one", "four"]
+
+
+async def test_nothing_is_made_before_it_is_switched_on(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    async with run(app=teaching(house, voice=False), notifications=True) as pilot:
+        await do(pilot, "greet everyone")
+        assert voices == []
+        await pilot.press("escape", "v")
+        await pilot.pause()
+        assert "Tangy speaks now" in screen_text(pilot.app)
+        await pilot.press("colon")
+        await do(pilot, "call number")
+        assert len(voices[0].lines) == 1
+        await pilot.press(*"voice", "enter")
+        await pilot.pause()
+        assert not voices[0].speaking
+        await do(pilot, "call number")
+        assert len(voices[0].lines) == 1
+
+
+async def test_the_palette_switches_it_on_too(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    async with run(app=teaching(house, voice=False)) as pilot:
+        titles = [c.title for c in pilot.app.get_system_commands(pilot.app.screen)]
+        assert titles.count("Voice on or off") == 1
+
+
+async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
+    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def silent(
+        activity: Activity,
+        begin: Callable[[], None],
+        end: Callable[[], None],
+        tell: Callable[[str], None],
+    ) -> FakeVoice:
+        return FakeVoice(begin, end, SILENT)
+
+    monkeypatch.setattr(speaking.Speaker.__init__, "__defaults__", (silent,))
+    async with run(app=teaching(house), notifications=True) as pilot:
+        assert screen_text(pilot.app).count("espeak-ng is not") == 1
+        await do(pilot, "greet everyone")
+        assert "Hello, everybody" in screen_text(pilot.app)
+        assert isinstance(pilot.app, Program)
+        assert not pilot.app.speaker.on
+
+
+async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_silent(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears=ears)) as pilot:
+        await pilot.press("colon")
+        await do(pilot, "greet everyone")
+        assert ears.state == "shut"
+        assert "shut while Tangy speaks" in screen_text(pilot.app)
+        voices[0].heard()
+        assert ears.state == "off"
+        await do(pilot, "call number")
+        assert ears.state == "shut"
+        await pilot.press("escape", "t")
+        await pilot.pause()
+        assert ears.state == "listening"
+        assert not voices[0].speaking
+
+
+async def test_nobody_is_interrupted_who_is_talking_to_tangy(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    ears = FakeEars()
+    async with run(app=teaching(house, ears=ears)) as pilot:
+        await pilot.press("colon", "ctrl+t")
+        await do(pilot, "greet everyone")
+        assert voices[0].lines == []
+        assert ears.state == "listening"
+
+
+async def test_stop_and_leaving_let_it_fall_silent(
+    run: Run, house: House, voices: list[FakeVoice]
+) -> None:
+    async with run(app=teaching(house)) as pilot:
+        await do(pilot, "greet everyone")
+        assert voices[0].speaking
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert not voices[0].speaking
+        await do(pilot, "call number")
+        await until(pilot, lambda: voices[0].speaking)
+        await pilot.press("escape", "escape")
+        await pilot.pause()
+        assert not voices[0].speaking
+
+
+async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
+    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+) -> None:
+    async with run(app=playing(house, policy, 1)) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        assert voices[0].prepared == opening_lines(house.activity)
+        assert len(voices[0].prepared) > len(house.activity.deck.numbers)
+        steps = screen.query_one(Transcript)
+        await until(pilot, lambda: steps.count == 1)
+        screen._nudge.set()  # the time of the step has passed
+        for _ in range(5):
+            await pilot.pause(0.01)
+        assert steps.count == 1
+        voices[0].heard()
+        screen._nudge.set()
+        await until(pilot, lambda: steps.count == 2)
+        assert len(voices[0].lines) == 2
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert not voices[0].speaking
+        assert steps.count == 2
+
+
+async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
+    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+) -> None:
+    async with run(app=playing(house, policy, 1)) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        steps = screen.query_one(Transcript)
+        await until(pilot, lambda: steps.count == 1)
+        await pilot.press("p", "n")
+        await until(pilot, lambda: steps.count == 2)
+        await pilot.press("n")
+        await until(pilot, lambda: steps.count == 3)
+        said = [s for s in screen.query_one(LogView).sentences if "complied" not in s]
+        await until(pilot, lambda: voices[0].lines[-1] in said[-1])
+        assert voices[0].hushed >= 2
+
+
+async def test_a_game_that_is_skipped_to_its_end_is_silent(
+    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+) -> None:
+    async with run(app=playing(house, policy, 1)) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        await until(pilot, lambda: bool(voices[0].lines))
+        await pilot.press("e")
+        await until(pilot, lambda: screen._supervision.over)
+        assert len(voices[0].lines) <= 2
+        assert not voices[0].speaking
+
+
+def test_what_is_made_ready_names_nobody(house: House) -> None:
+    lines = opening_lines(house.activity)
+    assert all("{" not in line and line for line in lines)
+    label = house.activity.deck.label
+    assert all(any(label(n) in line for line in lines) for n in house.activity.deck.numbers)
+
+
+async def test_the_program_does_not_wait_for_a_voice_to_be_made_ready(
+    run: Run, house: House
+) -> None:
+    async with run(app=teaching(house, voice=False)) as pilot:
+        assert isinstance(pilot.app, Program)
+        pilot.app.speaker.prepare(("a", "b"))
+        await asyncio.sleep(0)
+        assert not pilot.app.speaker.speaking
