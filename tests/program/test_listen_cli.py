@@ -1,0 +1,108 @@
+"""`tangy listen` and `tangy mic check` refuse in a sentence what they cannot use."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.store import Store
+from tangy_tui.learning.speech import listening
+from tangy_tui.learning.speech.recordings import consent, consented
+from tests.hw.sounds import pcm, tone, wav
+
+Tangy = Callable[..., CompletedProcess[str]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ((), "Give WAV files, or a folder of them with --bench DIR."),
+        (("a.wav", "--bench", "."), "Give WAV files, or a folder of them with --bench DIR."),
+        (("--bench", "nowhere"), "nowhere: there is no such folder."),
+        (("a.wav", "--mode", "papr"), "--mode 'papr' is not known; did you mean 'paper'?"),
+        (("nowhere.wav",), "nowhere.wav: there is no such file."),
+    ],
+)
+def test_what_cannot_be_heard_is_refused_in_a_sentence(
+    arguments: tuple[str, ...], sentence: str, tangy: Tangy, tmp_path: Path
+) -> None:
+    done = tangy("listen", *arguments, "--data", tmp_path / "data")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"tangy: {sentence}\n"
+    assert not (tmp_path / "data").exists()
+
+
+def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Path) -> None:
+    (tmp_path / "set").mkdir()
+    done = tangy("listen", "--bench", tmp_path / "set", "--data", tmp_path / "data")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert "call_number-1.wav" in done.stderr
+
+
+def test_lines_say_the_tier_and_the_choices(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go = {"behaviour": "navigate to user", "arguments": {"user": "user2"}}
+    joke = {"behaviour": "joke", "arguments": {}}
+    rows = [
+        {"file": name, "heard": "x", "tier": tier, "confidence": 0.5, "choices": choices}
+        for name, tier, choices in (
+            ("a.wav", "sure", [go]),
+            ("b.wav", "unsure", [joke, go]),
+            ("c.wav", "nothing", []),
+            ("d\x1b.wav", "stop", []),
+        )
+    ]
+    monkeypatch.setattr(listening, "listen", lambda files, book, settings: rows)
+    tangy("people", "rename", "user2", "Rosa", "--data", tmp_path / "data")
+    done = tangy("listen", "a.wav", "--data", tmp_path / "data")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == [
+        "a.wav: 'x' -> navigate to user (Rosa), 50% sure",
+        "b.wav: 'x' -> perhaps joke or navigate to user (Rosa), 50% sure",
+        "c.wav: 'x' -> not understood",
+        "d\N{REPLACEMENT CHARACTER}.wav: 'x' -> stop, at once",
+    ]
+
+
+def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Path) -> None:
+    folder = tmp_path / "data"
+    with Store.open(folder) as store:
+        consent(store, "rosa", True)
+    sound = folder / "recordings" / "joke" / "20260102T120000-1.wav"
+    sound.parent.mkdir(parents=True)
+    sound.write_bytes(wav(pcm(tone(0.2))))
+    done = tangy("listen", "--forget-recordings", "--json", "--data", folder)
+    assert json.loads(done.stdout) == {"deleted": 1, "left": 0}
+    assert not sound.parent.parent.exists()
+    with Store.open(folder, write=False) as store:
+        assert not consented(store, "rosa")
+
+
+class TestCheckingAMicrophone:
+    def test_a_source_that_is_none_is_refused(self, tangy: Tangy, tmp_path: Path) -> None:
+        done = tangy("mic", "check", "--mic", "nowhere.wav", "--data", tmp_path / "data")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == "tangy: nowhere.wav: there is no such file.\n"
+
+    def test_forgetting_says_whether_there_was_anything(self, tangy: Tangy, tmp_path: Path) -> None:
+        folder = tmp_path / "data"
+        arguments = ("mic", "check", "--mic", "socket", "--forget", "--data", folder)
+        assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
+        with Store.open(folder) as store:
+            body = {"source": "socket", "settings": {"garbage": 0.9, "shift": 0.5}}
+            store.append("microphone checked", body)
+        assert tangy(*arguments).stdout == "socket: forgotten.\n"
+        assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
+
+    def test_help_says_what_will_be_asked_and_that_nothing_is_kept(self, tangy: Tangy) -> None:
+        done = tangy("mic", "check", "--help")
+        assert done.returncode == 0
+        said = " ".join(done.stdout.split())
+        assert "Be quiet for 3 seconds" in said
+        assert "Nothing of it is kept but the settings." in said
