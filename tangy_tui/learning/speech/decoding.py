@@ -112,9 +112,10 @@ class TwoDecoders:
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""
         self._end()
-        self._words.activate_search(expecting)
-        self._words.start_utt()
-        self._open = True
+        self._open = bool(self._said[expecting])
+        if self._open:
+            self._words.activate_search(expecting)
+            self._words.start_utt()
 
     def partial(self, pcm: bytes) -> str:
         """Take the next piece and return the words so far."""
@@ -158,9 +159,10 @@ class PaperDecoder:
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""
         self._end()
-        self._decoder.activate_search(expecting)
-        self._decoder.start_utt()
-        self._open = True
+        self._open = self._searches[expecting]
+        if self._open:
+            self._decoder.activate_search(expecting)
+            self._decoder.start_utt()
 
     def partial(self, pcm: bytes) -> str:
         """Take the next piece and return the words so far."""
@@ -247,6 +249,7 @@ def _best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float
     They are log P(sound, words) a frame and the mean weighted log P(word | words before).
     """
     decoder.activate_search(search)
+    decoder.reinit_feat()  # else what was heard before, and the words so far, change the scores
     decoder.start_utt()
     decoder.process_raw(pcm, full_utt=True)
     decoder.end_utt()

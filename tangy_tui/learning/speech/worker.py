@@ -35,6 +35,7 @@ from tangy_tui.learning.speech.endpointing import Endpoints, pieces
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
+SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
 STANDS = 0.3  # s for which urgent words have to stand alone
 
 
@@ -67,7 +68,7 @@ class Worker:
             self._fail(id, str(reason))
         except ImportError as error:
             self._fail(id, f"Speech needs the package {error.name or 'pocketsphinx'}.")
-        except (RuntimeError, ValueError, OSError) as error:
+        except (RuntimeError, ValueError, LookupError, OSError) as error:
             said = " ".join(str(error).split())[:200] or type(error).__name__
             self._fail(id, f"The speech decoder failed: {said}.")
 
@@ -154,11 +155,19 @@ class Worker:
 
     def _end(self) -> None:
         id = self._id
-        heard: Evidence = self._decoder.decode(bytes(self._pcm), self._expecting)
+        heard = Evidence(seconds=len(self._pcm) / 2 / RATE)
+        if _sounds(self._pcm):
+            heard = self._decoder.decode(bytes(self._pcm), self._expecting)
         used = len(self._pcm) if self._endpoints is None else self._endpoints.taken
         self._id = None
         self._pcm.clear()
         self._write({"id": id, "heard": asdict(heard), "used": used})
+
+
+def _sounds(pcm: bytearray) -> bool:
+    """Whether there is more in this than the silence of a microphone that is off."""
+    samples = memoryview(pcm).cast("h")
+    return len(samples) > 0 and max(samples) - min(samples) > SILENCE
 
 
 def _sound(encoded: str) -> bytes:
