@@ -22,6 +22,7 @@ from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech import listening
+from tangy_tui.learning.speech import worker as room
 from tangy_tui.learning.speech.evidence import (
     LONGEST,
     RATE,
@@ -305,9 +306,10 @@ class LetterDecoder:
 
 
 @pytest.fixture
-def ask() -> Callable[..., list[dict[str, Any]]]:
+def ask(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[dict[str, Any]]]:
     """Ask a worker whose decoder is a test's; "s" is urgent. Returns its answers."""
     answers: list[dict[str, Any]] = []
+    monkeypatch.setattr(room, "SILENCE", -1)  # a letter is as flat as silence
     worker = Worker(answers.append)
     worker._decoder = LetterDecoder()
     worker._urgent = frozenset("s")
@@ -397,6 +399,15 @@ class TestWorker:
         assert [a["id"] for a in errors] == [7]
         assert errors[0]["error"] == "The speech decoder failed: it broke in two lines."
         assert ask(BEGIN, said(sound("a", 0.1)), END)[-1]["heard"]["words"] == "a"
+
+    @pytest.mark.parametrize("pcm", [b"", b"\0", bytes(2 * RATE), sound("a"), b"\1\0\0\0" * RATE])
+    def test_there_are_no_words_in_silence(
+        self, ask: Ask, pcm: bytes, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(room, "SILENCE", 8)
+        found = ask(BEGIN, said(pcm), END)[-1]["heard"]
+        assert (found["words"], found["confidence"]) == ("", 0.0)
+        assert found["seconds"] == pytest.approx(len(pcm) // 2 / RATE)
 
     def test_sound_that_is_none_is_told_to_whoever_waits(self, ask: Ask) -> None:
         (answer_,) = ask(BEGIN, {"pcm": "not base64!"}, END)

@@ -153,6 +153,9 @@ class ScriptedEars:
     def asking(self, asks: bool) -> None:
         self.asked.append(asks)
 
+    def follow(self, events: object) -> None:
+        """Keep nothing of what became of it."""
+
     def __aiter__(self) -> AsyncIterator[Heard]:
         return self
 

@@ -11,57 +11,116 @@ import shutil
 import signal
 import subprocess
 import sys
-import wave
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Awaitable, Iterator
 from pathlib import Path
-from typing import Any
+from threading import Thread
+from time import perf_counter
+from typing import Any, TypeVar
 
 import pytest
 
+from tangy_hw.sound.wav import RATE
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.microphone import open_microphone, split
-from tangy_tui.learning.speech import (
-    END_SECONDS,
-    WORKER,
-    Recogniser,
-    SpeechUnavailable,
-    listen,
-    understand,
-)
-from tangy_tui.learning.wav import RATE, read_wav
+from tangy_tui.learning.speech.ears import Ears
+from tangy_tui.learning.speech.evidence import LONGEST, USUAL, Evidence, Settings, Wanted
+from tangy_tui.learning.speech.listening import listen, tier_of
+from tangy_tui.learning.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
+from tangy_tui.learning.speech.understanding import understand, wanted
+from tangy_tui.learning.verifying import Say, Stop
+from tests.hw.sounds import wav
+from tests.real.voices import FESTIVAL, NOISES, Voices
 
-pytestmark = pytest.mark.skipif(
-    shutil.which("flite") is None, reason="flite is not installed: nobody to speak the commands"
-)
+pytestmark = [
+    pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
+    pytest.mark.xdist_group("speech"),  # they share a worker and the voices
+]
+
+T = TypeVar("T")
 
 PATIENCE = 30.0
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
-FEW = ("call number", "tell a joke", "go to the front")
+WANTED = wanted(BOOK, USUAL)
+FEW = Wanted(("call number", "tell a joke", "go to the front"))
+PIECE = 1_600  # bytes, 50 ms
 
-Say = Callable[..., Path]
+KNOWN = [
+    ("greet everyone", "slt", "greeting", {}),
+    ("call the next number", "rms", "call number", {}),
+    ("tell a joke", "kal16", "joke", {}),
+    ("go to user two", "slt", "navigate to user", {"user": "user2"}),
+    ("move the card closer", "rms", "move card closer", {}),
+    ("remove the markers", "kal16", "remove markers", {}),
+    ("mark the missing numbers", "slt", "mark numbers", {}),
+    ("encourage the player", "rms", "encourage", {}),
+    ("go back to the front", "kal16", "navigate to front", {}),
+    ("celebrate the winner", FESTIVAL, "celebrate", {}),
+    ("say goodbye to everyone", FESTIVAL, "valediction", {}),
+]
+UNKNOWN = [
+    ("please call another number", "slt", "call number"),
+    ("drive back to the front", "rms", "navigate to front"),
+    ("go back to front please", "kal16", "navigate to front"),
+    ("let us hear a joke", "rms", "joke"),
+]
+OTHER = [
+    ("the soup was too salty", "slt"),
+    ("have you seen my glasses", "rms"),
+    ("the card is on the table", "kal16"),
+    ("she told me a long story about the game", "slt"),
+    ("my sister lives in canada", "rms"),
+]
 
 
-@pytest.fixture
-def say(tmp_path: Path) -> Say:
-    """Have a voice of flite say something; returns the WAV file."""
+class Studio:
+    """One worker that the tests share, and a loop to ask it in."""
 
-    def speak(text: str, voice: str = "slt") -> Path:
-        path = tmp_path / f"{text} {voice}.wav"
-        command = ["flite", "-voice", voice, "-t", text, "-o", str(path)]
-        subprocess.run(command, check=True, capture_output=True)  # noqa: S603
-        return path
+    def __init__(self) -> None:
+        self.told: list[str] = []
+        self.recogniser = Recogniser(notify=self.told.append)
+        self._runner = asyncio.Runner()
 
-    return speak
+    def run(self, doing: Awaitable[T]) -> T:
+        async def patiently() -> T:
+            return await asyncio.wait_for(doing, PATIENCE)
+
+        return self._runner.run(patiently())
+
+    def decode(self, pcm: bytes) -> Evidence:
+        return self.run(self.recogniser.decode(pcm))
+
+    def hear(self, pcm: bytes) -> tuple[str, str | None, dict[str, str]]:
+        """Return the tier of an utterance, and what is likeliest meant by it."""
+        said = understand(self.decode(pcm), BOOK, USUAL)
+        if not isinstance(said, Say) or not said.commands:
+            return tier_of(said), None, {}
+        return tier_of(said), said.commands[0].behaviour, dict(said.commands[0].arguments)
+
+    def close(self) -> None:
+        self.run(self.recogniser.close())
+        self._runner.close()
 
 
-@pytest.fixture
-async def recogniser() -> AsyncIterator[Recogniser]:
-    """A recogniser that is ended whatever happens."""
-    made = Recogniser()
+@pytest.fixture(scope="session")
+def voices(tmp_path_factory: pytest.TempPathFactory) -> Voices:
+    return Voices(tmp_path_factory.mktemp("voices"))
+
+
+@pytest.fixture(scope="module")
+def _studio() -> Iterator[Studio]:
+    made = Studio()
+    made.run(made.recogniser.start(WANTED))
     yield made
-    await made.close()
+    made.close()
+
+
+@pytest.fixture
+def studio(_studio: Studio) -> Studio:
+    """The worker that listens for all phrases, alive."""
+    _studio.told.clear()
+    _studio.recogniser.partial = lambda words: None
+    return _studio
 
 
 def ended(pid: int) -> bool:
@@ -76,225 +135,293 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
-def chat(*requests: object, command: tuple[str, ...] = WORKER) -> list[dict[str, Any]]:
-    """Send requests to a worker of the test's own and return its answers, until it ends."""
-    lines = b"".join(
-        r if isinstance(r, bytes) else json.dumps(r).encode() + b"\n" for r in requests
+class TestVoices:
+    def test_known_phrases_are_sure(self, studio: Studio, voices: Voices) -> None:
+        found = {said: studio.hear(voices.say(said, voice)) for said, voice, _, _ in KNOWN}
+        assert found == {said: ("sure", name, who) for said, _, name, who in KNOWN}
+
+    def test_other_wordings_are_asked_about_or_offered(
+        self, studio: Studio, voices: Voices
+    ) -> None:
+        for said, voice, name in UNKNOWN:
+            tier, first, _ = studio.hear(voices.say(said, voice))
+            assert (tier in ("sure", "unsure"), first) == (True, name), said
+
+    def test_other_speech_is_nothing(self, studio: Studio, voices: Voices) -> None:
+        found = {said: studio.hear(voices.say(said, voice))[0] for said, voice in OTHER}
+        assert found == dict.fromkeys(found, "nothing")
+
+    @pytest.mark.parametrize("voice", ["slt", "kal16", FESTIVAL])
+    def test_stop_is_heard_from_every_voice(
+        self, studio: Studio, voices: Voices, voice: str
+    ) -> None:
+        assert studio.hear(voices.say("stop", voice))[0] == "stop"
+
+    def test_noises_are_nothing(self, studio: Studio, voices: Voices) -> None:
+        found = {name: studio.hear(voices.noise(name))[0] for name in NOISES}
+        assert found == dict.fromkeys(NOISES, "nothing")
+
+    def test_a_hiss_20_dB_below_the_voice_takes_nothing_away(
+        self, studio: Studio, voices: Voices
+    ) -> None:
+        for said, voice, name, who in KNOWN[:4]:
+            assert studio.hear(voices.say(said, voice, noise=20)) == ("sure", name, who)
+
+    @pytest.mark.parametrize(
+        "pcm",
+        [b"", b"\0", bytes(640), bytes(4 * RATE), b"\x11\x99" * RATE, bytes(2 * RATE * LONGEST)],
+        ids=["none", "half a sample", "20 ms", "silence", "a flat line", "the longest"],
     )
-    done = subprocess.run(  # noqa: S603 - our own worker
-        command, input=lines, capture_output=True, timeout=PATIENCE, check=True
-    )
-    return [json.loads(line) for line in done.stdout.splitlines()]
+    def test_odd_sounds_are_nothing(self, studio: Studio, pcm: bytes) -> None:
+        assert studio.hear(pcm)[0] == "nothing"
+
+    def test_the_same_sound_is_heard_alike_every_time(self, studio: Studio, voices: Voices) -> None:
+        one, other = voices.say("tell a joke", "kal16"), voices.say("greet everyone")
+        first = studio.decode(one)
+        studio.decode(other)
+        assert studio.decode(one) == first
+        assert first.seconds == pytest.approx(len(one) / 2 / RATE)
 
 
-class TestListening:
-    def test_spoken_commands_are_understood(self, say: Say) -> None:
-        spoken = {
-            "greet everyone": ("greeting", {}),
-            "call the next number": ("call number", {}),
-            "tell a joke": ("joke", {}),
-            "go to user two": ("navigate to user", {"user": "user2"}),
-            "move the card closer": ("move card closer", {}),
-            "remove the markers": ("remove markers", {}),
-            "mark the missing numbers": ("mark numbers", {}),
-            "encourage the player": ("encourage", {}),
-            "go back to the front": ("navigate to front", {}),
-            "celebrate the winner": ("celebrate", {}),
-            "say goodbye to everyone": ("valediction", {}),
-        }
-        files = [say(text) for text in spoken]
-        rows = listen(files, BOOK)
-        assert [row["file"] for row in rows] == [str(file) for file in files]
-        assert [(row["behaviour"], row["arguments"]) for row in rows] == list(spoken.values())
-        assert [row["heard"] for row in rows] == list(spoken)
-        assert min(row["confidence"] for row in rows) > 0.8
+class TestStream:
+    async def speak(self, sound: asyncio.Queue[bytes], pcm: bytes) -> None:
+        for place in range(0, len(pcm), PIECE):
+            sound.put_nowait(pcm[place : place + PIECE])
+            await asyncio.sleep(0)
+
+    def test_words_come_before_the_end(self, studio: Studio, voices: Voices) -> None:
+        shown: list[str] = []
+
+        async def talk() -> Evidence:
+            sound: asyncio.Queue[bytes] = asyncio.Queue()
+            whole = asyncio.Event()
+
+            def partial(words: str) -> None:
+                shown.append(words)
+                if words == "call the next number":
+                    whole.set()
+
+            studio.recogniser.partial = partial
+            hearing = asyncio.create_task(studio.recogniser.hear(sound))
+            await self.speak(sound, voices.say("call the next number", "rms"))
+            await whole.wait()
+            assert not hearing.done()
+            sound.put_nowait(b"")
+            return await hearing
+
+        assert studio.run(talk()).words == "call the next number"
+        assert len(set(shown)) >= 3
+
+    def test_a_worker_that_is_killed_in_mid_utterance_loses_nothing(
+        self, studio: Studio, voices: Voices
+    ) -> None:
+        pcm = voices.say("call the next number", "rms")
+        alone = studio.decode(pcm)
+        first = studio.recogniser.pid
+        assert first is not None
+
+        async def talk() -> Evidence:
+            sound: asyncio.Queue[bytes] = asyncio.Queue()
+            begun = asyncio.Event()
+            studio.recogniser.partial = lambda words: begun.set()
+            hearing = asyncio.create_task(studio.recogniser.hear(sound))
+            await self.speak(sound, pcm[: len(pcm) // 2])
+            await begun.wait()
+            os.kill(first, signal.SIGKILL)
+            await self.speak(sound, pcm[len(pcm) // 2 :])
+            sound.put_nowait(b"")
+            return await hearing
+
+        assert studio.run(talk()) == alone
+        assert studio.recogniser.pid not in (None, first)
+        assert studio.recogniser.said == pcm
+        (sentence,) = studio.told
+        assert "signal 9" in sentence
+
+    def test_stop_ends_the_utterance_by_itself(self, studio: Studio, voices: Voices) -> None:
+        async def talk() -> Evidence:
+            sound: asyncio.Queue[bytes] = asyncio.Queue()
+            await self.speak(sound, voices.say("stop"))
+            return await studio.recogniser.hear(sound)
+
+        assert understand(studio.run(talk()), BOOK, USUAL) == Stop("stop")
+
+    def test_the_answer_comes_soon_after_the_end(
+        self, studio: Studio, voices: Voices, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        took: list[float] = []
+        at_rest: list[float] = []
+
+        async def talk(pcm: bytes) -> None:
+            begun = perf_counter()
+            await studio.recogniser.decode(pcm)
+            at_rest.append(perf_counter() - begun)
+            sound: asyncio.Queue[bytes] = asyncio.Queue()
+            heard = asyncio.Event()
+            count = 0
+
+            def partial(words: str) -> None:
+                nonlocal count
+                count += 1
+                heard.set()
+
+            studio.recogniser.partial = partial
+            hearing = asyncio.create_task(studio.recogniser.hear(sound))
+            await self.speak(sound, pcm)
+            while not sound.empty():
+                heard.clear()
+                await heard.wait()
+            ended_at = perf_counter()
+            sound.put_nowait(b"")
+            await hearing
+            took.append(perf_counter() - ended_at)
+
+        for said, voice, _, _ in KNOWN[:3]:
+            studio.run(talk(voices.say(said, voice)))
+        with capsys.disabled():
+            print(f"\nend of an utterance -> evidence: {', '.join(f'{t:.2f}' for t in took)} s")
+        assert sum(took) < 4 * sum(at_rest)
+
+
+class TestEars:
+    def test_a_stream_is_cut_into_utterances_and_each_is_understood(
+        self, voices: Voices, tmp_path: Path
+    ) -> None:
+        gap = bytes(RATE)
+        stream = b"".join(
+            gap + part
+            for part in (
+                voices.noise("claps"),
+                voices.say("the soup was too salty"),
+                voices.say("call the next number", "rms"),
+                voices.say("tell a joke", "kal16"),
+                voices.say("stop"),
+            )
+        )
+        reading, writing = os.pipe()
+
+        async def hear() -> list[object]:
+            ears = Ears("-", BOOK, hands_free=True, stdin=reading, folder=tmp_path)
+            try:
+                return [heard async for heard in ears]
+            finally:
+                await ears.close()
+
+        def speak() -> None:
+            with os.fdopen(writing, "wb") as pipe:
+                pipe.write(stream + gap)
+
+        speaker = Thread(target=speak)
+        speaker.start()
+        try:
+            heard = asyncio.run(asyncio.wait_for(hear(), PATIENCE))
+        finally:
+            os.close(reading)
+            speaker.join()
+        commands = [
+            one.commands[0].behaviour for one in heard if isinstance(one, Say) and one.commands
+        ]
+        assert commands == ["call number", "joke"]
+        assert Stop("stop") in heard
+
+    def test_files_are_listened_to(self, voices: Voices, tmp_path: Path) -> None:
+        both = tmp_path / "both.wav"
+        both.write_bytes(
+            wav(voices.say("tell a joke", "kal16") + bytes(2 * RATE) + voices.say("greet everyone"))
+        )
+        silence = tmp_path / "silence.wav"
+        silence.write_bytes(wav(bytes(2 * RATE)))
+        rows = listen([both, voices.file("call the next number", "rms"), silence], BOOK)
+        assert [row["behaviour"] for row in rows] == ["joke", "greeting", "call number", None]
+        assert [row["tier"] for row in rows] == ["sure"] * 3 + ["nothing"]
+        assert rows[-1]["heard"] == ""
         json.dumps(rows)
 
-    @pytest.mark.parametrize("voice", ["rms", "kal16", "kal"])
-    def test_other_voices_are_understood(self, say: Say, voice: str) -> None:
-        rows = listen([say(text, voice) for text in FEW], BOOK)
-        assert [row["behaviour"] for row in rows] == ["call number", "joke", "navigate to front"]
-
-    def test_other_speech_is_not_taken_for_a_command(self, say: Say) -> None:
-        other = [
-            "the soup was too salty",
-            "have you seen my glasses",
-            "the card is on the table",
-            "she told me a long story about the game",
-        ]
-        rows = listen([say(text) for text in other], BOOK)
-        assert [row["behaviour"] for row in rows] == [None] * 4
-
-    def test_several_commands_in_one_file_give_several_rows(self, say: Say, tmp_path: Path) -> None:
-        both = tmp_path / "both.wav"
-        with wave.open(str(both), "wb") as file:
-            file.setparams((1, 2, RATE, 0, "NONE", ""))
-            for text in FEW[1:]:
-                file.writeframes(read_wav(say(text)) + bytes(2 * RATE))
-        rows = listen([both], BOOK)
-        assert [row["behaviour"] for row in rows] == ["joke", "navigate to front"]
-
-    def test_silence_gives_a_row_in_which_nothing_was_heard(self, tmp_path: Path) -> None:
-        path = tmp_path / "silence.wav"
-        with wave.open(str(path), "wb") as file:
-            file.setparams((1, 2, RATE, 0, "NONE", ""))
-            file.writeframes(bytes(2 * RATE))
-        (row,) = listen([path], BOOK)
-        assert (row["heard"], row["behaviour"], row["confidence"]) == ("", None, 0.0)
+    def test_the_papers_mode_understands_phrases_too(self, voices: Voices) -> None:
+        settings = Settings(mode="paper")
+        files = [voices.file(said, voice) for said, voice, _, _ in KNOWN[:3]]
+        rows = listen([*files, voices.file("stop")], BOOK, settings)
+        assert [row["behaviour"] for row in rows] == [name for _, _, name, _ in KNOWN[:3]] + [None]
+        assert rows[-1]["tier"] == "stop"
 
 
-class TestRecogniser:
-    async def test_utterances_of_a_source_become_commands(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(BOOK.spoken())
-        microphone = open_microphone(str(say("celebrate the win")))
-        found = [understand(await recogniser.decode(pcm), BOOK) async for pcm in microphone]
-        assert [command and command.behaviour for command in found] == ["celebrate"]
+class TestWorker:
+    def test_what_cannot_be_pronounced_is_left_out_and_said(self, voices: Voices) -> None:
+        people = [Person("user1", "Xhqzr"), Person("user2", "Rosa")]
+        book = Phrasebook(load_activity("bingo"), people)
+        studio = Studio()
+        try:
+            studio.run(studio.recogniser.start(wanted(book, USUAL)))
+            assert "xhqzr" in studio.recogniser.left_out
+            said = understand(studio.decode(voices.say("go to Rosa")), book, USUAL)
+            assert isinstance(said, Say)
+            assert said.commands is not None
+            assert said.commands[0].arguments == {"user": "user2"}
+            pid = studio.recogniser.pid
+            with pytest.raises(SpeechUnavailable, match="pronounced"):
+                studio.run(studio.recogniser.start(Wanted(("xhqzr qqq",))))
+            studio.run(studio.recogniser.start(FEW))
+            assert studio.recogniser.pid == pid
+            assert studio.decode(voices.say("tell a joke", "kal16")).words == "tell a joke"
+        finally:
+            studio.close()
 
-    async def test_names_outside_the_dictionary_are_reported_and_left_out(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        book = Phrasebook(
-            load_activity("bingo"), [Person("user1", "Xhqzr"), Person("user2", "Rosa")]
-        )
-        await recogniser.start(book.spoken())
-        assert recogniser.left_out == ("xhqzr",)
-        heard = await recogniser.decode(split(read_wav(say("go to Rosa")))[0])
-        command = understand(heard, book)
-        assert command is not None
-        assert command.arguments == {"user": "user2"}
-
-    async def test_the_same_sound_is_heard_alike_every_time(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(FEW)
-        one, other = (split(read_wav(say(text)))[0] for text in FEW[:2])
-        first = await recogniser.decode(one)
-        await recogniser.decode(other)
-        assert await recogniser.decode(one) == first
-        assert first.seconds == pytest.approx(len(one) / 2 / RATE, abs=0.001)
-
-    @pytest.mark.parametrize("pcm", [b"", b"\0", bytes(640), bytes(4 * RATE), b"\x11\x99" * RATE])
-    async def test_odd_sounds_are_nothing(self, recogniser: Recogniser, pcm: bytes) -> None:
-        await recogniser.start(FEW)
-        heard = await recogniser.decode(pcm)
-        assert understand(heard, BOOK) is None
-
-    async def test_what_is_too_long_is_refused_and_the_next_is_heard(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(FEW)
-        with pytest.raises(SpeechUnavailable, match="longer than"):
-            await recogniser.decode(bytes(2 * RATE * 31))
-        assert (await recogniser.decode(read_wav(say(FEW[1])))).text == FEW[1]
-
-    async def test_phrases_that_nobody_can_pronounce_are_refused(
-        self, recogniser: Recogniser
-    ) -> None:
-        with pytest.raises(SpeechUnavailable, match="pronounced"):
-            await recogniser.start(["xhqzr qqq"])
-        assert recogniser.pid is None
-
-    async def test_a_missing_decoder_is_said(
-        self, recogniser: Recogniser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    def test_a_missing_decoder_is_said(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         (tmp_path / "pocketsphinx.py").write_text("raise ImportError(name='pocketsphinx')")
         monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-        with pytest.raises(SpeechUnavailable, match="needs the package pocketsphinx"):
-            await recogniser.start(FEW)
-
-
-class TestDeath:
-    async def test_a_worker_that_is_killed_is_noticed_and_started_again(self, say: Say) -> None:
-        told: asyncio.Queue[str] = asyncio.Queue()
-        recogniser = Recogniser(notify=told.put_nowait)
+        studio = Studio()
         try:
-            await recogniser.start(FEW)
-            first = recogniser.pid
-            assert first is not None
-            os.kill(first, signal.SIGKILL)
-            sentence = await asyncio.wait_for(told.get(), PATIENCE)
-            assert "signal 9" in sentence
-            assert "\n" not in sentence
-            assert (await recogniser.decode(read_wav(say(FEW[1])))).text == FEW[1]
-            assert recogniser.pid not in (None, first)
+            with pytest.raises(SpeechUnavailable, match="needs the package pocketsphinx"):
+                studio.run(studio.recogniser.start(FEW))
+            assert studio.recogniser.pid is None
         finally:
-            await recogniser.close()
-        assert told.empty()  # an end that was asked for is no news
+            studio.close()
 
-    async def test_a_worker_that_dies_over_an_utterance_is_an_error_not_a_wait(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(FEW)
-        pid, sound = recogniser.pid, read_wav(say(FEW[1]))
-        assert pid is not None
-        os.kill(pid, signal.SIGSTOP)
-        decoding = asyncio.create_task(recogniser.decode(sound))
-        await asyncio.wait({decoding}, timeout=0.1)
-        assert not decoding.done()
-        os.kill(pid, signal.SIGKILL)
-        with pytest.raises(SpeechUnavailable, match="signal 9"):
-            await asyncio.wait_for(decoding, PATIENCE)
-        assert (await recogniser.decode(sound)).text == FEW[1]
+    def test_garbage_is_answered_with_errors_and_the_end_of_input_ends_it(self) -> None:
+        requests: list[object] = [
+            b"hello\n",
+            b"\xff\xfe\n",
+            b"[" * 100_000 + b"\n",
+            {"id": 1},
+            {"id": 2, "begin": "commands"},
+            {"id": 3, "wanted": FEW.to_json()},
+            {"id": 4, "begin": "commands"},
+            {"pcm": "not base64!"},
+            {"id": 5, "begin": "answers"},
+            {"id": 5, "end": True},
+            {"id": 6, "wanted": Wanted(("<s> (", "\\end\\", "a\nb", "/1/ a;")).to_json()},
+            {"id": 7, "wanted": Wanted(("a",), pronunciations={"a": ("QQ",)}).to_json()},
+            {"id": 8, "pieces": ""},
+        ]
+        lines = b"".join(
+            r if isinstance(r, bytes) else json.dumps(r).encode() + b"\n" for r in requests
+        )
+        done = subprocess.run(  # noqa: S603 - our own worker
+            WORKER, input=lines, capture_output=True, timeout=PATIENCE, check=True
+        )
+        answers: list[dict[str, Any]] = [json.loads(line) for line in done.stdout.splitlines()]
+        assert [answer["id"] for answer in answers] == [None, None, None, 1, 2, 3, 4, 5, 6, 7, 8]
+        assert all("error" in answer for answer in answers[:5])
+        assert answers[5]["ready"]
+        assert "base64" in answers[6]["error"]
+        assert answers[7]["heard"]["words"] == ""
+        assert "(" in answers[8]["left_out"]
+        assert answers[10]["found"] == []
 
-    async def test_a_worker_that_hangs_is_ended(
-        self, recogniser: Recogniser, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        await recogniser.start(FEW)
-        monkeypatch.setattr("tangy_tui.learning.speech.DECODE_SECONDS", 0.1)
-        pid = recogniser.pid
-        assert pid is not None
-        os.kill(pid, signal.SIGSTOP)
-        with pytest.raises(SpeechUnavailable, match="did not answer"):
-            await recogniser.decode(bytes(2 * RATE))
-        assert ended(pid)
-
-    async def test_an_utterance_nobody_waits_for_does_not_answer_the_next(
-        self, say: Say, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(FEW)
-        one, other = (read_wav(say(text)) for text in FEW[:2])
-        given_up = asyncio.create_task(recogniser.decode(one))
-        await asyncio.wait({given_up}, timeout=0.001)
-        given_up.cancel()
-        assert (await recogniser.decode(other)).text == FEW[1]
-
-    async def test_closing_ends_the_worker(self, recogniser: Recogniser) -> None:
-        await recogniser.start(FEW)
-        pid = recogniser.pid
-        assert pid is not None
-        await recogniser.close()
-        assert ended(pid)
-        assert recogniser.pid is None
-        with pytest.raises(SpeechUnavailable, match="not started"):
-            await recogniser.decode(bytes(2 * RATE))
-
-    async def test_closing_does_not_wait_for_a_worker_that_hangs(
-        self, recogniser: Recogniser
-    ) -> None:
-        await recogniser.start(FEW)
-        pid = recogniser.pid
-        assert pid is not None
-        os.kill(pid, signal.SIGSTOP)
-        decoding = asyncio.create_task(recogniser.decode(bytes(2 * RATE)))
-        await asyncio.wait({decoding}, timeout=0.1)
-        await asyncio.wait_for(recogniser.close(), END_SECONDS)
-        assert ended(pid)
-        with pytest.raises(SpeechUnavailable):
-            await decoding
-
-    def test_the_worker_ends_when_its_input_closes(self) -> None:
-        assert chat({"id": 7, "phrases": FEW}) == [{"id": 7, "ready": True, "left_out": []}]
-
-    def test_the_worker_ends_when_the_program_is_killed(self) -> None:
+    def test_it_ends_when_the_program_is_killed(self) -> None:
         code = (
             "import asyncio\n"
-            "from tangy_tui.learning.speech import Recogniser\n"
+            "from tangy_tui.learning.speech.evidence import Wanted\n"
+            "from tangy_tui.learning.speech.recogniser import Recogniser\n"
             "async def run():\n"
             "    recogniser = Recogniser()\n"
-            "    await recogniser.start(['call number'])\n"
+            "    starting = asyncio.create_task(recogniser.start(Wanted(('call number',))))\n"
+            "    while recogniser.pid is None:\n"
+            "        await asyncio.sleep(0)\n"
             "    print(recogniser.pid, flush=True)\n"
+            "    await starting\n"
             "    await asyncio.Event().wait()\n"
             "asyncio.run(run())\n"
         )
@@ -304,63 +431,35 @@ class TestDeath:
             program.kill()
         assert ended(pid)
 
-
-class TestProtocol:
-    def test_garbage_is_answered_with_errors(self) -> None:
-        answers = chat(
-            b"hello\n",
-            b"\xff\xfe\n",
-            b"[" * 100_000 + b"\n",
-            {"id": 1},
-            {"id": 2, "pcm": "AAAA"},
-            {"id": 3, "phrases": FEW},
-            {"id": 4, "pcm": "not base64!"},
-            {"id": 5, "pcm": ""},
-            {"id": 6, "phrases": ["<s> (", "\\end\\", "a\nb"]},
-        )
-        assert [answer["id"] for answer in answers] == [None, None, None, 1, 2, 3, 4, 5, 6]
-        assert all("error" in answer for answer in answers[:5])
-        assert "base64" in answers[6]["error"]
-        assert answers[7]["text"] == ""
-        assert answers[8]["left_out"] == ["(", "<s>", "\\end\\"]
-
-    def test_what_the_library_prints_stays_out_of_the_answers(self) -> None:
-        code = (
-            "import os\n"
-            "from tangy_tui.learning import speech_worker\n"
-            "class Noisy(speech_worker.Worker):\n"
-            "    def answer(self, request):\n"
-            "        os.write(1, b'noise')\n"
-            "        print('noise', flush=True)\n"
-            "        return super().answer(request)\n"
-            "speech_worker.Worker = Noisy\n"
-            "speech_worker.main()\n"
-        )
-        answers = chat({"id": 1, "phrases": FEW}, command=(sys.executable, "-c", code))
-        assert answers == [{"id": 1, "ready": True, "left_out": []}]
-
-    def test_nothing_is_written_to_the_terminal(self, say: Say, tmp_path: Path) -> None:
+    def test_nothing_is_written_to_the_terminal(self, voices: Voices, tmp_path: Path) -> None:
         code = (
             "import asyncio, os, sys\n"
             "from pathlib import Path\n"
-            "from tangy_tui.learning.wav import read_wav\n"
-            "from tangy_tui.learning.speech import Recogniser, SpeechUnavailable\n"
+            "from tangy_hw.sound.wav import read_wav\n"
+            "from tangy_tui.learning.speech.evidence import Wanted\n"
+            "from tangy_tui.learning.speech.recogniser import Recogniser\n"
             "async def run():\n"
             "    recogniser = Recogniser(log=Path(sys.argv[2]))\n"
-            "    await recogniser.start(['tell a joke', 'xhqzr'])\n"
-            "    heard = await recogniser.decode(read_wav(Path(sys.argv[1])))\n"
-            "    assert os.getsid(recogniser.pid) != os.getsid(0)\n"
-            "    os.kill(recogniser.pid, 11)\n"
-            "    try:\n"
-            "        await recogniser.decode(bytes(64000))\n"
-            "    except SpeechUnavailable:\n"
-            "        pass\n"
+            "    await recogniser.start(Wanted(('tell a joke', 'xhqzr', 'a(b')))\n"
+            "    first, sound = recogniser.pid, asyncio.Queue()\n"
+            "    assert os.getsid(first) != os.getsid(0)\n"
+            "    begun = asyncio.Event()\n"
+            "    recogniser.partial = lambda words: begun.set()\n"
+            "    hearing = asyncio.create_task(recogniser.hear(sound))\n"
+            "    pcm = read_wav(Path(sys.argv[1]))\n"
+            "    for place in range(0, len(pcm), 3200):\n"
+            "        sound.put_nowait(pcm[place:place + 3200])\n"
+            "    await begun.wait()\n"
+            "    os.kill(first, 11)\n"
+            "    sound.put_nowait(b'')\n"
+            "    heard = await hearing\n"
             "    await recogniser.close()\n"
-            "    sys.exit(0 if heard.text == 'tell a joke' else 9)\n"
+            "    sys.exit(0 if heard.words == 'tell a joke' else 9)\n"
             "asyncio.run(run())\n"
         )
         parent, child = pty.openpty()
-        command = [sys.executable, "-c", code, str(say("tell a joke")), str(tmp_path / "log")]
+        file = voices.file("tell a joke", "kal16")
+        command = [sys.executable, "-X", "dev", "-c", code, str(file), str(tmp_path / "log")]
         with subprocess.Popen(command, stdin=child, stdout=child, stderr=child) as program:  # noqa: S603
             status = program.wait(PATIENCE)
         os.close(child)
