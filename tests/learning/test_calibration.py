@@ -19,6 +19,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
+from tangy_tui.learning.speech import checking
 from tangy_tui.learning.speech.calibration import (
     SHIFTS,
     SURELY,
@@ -198,6 +199,30 @@ class Microphone(Source):
         await asyncio.Event().wait()
 
 
+class Silent(Source):
+    """A microphone that sends nothing at all."""
+
+    def __init__(self) -> None:
+        super().__init__("silent", live=True)
+
+    async def _sound(self) -> Chunks:
+        await asyncio.Event().wait()
+        yield b""
+
+
+class Broken(Microphone):
+    """A microphone that is pulled out after some phrases."""
+
+    async def _sound(self) -> Chunks:
+        yield bytes(2 * 3 * RATE)
+        for number in self.said:
+            await self.asked.wait()
+            self.asked.clear()
+            yield bytes([number or 0, 0]) * 4000
+        await self.asked.wait()
+        raise SoundError("It was unplugged.")
+
+
 @pytest.fixture
 def asked(activity: Activity, people: tuple[Person, ...]) -> list[Asked]:
     book = Phrasebook(activity, people)
@@ -256,6 +281,24 @@ class TestChecking:
     ) -> None:
         with pytest.raises(SoundError, match="nobody was heard"):
             await self.check(Recording("a.wav", b""), activity, people, asked)
+
+    async def test_a_microphone_that_sends_nothing_is_given_up(
+        self,
+        activity: Activity,
+        people: tuple[Person, ...],
+        asked: list[Asked],
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> None:
+        monkeypatch.setattr(checking, "GIVE_UP_SECONDS", 0.0)
+        monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
+        with pytest.raises(SoundError, match="nothing has come"):
+            await self.check(Silent(), activity, people, asked)
+
+    async def test_a_microphone_that_breaks_says_why(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        with pytest.raises(SoundError, match="unplugged"):
+            await self.check(Broken([1, 2]), activity, people, asked)
 
     @staticmethod
     async def check(

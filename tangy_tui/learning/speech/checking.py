@@ -202,18 +202,26 @@ class MicrophoneCheck:
         try:
             self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
             await self._quiet.wait()
+            await self._still_there(pump)
             room = loudness(bytes(self._room), LOUD)
             sounds: list[bytes] = []
             self._tell(f"Now say each of these, as you would to Tangy ({len(self._asked)} in all).")
             for number, asked in enumerate(self._asked, 1):
                 sounds.append(await self._say(number, asked))
-            if self._ended and not any(sounds):
-                await pump  # says why
+                await self._still_there(pump)
             return room, sounds
         finally:
             for task in (pump, watch):
                 task.cancel()
             await asyncio.wait({pump, watch})
+
+    async def _still_there(self, pump: asyncio.Task[None]) -> None:
+        """Raise what has ended the sound, if that was no ordinary end."""
+        if pump.done():
+            await pump
+        elif self._ended:
+            seconds = f"{GIVE_UP_SECONDS:g} s"
+            raise SoundError(f"{self._source.name}: nothing has come for {seconds}.")
 
     async def _say(self, number: int, asked: Asked) -> bytes:
         """Ask for one text, twice if nothing is heard; return its sound."""
