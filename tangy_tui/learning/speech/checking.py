@@ -205,7 +205,9 @@ class MicrophoneCheck:
             await self._still_there(pump)
             room = loudness(bytes(self._room), LOUD)
             sounds: list[bytes] = []
-            self._tell(f"Now say each of these, as you would to Tangy ({len(self._asked)} in all).")
+            if not self._ended:
+                count = len(self._asked)
+                self._tell(f"Now say each of these, as you would to Tangy ({count} in all).")
             for number, asked in enumerate(self._asked, 1):
                 sounds.append(await self._say(number, asked))
                 await self._still_there(pump)
