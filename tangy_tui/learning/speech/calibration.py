@@ -2,8 +2,8 @@
 
 A few commands and a few other sentences are decoded with several weights of the garbage branch.
 Each weight gives every utterance a score; the threshold between the commands and the rest is
-shifted to where it parts them best. Nine utterances are few, so the usual settings are kept while
-they part all with room to spare, and any others pay for how far they are from them.
+shifted to where it parts them best. Nine utterances are few, so any settings pay for how far they
+are from the usual ones, which are kept unless others gain a whole utterance.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ ROOM = 0.6  # by which every score is on its side of the threshold, with room to
 SHIFT_SPREAD = 0.8  # how far shifts usually are from 0, and weights (as a factor) from the usual
 WEIGHT_SPREAD = 2.5
 SURELY, PERHAPS = math.log(SURE / (1 - SURE)), math.log(UNSURE / (1 - UNSURE))
+WORTH_IT = 1.0  # utterances that other settings must gain
 FAR = 6.0  # scores beyond tell no more
 
 
@@ -61,6 +62,11 @@ class Figures:
         """Whether that is good enough to work with: at most one command in six is lost."""
         lost = self.commands - self.understood - self.offered
         return self.commands > 0 and 6 * lost <= self.commands and 3 * self.taken <= self.others
+
+    @property
+    def gain(self) -> float:
+        """What it is worth: a choice half as much as what is surely understood."""
+        return self.understood + self.offered / 2 - self.taken
 
     @property
     def perfect(self) -> bool:
@@ -114,9 +120,10 @@ def choose(scores: Mapping[float, Sequence[Score]]) -> Chosen:
         ((weight, shift) for weight in scores for shift in SHIFTS),
         key=lambda way: (_worth(scores[way[0]], *way), way),
     )
-    return Chosen(
-        replace(USUAL, garbage=weight, shift=shift), _figures(scores[weight], shift), usual
-    )
+    found = _figures(scores[weight], shift)
+    if found.gain < usual.gain + WORTH_IT:
+        return Chosen(USUAL, usual, usual)
+    return Chosen(replace(USUAL, garbage=weight, shift=shift), found, usual)
 
 
 def spare(scores: Sequence[Score]) -> bool:
