@@ -17,6 +17,7 @@ from tangy_profiles.reading import plain
 from tangy_tui import __version__
 from tangy_tui.verbs import (
     activity,
+    cards,
     demonstrations,
     drill,
     experiment,
@@ -87,6 +88,7 @@ mic.app.command("check")(mic_check.check)
 app.add_typer(mic.app, name="mic")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(activity.app, name="activity")
+app.add_typer(cards.app, name="cards")
 app.add_typer(log.app, name="log")
 
 
