@@ -1,0 +1,145 @@
+"""Tangy asks in a game and hears the answer; stop is heard at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from textual.app import App
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.house import House
+from tangy_tui.learning.policy import ForestSettings, Policy
+from tangy_tui.learning.verifying import Reply, Stop
+from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.phrases import PhrasesScreen
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.command_bar import CommandBar
+from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
+from tests.interaction.gaps import learnt, without
+from tests.pilot.conftest import Run, StillClock, TangyPilot, screen_text
+from tests.pilot.ears import FakeEars
+
+UNSURE = "call a joke number"
+
+
+@pytest.fixture
+def gappy(house: House, cover: Callable[[str, int, int], tuple[Demonstration, ...]]) -> Policy:
+    """A policy that was never shown when to call a number."""
+    expected = house.activity.expected
+    gap = next(s for s in house.activity.situations if expected[s] == "call number")
+    shown = [without(d, gap) for d in cover("bingo", 1, 4)]
+    return learnt(house.store, house.activity, shown, ForestSettings(trees=5))
+
+
+def playing(house: House, policy: Policy, ears: FakeEars, *, speed: float = 1000) -> Program:
+    """Make the program with ears and the playing screen open."""
+
+    async def start(program: Program) -> None:
+        supervision = house.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(house, supervision, speed=speed, teacher="ann"))
+
+    return Program(house, start, clock=StillClock(), ears=ears.ears)
+
+
+async def asked(pilot: TangyPilot) -> PlayScreen:
+    """Wait until Tangy asks and an answer can be given."""
+    while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
+        await pilot.pause(0.02)
+    while not pilot.app.screen.query_one(AskingPanel).listens:
+        await pilot.pause(0.02)
+    return pilot.app.screen
+
+
+async def test_an_answer_is_said_asked_about_and_learnt(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    ears = FakeEars()
+    async with run(app=playing(house, gappy, ears)) as pilot:
+        screen = await asked(pilot)
+        assert "t talk" in pilot.lines()[-2]
+        await pilot.press("t")
+        assert "listening ..." in screen.query_one(MicrophoneLine).text
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+        await pilot.press("1")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        await pilot.press("y")
+        while screen._supervision.question is not None:
+            await pilot.pause(0.02)
+        while "Learnt from ann" not in " ".join(screen.query_one(LogView).sentences):
+            await pilot.pause(0.02)
+
+
+async def test_a_spoken_no_gives_the_words_back(run: Run, house: House, gappy: Policy) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=playing(house, gappy, ears)) as pilot:
+        screen = await asked(pilot)
+        ears.hear(ears.say("call number"))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        ears.hear(Reply(False))
+        await pilot.pause()
+        assert screen.query_one(CommandBar).text == "call number"
+        assert screen._supervision.question is not None
+        assert screen.query_one(AskingPanel).listens
+
+
+async def test_while_nothing_is_asked_only_stop_is_heard(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=playing(house, gappy, ears, speed=1)) as pilot:
+        screen = pilot.app.screen
+        assert isinstance(screen, PlayScreen)
+        assert ears.asks
+        assert "listening for stop" in screen.query_one(MicrophoneLine).text
+        ears.hear(Stop("stop"))
+        await pilot.pause()
+        assert "STOPPED" in screen_text(pilot.app)
+
+
+async def test_after_a_stop_what_is_said_is_given_back(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    ears = FakeEars(hands_free=True)
+    async with run(app=playing(house, gappy, ears)) as pilot:
+        screen = await asked(pilot)
+        ears.hear(Stop("stop"))
+        await pilot.pause()
+        ears.hear(ears.say("call number"))
+        await pilot.pause()
+        assert pilot.app.screen is screen
+        assert "press p to go on first" in screen_text(pilot.app)
+        assert screen.query_one(CommandBar).text == "call number"
+
+
+async def test_the_phrases_are_shown_where_tangy_asks(
+    run: Run, house: House, gappy: Policy
+) -> None:
+    async with run(app=playing(house, gappy, FakeEars())) as pilot:
+        await asked(pilot)
+        await pilot.press("colon", *"phrases", "enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, PhrasesScreen)
+
+
+@pytest.mark.parametrize("size", [(60, 18), (80, 24), (120, 40)], ids=["tiny", "small", "large"])
+async def test_how_asking_with_ears_looks(
+    run: Run,
+    house: House,
+    gappy: Policy,
+    size: tuple[int, int],
+    picture: Callable[[App[None]], None],
+) -> None:
+    ears = FakeEars()
+    async with run(app=playing(house, gappy, ears), size=size) as pilot:
+        await asked(pilot)
+        ears.be("speaking", "call the", 0.4)
+        await pilot.pause()
+        picture(pilot.app)
