@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from textual.app import ComposeResult
@@ -23,12 +24,13 @@ from tangy_tui.ui.app import TangyApp, run_app
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
-from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
+from tangy_tui.ui.dialogs.question import Answer, ChoicesDialog, QuestionDialog
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import LIGHT
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -38,11 +40,44 @@ from tangy_tui.ui.widgets.transcript import Transcript
 NARROW_OR_WIDE = [(0, "-narrow"), (120, "-wide")]
 
 
+@dataclass
+class SampleEars:
+    """A microphone in one of the states that it can be in."""
+
+    state: str
+    words: str = ""
+    trouble: str = ""
+    level: float = 0.0
+    live: bool = True
+    hands_free: bool = False
+
+    @property
+    def meter(self) -> SampleEars:
+        """What has the level."""
+        return self
+
+
+HEARD = (
+    SampleEars("off"),
+    SampleEars("listening", level=0.2),
+    SampleEars("speaking", "call the next", level=0.7),
+    SampleEars("thinking", "call the next number"),
+    SampleEars("shut"),
+    SampleEars(
+        "listening", trouble="No sound for 2 s: is the microphone plugged in? It may be muted."
+    ),
+    SampleEars("over"),
+)
+
+
 class GalleryScreen(TangyScreen[None]):
     """All of it at once; 80 columns show room, steps and command bar."""
 
     TITLE = "Gallery"
-    HELP = "Every widget with sample data. g lets the robot walk, d opens the question."
+    HELP = (
+        "Every widget with sample data. g lets the robot walk, d opens the question, c offers "
+        "choices, t shows the next state of the microphone."
+    )
     AUTO_FOCUS = "#command-input"
     CSS = """
     GalleryScreen #upper { height: 3fr; }
@@ -58,6 +93,8 @@ class GalleryScreen(TangyScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("g", "go", "Let the robot walk"),
         Binding("d", "ask", "Ask the question"),
+        Binding("c", "offer", "Offer choices"),
+        Binding("t", "listen", "The next state of the microphone"),
         Binding("y", "confirm", "Ask for a yes"),
         Binding("w", "tell", "Show a message"),
     ]
@@ -73,6 +110,7 @@ class GalleryScreen(TangyScreen[None]):
         self.policy = PolicyTable()
         self.log_view = LogView(id="log")
         self.bar = CommandBar(self._complete)
+        self.heard = 0
 
     def compose(self) -> ComposeResult:
         """Lay out the panels."""
@@ -85,6 +123,7 @@ class GalleryScreen(TangyScreen[None]):
                 yield self.transcript
                 yield self.policy
                 yield self.log_view
+        yield MicrophoneLine(HEARD[0])
         yield self.bar
         for panel in (self.room_view, self.posteriors, self.transcript, self.policy, self.log_view):
             panel.add_class("panel")
@@ -163,6 +202,17 @@ class GalleryScreen(TangyScreen[None]):
             alternatives=("greet everyone", "go to the user", "tell a joke"),
         )
         self.app.push_screen(dialog, answered)
+
+    def action_offer(self) -> None:
+        """Offer choices."""
+        choices = ("call number", "tell a joke", "go to the user (User 2)")
+        self.app.push_screen(ChoicesDialog(heard="call a joke", confidence=0.45, choices=choices))
+
+    async def action_listen(self) -> None:
+        """Show the microphone in its next state."""
+        self.heard = (self.heard + 1) % len(HEARD)
+        await self.query_one(MicrophoneLine).remove()
+        await self.mount(MicrophoneLine(HEARD[self.heard]), before=self.bar)
 
     def action_confirm(self) -> None:
         """Ask for a yes."""

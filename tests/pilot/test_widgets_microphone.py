@@ -1,0 +1,101 @@
+"""The line of the microphone in all its states, in every width, and in ASCII."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from rich.cells import cell_len
+from textual.app import ComposeResult
+
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import to_ascii
+from tangy_tui.ui.gallery import HEARD, SampleEars
+from tangy_tui.ui.widgets.microphone_line import BAR, MicrophoneLine
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run
+
+
+class Line(TangyScreen[None]):
+    """Only the line."""
+
+    def __init__(self, ears: SampleEars, expects: str = "") -> None:
+        super().__init__()
+        self.line = MicrophoneLine(ears, lambda: expects)
+
+    def compose(self) -> ComposeResult:
+        yield self.line
+
+
+SAID = {
+    "off": "○ t talk",
+    "listening": "● listening ...",
+    "speaking": "● hearing you ...",
+    "thinking": "○ thinking ...",
+    "shut": "○ shut while Tangy speaks",
+    "over": "○ closed",
+}
+
+
+@pytest.mark.parametrize("ears", HEARD, ids=lambda ears: ears.state)
+@pytest.mark.parametrize("width", [60, 80, 120])
+async def test_every_state_is_said_in_words_and_fits(
+    run: Run, ears: SampleEars, width: int
+) -> None:
+    screen = Line(ears)
+    async with run(screen, (width, 24)) as pilot:
+        screen.line._tick()
+        await pilot.pause()
+        text = screen.line.text
+        assert cell_len(text) <= width - 2
+        assert text.strip() in pilot.text()
+        if ears.trouble:
+            assert ears.trouble[:40] in text
+        else:
+            assert text.startswith(SAID[ears.state])
+            assert ears.words in text
+        plain = to_ascii(text)
+        assert plain.isascii()
+        assert plain.count("?") == text.count("?")
+
+
+@pytest.mark.parametrize(("level", "full"), [(0.0, 0), (0.5, 6), (1.0, 12), (7.0, 12), (-1.0, 0)])
+async def test_the_bar_is_as_long_as_it_is_loud(run: Run, level: float, full: int) -> None:
+    screen = Line(SampleEars("listening", level=level))
+    async with run(screen):
+        screen.line._tick()
+        assert screen.line.text.count("■") == full
+        assert screen.line.text.count("·") == BAR - full
+
+
+async def test_of_many_words_the_last_are_shown(run: Run) -> None:
+    screen = Line(SampleEars("speaking", " ".join(f"word{n}" for n in range(40))))
+    async with run(screen) as pilot:
+        assert screen.line.text.endswith("word39")
+        assert "…" in screen.line.text
+        await pilot.resize_terminal(60, 20)
+        await pilot.pause()
+        assert screen.line.text.endswith("word39")
+
+
+async def test_it_says_what_alone_is_listened_for(run: Run) -> None:
+    screen = Line(SampleEars("listening"), "yes, no or stop")
+    async with run(screen):
+        assert "listening for yes, no or stop ..." in screen.line.text
+        assert "ends it" not in screen.line.text
+
+
+async def test_words_from_the_decoder_are_data(run: Run) -> None:
+    screen = Line(SampleEars("speaking", "call \x1b[31m[/][@click=app.quit]"))
+    async with run(screen) as pilot:
+        assert "\x1b" not in screen.line.text
+        assert "[/]" in pilot.text()
+
+
+async def test_a_recording_has_no_level(run: Run) -> None:
+    screen = Line(SampleEars("listening", level=0.5, live=False))
+    async with run(screen):
+        assert "■" not in screen.line.text
+        assert screen.line._timer is not None
+        assert not screen.line._timer._active.is_set()
