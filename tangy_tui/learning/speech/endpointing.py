@@ -9,7 +9,7 @@ from tangy_tui.learning.speech.evidence import RATE
 WINDOW = 0.3  # s, of which the share below has to be speech, or quiet
 RATIO = 0.9
 PAUSE = 0.5  # s; the window for recordings, in which nobody waits for an answer
-MARGIN = 0.2  # s of a recording that are kept before and after an utterance
+MARGIN = 0.3  # s that are kept before an utterance, and of a recording after it as well
 
 
 class Endpoints:
@@ -22,6 +22,8 @@ class Endpoints:
             window=window, ratio=RATIO, sample_rate=RATE, vad_mode=pocketsphinx.Vad.LOOSE
         )
         self._rest = b""
+        self._window = window
+        self._recent = bytearray()  # the end of what was taken: the utterance, or before one
         self.taken = 0
         """How many bytes of the stream it has looked at."""
 
@@ -48,8 +50,12 @@ class Endpoints:
         self._rest = stream[whole:]
         for place in range(0, whole, size):
             spoke = self._endpointer.in_speech
-            speech = self._endpointer.process(stream[place : place + size])
+            frame = stream[place : place + size]
+            speech = self._endpointer.process(frame)
             self.taken += size
+            self._recent += frame
+            if not spoke and not speech:
+                del self._recent[: -2 * round((self._window + MARGIN) * RATE)]
             if speech:
                 yield not spoke, bytes(speech), not self._endpointer.in_speech
 
@@ -57,8 +63,20 @@ class Endpoints:
         """End the stream; return what is left of an utterance that was still going on."""
         speaking: bool = self._endpointer.in_speech
         speech = self._endpointer.end_stream(self._rest or b"\0\0")
-        self.taken, self._rest = self.taken + len(self._rest), b""
+        self.taken, self._rest, self._recent = (
+            self.taken + len(self._rest),
+            b"",
+            self._recent + self._rest,
+        )
         return bytes(speech) if speaking and speech else b""
+
+    def utterance(self) -> bytes:
+        """Return the utterance that was found last, with what lies around it.
+
+        Where nothing but words is left of a sound, the decoder is less sure of them.
+        """
+        begin = 2 * round(max(0.0, self.begin - MARGIN) * RATE)
+        return bytes(self._recent[max(0, begin - (self.taken - len(self._recent))) :])
 
 
 def pieces(pcm: bytes) -> list[tuple[float, float]]:

@@ -25,7 +25,6 @@ WORKER = (sys.executable, "-P", "-m", "tangy_tui.learning.speech.worker")
 START_SECONDS = 30.0  # for the worker to load its models: 0.8 s when nothing else runs
 DECODE_SECONDS = 30.0  # for an utterance: 0.2 s when nothing else runs
 END_SECONDS = 2.0
-MARGIN = 0.6  # s that an endpointer needs to know that an utterance has begun, and is over
 BEHIND = 5.0  # s of sound that are on the way to the worker at most
 ATTEMPTS = 2  # at one utterance, before it is given up
 LONGEST_ANSWER = 1 << 20  # bytes; a recording may have thousands of utterances
@@ -199,7 +198,7 @@ class Recogniser:
                 end = len(self.said) - max(0, sent - got["used"])
                 self.said, self.left = self.said[:end], self.said[end:]
                 # what came before it is nobody's business
-                self.said = self.said[-2 * round((evidence.seconds + MARGIN) * RATE) :]
+                self.said = self.said[max(0, end - 2 * round(evidence.seconds * RATE)) :]
             return evidence
         finally:
             self._waiting.pop(id, None)

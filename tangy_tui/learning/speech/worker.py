@@ -155,16 +155,18 @@ class Worker:
 
     def _end(self) -> None:
         id = self._id
-        heard = Evidence(seconds=len(self._pcm) / 2 / RATE)
-        if _sounds(self._pcm):
-            heard = self._decoder.decode(bytes(self._pcm), self._expecting)
-        used = len(self._pcm) if self._endpoints is None else self._endpoints.taken
+        pcm, used = bytes(self._pcm), len(self._pcm)
+        if self._endpoints is not None:
+            pcm, used = self._endpoints.utterance() if pcm else b"", self._endpoints.taken
+        heard = Evidence(seconds=len(pcm) / 2 / RATE)
+        if _sounds(pcm):
+            heard = self._decoder.decode(pcm, self._expecting)
         self._id = None
         self._pcm.clear()
         self._write({"id": id, "heard": asdict(heard), "used": used})
 
 
-def _sounds(pcm: bytearray) -> bool:
+def _sounds(pcm: bytes) -> bool:
     """Whether there is more in this than the silence of a microphone that is off."""
     samples = memoryview(pcm).cast("h")
     return len(samples) > 0 and max(samples) - min(samples) > SILENCE
