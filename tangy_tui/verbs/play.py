@@ -91,12 +91,13 @@ def play(
     if expert not in ("", "scripted"):
         raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
     faults = tuple(inject or ())
-    screen = not (headless or as_json) and full_screen()
     listening = Listening(mic, hands_free, spoken_answers, mode)
     listening.check()
+    listens = mic == "-" and not (headless or as_json)
+    sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
+    screen = not (headless or as_json) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
-    sound = keys_from_terminal(None) if mic == "-" else 0
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity, policy)
         if screen:

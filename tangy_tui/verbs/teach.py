@@ -85,12 +85,12 @@ def teach(
     if who == "scripted" and script is not None:
         raise TangyError("--teacher scripted gives its own lines: leave out --script.")
 
-    screen = not (plain_lines or script or as_json) and full_screen()
     listening = Listening(mic, hands_free, spoken_answers, mode, record)
     listening.check()
+    sound = keys_from_terminal(script) if mic == "-" else 0  # before it is asked for a screen
+    screen = not (plain_lines or script or as_json) and full_screen()
     if not screen:
         listening = replace(listening, hands_free=True)  # there is no key to talk with
-    sound = keys_from_terminal(script) if mic == "-" else 0
     with open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
