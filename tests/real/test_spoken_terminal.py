@@ -1,70 +1,196 @@
-"""A spoken command through the real decoder ends at the same question as a typed one."""
+"""Spoken commands through real terminals and processes, from the sound to the executed step."""
 
 from __future__ import annotations
 
 import json
+import os
+import select
 import shutil
+import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-if TYPE_CHECKING:
-    from tests.real.conftest import OpenTerminal, Tmux
+from tangy_hw.sound.wav import RATE
+from tests.hw.sounds import wav
+from tests.real.conftest import PATIENCE
+from tests.real.voices import Voices
 
-flite = shutil.which("flite")
-needs_flite = pytest.mark.skipif(flite is None, reason="flite is not installed")
+if TYPE_CHECKING:
+    from tests.real.conftest import OpenTerminal, Terminal, Tmux
+
+pytestmark = [
+    pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
+    pytest.mark.xdist_group("speech"),
+]
+
+PIECE = 0.05  # s
 
 
 @pytest.fixture
-def spoken(tmp_path: Path) -> Callable[[str], Path]:
-    """Say a sentence into a WAV file, with the voice slt."""
+def voices(tmp_path: Path) -> Voices:
+    return Voices(tmp_path)
 
-    def say(words: str) -> Path:
-        file = tmp_path / f"{words.replace(' ', '-')}.wav"
-        assert flite is not None
-        subprocess.run(  # noqa: S603 - flite, found on the path
-            [flite, "-voice", "slt", "-t", words, "-o", str(file)], check=True
+
+class Laptop:
+    """`tangy mic` in a process of its own, into which somebody speaks at the speed of speech."""
+
+    def __init__(self, tangy: str, data: Path) -> None:
+        self.process = subprocess.Popen(  # noqa: S603 - our own program
+            [tangy, "mic", "--data", str(data)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
         )
-        return file
 
-    return say
+    def say(self, terminal: Terminal, pcm: bytes) -> None:
+        """Speak; the terminal is looked at meanwhile."""
+        assert self.process.stdin is not None
+        size = round(2 * RATE * PIECE)
+        for place in range(0, len(pcm), size):
+            self.process.stdin.write(pcm[place : place + size])
+            self.process.stdin.flush()
+            terminal.read(PIECE)
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.communicate()
 
 
-@needs_flite
-def test_a_recording_is_asked_about_and_becomes_a_step(
-    open_terminal: OpenTerminal, spoken: Callable[[str], Path], tangy: str, tmp_path: Path
-) -> None:
-    terminal = open_terminal("teach", "--seed", "1", "--mic", str(spoken("greet everyone")))
-    terminal.until("Did you say: greet everyone?")
-    terminal.settle(0.4)
-    terminal.type("y")
-    terminal.until("-> greeting")
-    terminal.type("\x03")
-    assert terminal.wait() == 0
+@pytest.fixture
+def laptop(tangy: str, tmp_path: Path) -> Iterator[Callable[[], Laptop]]:
+    made: list[Laptop] = []
+
+    def one() -> Laptop:
+        made.append(Laptop(tangy, tmp_path / "data"))
+        return made[-1]
+
+    yield one
+    for each in made:
+        each.end()
+
+
+def steps(tangy: str, data: Path) -> list[str]:
+    """Return the behaviours that are in the log of what was shown."""
     kept = subprocess.run(  # noqa: S603 - our own program
-        [tangy, "teach", "--json", "--data", str(tmp_path / "data")],
+        [tangy, "teach", "--json", "--data", str(data)],
         input="",
         capture_output=True,
         text=True,
         check=True,
     )
     trajectory = json.loads(kept.stdout)["demonstrations"][0]["trajectory"]
-    assert [step["behaviour"] for step in trajectory] == ["greeting"]
+    return [step["behaviour"] for step in trajectory]
 
 
-@needs_flite
-def test_sound_on_standard_input_leaves_the_keys_to_the_terminal(
-    open_tmux: Callable[[int, int], Tmux],
-    spoken: Callable[[str], Path],
+def children(pid: int) -> list[int]:
+    """Return the processes that a process has started."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            except OSError:
+                continue
+            if parent == pid:
+                found.append(int(entry.name))
+    return found
+
+
+def ended(pid: int) -> bool:
+    """Wait for a process to end."""
+    try:
+        descriptor = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return True
+    try:
+        return bool(select.select([descriptor], [], [], PATIENCE)[0])
+    finally:
+        os.close(descriptor)
+
+
+def test_a_recording_is_asked_about_and_becomes_a_step(
+    open_terminal: OpenTerminal, voices: Voices, tangy: str, tmp_path: Path
+) -> None:
+    file = voices.file("greet everyone")
+    terminal = open_terminal("teach", "--seed", "1", "--mic", str(file))
+    terminal.until("Did you say: greet everyone?")
+    terminal.settle(0.4)
+    terminal.type("y")
+    terminal.until("-> greeting")
+    terminal.type("\x03")
+    assert terminal.wait() == 0
+    assert steps(tangy, tmp_path / "data") == ["greeting"]
+
+
+def test_a_laptops_microphone_is_pushed_to_talk_and_becomes_a_step(
+    open_terminal: OpenTerminal,
+    laptop: Callable[[], Laptop],
+    voices: Voices,
     tangy: str,
     tmp_path: Path,
 ) -> None:
+    terminal = open_terminal("teach", "--seed", "1", "--mic", "socket", columns=100, lines=30)
+    terminal.until("t talk   then say")
+    microphone = laptop()
+    terminal.until("microphone is connected")
+    terminal.type("t")
+    terminal.until("● listening")
+    microphone.say(terminal, voices.say("greet everyone"))
+    terminal.until(lambda text: "greet" in text.partition("● listening")[2])  # as it is said
+    terminal.type("t")
+    terminal.until("Did you say: greet everyone?")
+    terminal.settle(0.4)
+    terminal.type("y")
+    terminal.until("-> greeting")
+    terminal.until("○ t talk")
+    terminal.type("t")
+    terminal.until("● listening")
+    microphone.say(terminal, voices.say("stop"))
+    terminal.until("Heard: stop.")  # by itself
+    terminal.type("\x03")
+    assert terminal.wait() == 0
+    assert steps(tangy, tmp_path / "data") == ["greeting"]
+    shown = terminal.raw.decode(errors="replace")
+    assert "Traceback" not in shown
+    assert "ERROR" not in shown
+
+
+def test_a_decoder_that_is_killed_in_mid_utterance_shows_and_loses_nothing(
+    open_terminal: OpenTerminal, laptop: Callable[[], Laptop], voices: Voices
+) -> None:
+    terminal = open_terminal("teach", "--seed", "1", "--mic", "socket", columns=100, lines=30)
+    terminal.until("t talk   then say")
+    microphone = laptop()
+    terminal.until("microphone is connected")
+    (decoder,) = children(terminal.process.pid)
+    pcm = voices.say("greet everyone")
+    terminal.type("t")
+    terminal.until("● listening")
+    microphone.say(terminal, pcm[: len(pcm) // 2])
+    os.kill(decoder, signal.SIGKILL)
+    microphone.say(terminal, pcm[len(pcm) // 2 :])
+    terminal.until("ended unasked (signal 9)")
+    terminal.type("t")
+    terminal.until("Did you say: greet everyone?")
+    (other,) = children(terminal.process.pid)
+    assert other != decoder
+    terminal.process.kill()
+    assert ended(other)
+
+
+def test_sound_on_standard_input_leaves_the_keys_to_the_terminal(
+    open_tmux: Callable[[int, int], Tmux], voices: Voices, tangy: str, tmp_path: Path
+) -> None:
     tmux = open_tmux(80, 24)
-    file = spoken("greet everyone")
-    tmux.run("cat", str(file), "|", tangy, "teach", "--mic", "-", "--data", str(tmp_path / "data"))
+    file = voices.folder / "greeting.raw"
+    file.write_bytes(voices.say("greet everyone") + bytes(2 * RATE))
+    data = str(tmp_path / "data")
+    tmux.run("cat", str(file), "|", tangy, "teach", "--hands-free", "--mic", "-", "--data", data)
     tmux.until("Did you say: greet everyone?")
     tmux.until(lambda text: _confirmed(tmux, text))
     tmux("send-keys", "C-c")
@@ -78,13 +204,34 @@ def _confirmed(tmux: Tmux, text: str) -> bool:
     return False
 
 
-@needs_flite
 def test_no_is_heard_as_nothing_done_and_the_next_command_is_taken(
-    open_terminal: OpenTerminal, spoken: Callable[[str], Path]
+    open_terminal: OpenTerminal, voices: Voices
 ) -> None:
-    terminal = open_terminal("teach", "--seed", "1", "--mic", str(spoken("call a number")))
+    file = voices.file("call a number")
+    terminal = open_terminal("teach", "--seed", "1", "--mic", str(file))
     terminal.until("Did you say: call number?")
     terminal.settle(0.4)
     terminal.type("n")
     terminal.until(lambda text: "Did you say" not in text and "> call a number" in text)
     assert "No steps yet" in terminal.text
+
+
+def test_lines_hear_a_recording_and_a_script_answers(
+    voices: Voices, tangy: str, tmp_path: Path
+) -> None:
+    script, file = tmp_path / "answers", tmp_path / "two.wav"
+    script.write_text("y\ny\n")
+    said = voices.say("greet everyone") + bytes(RATE) + voices.say("call the next number", "rms")
+    file.write_bytes(wav(said))
+    done = subprocess.run(  # noqa: S603 - our own program
+        [
+            *(tangy, "teach", "--plain", "--seed", "1", "--mic", str(file)),
+            *("--script", str(script), "--data", str(tmp_path / "data")),
+        ],
+        capture_output=True,
+        timeout=PATIENCE,
+        check=True,
+    )
+    assert b"-> greeting" in done.stdout
+    assert b"-> call number" in done.stdout
+    assert done.stderr == b""

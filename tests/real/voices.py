@@ -56,7 +56,8 @@ class Voices:
             form = ["-n", "-R", "-r", str(RATE), "-b", "16", "-c", "1"]
             command = ["sox", *form, str(path), *NOISES[name].split()]
             subprocess.run(command, check=True, capture_output=True)  # noqa: S603
-        return read_wav(path)
+        sound: bytes = read_wav(path)
+        return sound
 
 
 def room(pcm: bytes, below: float) -> bytes:
@@ -66,4 +67,5 @@ def room(pcm: bytes, below: float) -> bytes:
     samples = np.concatenate([quiet, said, quiet])
     level = np.sqrt((said**2).mean()) * 10 ** (-below / 20)
     samples += np.random.default_rng(len(pcm)).normal(0, level, len(samples))
-    return np.clip(np.rint(samples), -32_768, 32_767).astype("<i2").tobytes()
+    made: bytes = np.clip(np.rint(samples), -32_768, 32_767).astype("<i2").tobytes()
+    return made
