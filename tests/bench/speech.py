@@ -249,14 +249,13 @@ def gather(
 
 def figures(job: Job, evidence: Evidence) -> tuple[list[float], bool] | None:
     """Return what the likelihood of an utterance is made of, and whether it was understood."""
-    if understanding.stops(evidence.words):
+    text, margin = understanding.best_words(evidence, BOOK)
+    found = BOOK.choices(text)
+    if not found or understanding.stops(text):
         return None
-    found = BOOK.choices(evidence.words)
-    if not found:
-        return None
-    known = min(BOOK.known(evidence.words), understanding.MOST_KNOWN)
+    known = min(BOOK.known(text), understanding.MOST_KNOWN)
     ok = right(job[0], job[2], found[0].behaviour, dict(found[0].arguments))
-    margin = min(understanding.MOST_MARGIN, max(understanding.LEAST_MARGIN, evidence.margin))
+    margin = min(understanding.MOST_MARGIN, max(understanding.LEAST_MARGIN, margin))
     return [found[0].confidence, float(known), margin], ok
 
 
@@ -273,7 +272,7 @@ def fit(decoded: Sequence[tuple[Job, Evidence]]) -> None:
     for name, weight in zip(names, weights, strict=True):
         setattr(understanding, name, weight)
     print(f"{', '.join(names)} = {', '.join(f'{weight:.2f}' for weight in weights)}")
-    for sure, unsure in ((0.6, 0.3), (0.7, 0.3), (0.8, 0.3), (0.7, 0.2), (0.7, 0.4)):
+    for sure, unsure in ((0.6, 0.4), (0.7, 0.4), (0.8, 0.4), (0.7, 0.3), (0.7, 0.5)):
         understanding.SURE, understanding.UNSURE = sure, unsure
         print(f"SURE, UNSURE = {sure}, {unsure}")
         table(decoded, Settings())

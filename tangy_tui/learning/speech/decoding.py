@@ -33,6 +33,8 @@ SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
 FRAMES_A_SECOND = 100
 NOISES = ("<", "[", "+", "(")  # how silences and noises begin among the words of a path
 MODEL = "en-us/"
+NO_PATH = -1e9  # the score where no path comes to an end
+UNKNOWN_MARGIN = -0.5  # that of most speech which is no command
 
 # How sure the paper's n-gram model is: a logistic over two figures of the best path, its score a
 # frame and the mean weighted log P(word | words before). Fitted by tests/bench/speech.py.
@@ -86,9 +88,9 @@ class TwoDecoders:
         open_words = {word: p for word, p in everyday.items() if word in known}
         share = weight / (1 + weight)
         self._words = _decoder(
-            dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True
+            dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True, active=1500
         )
-        self._grammar = _decoder(dictionary(own, phones=True), bestpath=False)
+        self._grammar = _decoder(dictionary(own, phones=True), bestpath=False, active=1000)
         for name, said in (("commands", phrases), ("answers", answers)):
             if said:
                 _add_model(self._words, name, open_model(said, open_words, share))
@@ -105,9 +107,10 @@ class TwoDecoders:
         pcm = cleaned(pcm)
         words, score, _ = _best_path(self._words, pcm, expecting)
         phrase, garbage, _ = _best_path(self._grammar, pcm, expecting)
+        margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
-        return Evidence(words, phrase, score - garbage, 1.0, seconds)
+        return Evidence(words, phrase, margin, 1.0, seconds)
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""
@@ -224,16 +227,23 @@ def _heard(
     return tuple(sorted(unknown)), heard
 
 
-def _decoder(words: str, *, bestpath: bool) -> Any:
-    """Make a decoder without any search in it yet."""
+def _decoder(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
+    """Make a decoder without any search in it yet.
+
+    Args:
+        words: its dictionary.
+        bestpath: search the lattice once more in the end.
+        active: how many models are followed at most; fewer are faster, and at some point wrong.
+    """
     import pocketsphinx
 
     with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
         path = Path(folder) / "dict"
         path.write_text(words, encoding="utf-8")
         return pocketsphinx.Decoder(
-            lm=None, dict=str(path), cmn="batch", loglevel="ERROR", bestpath=bestpath
-        )
+            lm=None, dict=str(path), cmn="batch", loglevel="ERROR", bestpath=bestpath,
+            maxhmmpf=active,
+        )  # fmt: skip
 
 
 def _add_model(decoder: Any, name: str, arpa: str) -> None:
@@ -255,7 +265,7 @@ def _best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float
     decoder.end_utt()
     best = decoder.hyp()
     if best is None:
-        return "", -1e9, 0.0
+        return "", NO_PATH, 0.0
     words = [_log(s.lscore) for s in decoder.seg() if not s.word.startswith(NOISES)]
     frames = len(pcm) / 2 / RATE * FRAMES_A_SECOND
     return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))

@@ -8,6 +8,7 @@ from tangy_tui.learning.speech.evidence import RATE
 
 WINDOW = 0.3  # s, of which the share below has to be speech, or quiet
 RATIO = 0.9
+FEWEST = 4  # frames of speech, 0.12 s; less is a click
 PAUSE = 0.5  # s; the window for recordings, in which nobody waits for an answer
 MARGIN = 0.3  # s that are kept before an utterance, and of a recording after it as well
 
@@ -77,6 +78,35 @@ class Endpoints:
         """
         begin = 2 * round(max(0.0, self.begin - MARGIN) * RATE)
         return bytes(self._recent[max(0, begin - (self.taken - len(self._recent))) :])
+
+
+class Pauses:
+    """Follows how long it has been quiet since somebody spoke."""
+
+    def __init__(self) -> None:
+        import pocketsphinx
+
+        self._vad = pocketsphinx.Vad(mode=pocketsphinx.Vad.MEDIUM_STRICT, sample_rate=RATE)
+        self._rest = b""
+        self._spoken = 0
+        self._quiet = 0
+
+    @property
+    def after_speech(self) -> float:
+        """Seconds of quiet since somebody spoke; 0 if nobody has."""
+        return self._quiet * float(self._vad.frame_length) if self._spoken >= FEWEST else 0.0
+
+    def feed(self, pcm: bytes) -> bool:
+        """Take the next samples; return whether somebody speaks in them."""
+        self._rest += pcm
+        size, spoke = self._vad.frame_bytes, False
+        while len(self._rest) >= size:
+            frame, self._rest = self._rest[:size], self._rest[size:]
+            if self._vad.is_speech(frame):
+                self._spoken, self._quiet, spoke = self._spoken + 1, 0, True
+            else:
+                self._quiet += 1
+        return spoke
 
 
 def pieces(pcm: bytes) -> list[tuple[float, float]]:

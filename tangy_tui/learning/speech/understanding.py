@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from difflib import SequenceMatcher
 
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech.evidence import Evidence, Settings, Wanted
@@ -20,11 +21,13 @@ from tangy_tui.learning.words import bare, words_of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
 # sound than the grammar or any phones do. Fitted, and the limits set, by tests/bench/speech.py on
 # voices and sentences that no figure is quoted for.
-CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 18.94, 0.42, 2.56, -15.32
+CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 19.37, 0.41, 2.62, -15.70
 LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.7
-UNSURE = 0.3
+UNSURE = 0.4
+SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
+SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
 UNDERSTOOD = 0.35
 """The confidence below which the paper's mode takes nothing for a command."""
 
@@ -55,21 +58,34 @@ def wanted(
 
 def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -> Say | Stop:
     """Return what an utterance commands: it may be several things, or (no commands) nothing."""
-    text = evidence.words
+    if settings.mode == "paper":
+        if stops(evidence.words):
+            return Stop(evidence.words)
+        return _as_in_the_paper(evidence, phrasebook)
+    text, margin = best_words(evidence, phrasebook)
     if stops(text):
         return Stop(text)
-    if settings.mode == "paper":
-        return _as_in_the_paper(evidence, phrasebook)
     found = phrasebook.choices(text)
     if not found:
         return Say(text, 0.0, ())
-    confidence = likelihood(
-        found[0].confidence, phrasebook.known(text), evidence.margin, settings.shift
-    )
+    confidence = likelihood(found[0].confidence, phrasebook.known(text), margin, settings.shift)
     if confidence < UNSURE:
         return Say(text, confidence, ())
     commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
     return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+
+
+def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
+    """Return what was said, and the margin of these words.
+
+    Mostly those are the words of the n-gram model. Where they are no phrase, but sound like the
+    one that the grammar has found, and that explains the sound better, it was the phrase.
+    """
+    words, phrase = evidence.words, evidence.phrase
+    doubtful = phrase and words not in phrasebook.phrases and evidence.margin < SMALL_MARGIN
+    if doubtful and SequenceMatcher(None, words, phrase).ratio() >= SAME_SOUND:
+        return phrase, 0.0
+    return words, evidence.margin
 
 
 def answer(evidence: Evidence) -> Reply | Stop | None:

@@ -31,11 +31,12 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any, get_args
 
-from tangy_tui.learning.speech.endpointing import Endpoints, pieces
+from tangy_tui.learning.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
+PAUSE = 0.2  # s of quiet in which what was said so far is decoded: mostly nothing follows
 STANDS = 0.3  # s for which urgent words have to stand alone
 
 
@@ -53,6 +54,8 @@ class Worker:
         self._expecting: Expecting = "commands"
         self._pcm = bytearray()
         self._endpoints: Endpoints | None = None
+        self._pauses: Pauses | None = None
+        self._foreseen: Evidence | None = None  # what was said before a pause that still lasts
         self._shown = ""
         self._stood = 0  # bytes since the words so far have changed
         self._urgent: frozenset[str] = frozenset()
@@ -116,6 +119,8 @@ class Worker:
         self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
         self._pcm.clear()
         self._endpoints = Endpoints() if endpoint else None
+        self._pauses = None if endpoint else Pauses()
+        self._foreseen = None
         if not endpoint:
             self._decoder.begin(expecting)
 
@@ -126,6 +131,8 @@ class Worker:
             self._add(sound)
             if self._stands_alone():
                 self._end()
+            elif self._pauses is not None and len(sound) <= 2 * RATE * LARGEST_PIECE:
+                self._foresee(self._pauses, sound)
             return
         for began, speech, over in self._endpoints.feed(sound):
             if began:
@@ -142,7 +149,7 @@ class Worker:
         if not sound:
             return
         self._pcm += sound
-        if len(sound) <= 2 * RATE * LARGEST_PIECE:
+        if len(sound) <= 2 * RATE * LARGEST_PIECE and self._foreseen is None:
             words = self._decoder.partial(sound)
             self._stood += len(sound)
             if words != self._shown:
@@ -153,14 +160,28 @@ class Worker:
         """Whether the words so far are urgent, and nothing has followed them for a while."""
         return self._shown in self._urgent and self._stood >= 2 * RATE * STANDS
 
+    def _foresee(self, pauses: Pauses, sound: bytes) -> None:
+        """Decode in a pause, so that the answer is there when the utterance is said to be over."""
+        spoke = pauses.feed(sound)
+        if self._foreseen is None and pauses.after_speech >= PAUSE:
+            self._foreseen = self._decode(bytes(self._pcm))
+        elif self._foreseen is not None and spoke:
+            self._foreseen = None
+            self._decoder.begin(self._expecting)
+            self._decoder.partial(bytes(self._pcm))
+
+    def _decode(self, pcm: bytes) -> Evidence:
+        if not _sounds(pcm):
+            return Evidence(seconds=len(pcm) / 2 / RATE)
+        evidence: Evidence = self._decoder.decode(pcm, self._expecting)
+        return evidence
+
     def _end(self) -> None:
         id = self._id
         pcm, used = bytes(self._pcm), len(self._pcm)
         if self._endpoints is not None:
             pcm, used = self._endpoints.utterance() if pcm else b"", self._endpoints.taken
-        heard = Evidence(seconds=len(pcm) / 2 / RATE)
-        if _sounds(pcm):
-            heard = self._decoder.decode(pcm, self._expecting)
+        heard = self._foreseen or self._decode(pcm)
         self._id = None
         self._pcm.clear()
         self._write({"id": id, "heard": asdict(heard), "used": used})
