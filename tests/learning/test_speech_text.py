@@ -39,6 +39,7 @@ from tangy_tui.learning.speech.understanding import (
     UNDERSTOOD,
     UNSURE,
     answer,
+    best_words,
     likelihood,
     stops,
     understand,
@@ -157,7 +158,24 @@ def entries(model: str) -> dict[int, dict[str, float]]:
 
 class TestUnderstanding:
     @pytest.mark.parametrize("phrase", BOOK.spoken())
-    def test_every_phrase_is_sure_when_it_is_clear(self, phrase: str) -> None:
+    @pytest.mark.parametrize(
+    ("words", "phrase", "margin", "said"),
+    [
+        ("go to user on", "go to user one", -0.8, "go to user one"),
+        ("go to user on", "go to user one", 0.3, "go to user on"),  # these words explain it better
+        ("bring me a glass of water", "bring the card closer", -1.1, "bring me a glass of water"),
+        ("go to user two", "go to user three", -0.5, "go to user two"),  # both are phrases
+        ("we have a problem", "", -0.8, "we have a problem"),
+    ],
+)
+def test_words_are_taken_for_the_phrase_that_they_sound_like(
+    words: str, phrase: str, margin: float, said: str
+) -> None:
+    evidence = Evidence(words, phrase, margin, 1.0, 1.0)
+    assert best_words(evidence, BOOK)[0] == said
+
+
+def test_every_phrase_is_sure_when_it_is_clear(self, phrase: str) -> None:
         said = understand(evidence(phrase), BOOK, USUAL)
         command = BOOK.understand(phrase)
         assert isinstance(said, Say)
@@ -201,6 +219,11 @@ class TestUnderstanding:
         assert other.confidence <= one.confidence
         assert len(other.commands or ()) <= len(one.commands or ())
         assert one.sure or not other.sure or not other.commands
+
+    def test_the_strictest_microphone_takes_nothing_for_a_command(self) -> None:
+        said = understand(evidence("call the next number"), BOOK, replace(USUAL, shift=50.0))
+        assert isinstance(said, Say)
+        assert said.commands == ()
 
     @given(st.floats(0, 1), st.floats(0, 1), st.integers(0, 9), st.integers(0, 9), st.floats(-5, 5))
     def test_the_likelihood_grows_with_what_speaks_for_it(
