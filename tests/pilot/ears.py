@@ -10,6 +10,7 @@ from typing import Any, cast
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech.ears import Ears
+from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verifying import Reply, Say, Stop
 
 
@@ -41,6 +42,7 @@ class FakeEars:
         self.asks = False
         self.shuts = 0
         self.closed = False
+        self.followed: list[TeachingEvent] = []
         self.books: list[Phrasebook] = []
         self.pulled = 0
         self._coming: asyncio.Queue[Say | Stop | Reply | None] = asyncio.Queue()
@@ -55,6 +57,10 @@ class FakeEars:
         self.state, self.words, self.trouble = state, words, trouble
         self.meter.level = level
         self.changed()
+
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed."""
+        self.followed += events
 
     def talk(self) -> None:
         """Begin to listen, or end it."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from tangy_hw.sound.wav import read_wav
 from tangy_tui.learning.commands import Command, Phrasebook
+from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Settings
 from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.understanding import understand, wanted
@@ -39,7 +40,8 @@ async def _listen(
     recogniser = Recogniser()
     rows: list[dict[str, Any]] = []
     try:
-        await recogniser.start(wanted(phrasebook, settings))
+        lexicon = Lexicon(phrasebook, suggest=lambda word: "")
+        await recogniser.start(wanted(phrasebook, settings, lexicon.heard()))
         for file, pcm in sounds:
             whole = understand(await recogniser.decode(pcm), phrasebook, settings)
             settled = tier_of(whole) in ("sure", "stop") and len(pcm) <= 2 * RATE * LONGEST

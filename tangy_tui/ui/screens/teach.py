@@ -316,6 +316,7 @@ class TeachScreen(TangyScreen[bool]):
             self.query_one(CommandBar).ready()
             self._listener.open(True)
         else:
+            self._listener.follow(events)
             self._tell(events)
 
     # -------------------------------------------------------------------------------- events

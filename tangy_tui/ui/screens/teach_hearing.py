@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from textual.screen import Screen
@@ -10,6 +10,7 @@ from textual.screen import Screen
 from tangy_tui.house import House
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verifying import Say
 from tangy_tui.ui.hearing import Hearing
 from tangy_tui.ui.screens.teach_keys import BY_KEY, HANDS_FREE, HEARING_KEYS, KEYS
@@ -57,6 +58,11 @@ class TeachHearing:
     def aloud(self) -> str:
         """How a question can be answered by voice; "" if it cannot."""
         return "" if self.hearing is None else self.hearing.aloud
+
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed from a command: what was recorded of it gets its name."""
+        if self.hearing is not None:
+            self.hearing.ears.follow(events)
 
     def attend(self) -> None:
         """Listen from now on."""
