@@ -239,13 +239,19 @@ class TestStream:
         (sentence,) = studio.told
         assert "signal 9" in sentence
 
-    def test_stop_ends_the_utterance_by_itself(self, studio: Studio, voices: Voices) -> None:
+    @pytest.mark.parametrize(
+        ("said", "voice"),
+        [("stop", "slt"), ("stop", "rms"), ("stop", "kal16"), ("tangy stop", "slt")],
+    )
+    def test_stop_ends_the_utterance_by_itself(
+        self, studio: Studio, voices: Voices, said: str, voice: str
+    ) -> None:
         async def talk() -> Evidence:
             sound: asyncio.Queue[bytes] = asyncio.Queue()
-            await self.speak(sound, voices.say("stop"))
+            await self.speak(sound, voices.say(said, voice))
             return await studio.recogniser.hear(sound)
 
-        assert understand(studio.run(talk()), BOOK, USUAL) == Stop("stop")
+        assert isinstance(understand(studio.run(talk()), BOOK, USUAL), Stop)
 
     def test_the_answer_comes_soon_after_the_end(
         self, studio: Studio, voices: Voices, capsys: pytest.CaptureFixture[str]

@@ -32,6 +32,7 @@ UNDERSTOOD = 0.35
 """The confidence below which the paper's mode takes nothing for a command."""
 
 STOPS = ("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "halt")
+OWN_NAME = {"tangy": ("T AE NG IY",)}
 YES = ("yes", "yes please", "yes do it", "yes that is right", "that is right")
 NO = ("no", "no thank you", "no do not", "that is wrong", "no that is wrong")
 MOST_STOP_WORDS = 2
@@ -51,7 +52,7 @@ def wanted(
         (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
         (*YES, *NO, *STOPS),
         STOPS,
-        phrasebook.pronunciations(),
+        {**OWN_NAME, **phrasebook.pronunciations()},
         settings,
     )
 

@@ -33,6 +33,7 @@ from typing import Any, get_args
 
 from tangy_tui.learning.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
+from tangy_tui.learning.speech.understanding import stops
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
@@ -165,6 +166,8 @@ class Worker:
         spoke = pauses.feed(sound)
         if self._foreseen is None and pauses.after_speech >= PAUSE:
             self._foreseen = self._decode(bytes(self._pcm))
+            if self._urgent and stops(self._foreseen.words):
+                self._end()
         elif self._foreseen is not None and spoke:
             self._foreseen = None
             self._decoder.begin(self._expecting)
