@@ -15,13 +15,13 @@ from tangy_profiles.cards import Deck
 from tangy_profiles.errors import TangyError
 
 WIDTH, HEIGHT = 148.0, 210.0  # A5
-GRID = 130.0  # the longer side of the grid
+GRID, FEWEST = 130.0, 5  # the longer side of the grid if it has at least so many cells
 TAG = 26.0  # a corner tag; a tag is 6 x 6 modules, its black rim among them
 LINE = 1.0  # thickness of the lines
 MARGIN = 9.0  # to the left and right, so that printers reach all of it
 TAGS_TOP, TAGS_BOTTOM = 5.0, 179.0
 GRID_TOP = 44.5
-LETTERS_MIDDLE, LETTERS_HIGH = 38.75, 7.0
+LETTERS_ABOVE, LETTERS_HIGH = 5.75, 7.0  # of their middle, above the grid
 LAST_CARD = 249
 """Cards are numbered from 1; each has four of the thousand tags of its dictionary."""
 USUAL_SEED = 1
@@ -57,7 +57,7 @@ class Face:
     @cached_property
     def cell(self) -> float:
         """The side of a cell in mm."""
-        return GRID / max(self.deck.rows, len(self.deck.columns))
+        return GRID / max(self.deck.rows, len(self.deck.columns), FEWEST)
 
     @cached_property
     def grid(self) -> Box:
@@ -102,7 +102,7 @@ class Face:
         """Yield all that is written on a card."""
         for column, told in enumerate(self.deck.columns):
             x = self.grid.left + (column + 0.5) * self.cell
-            yield Words(told.letter, x, LETTERS_MIDDLE, LETTERS_HIGH)
+            yield Words(told.letter, x, self.grid.top - LETTERS_ABOVE, LETTERS_HIGH)
         for cell, number in enumerate(numbers_of(self.deck, card, seed)):
             free = self.deck.free >> cell & 1
             x, y = self.middle(cell)

@@ -141,6 +141,32 @@ def judge(states: Sequence[CardState], deck: Deck, marked: int, called: int) -> 
     raise ValueError("no state without a condition")  # refused when the activity is read
 
 
+def judge_partly(
+    states: Sequence[CardState], deck: Deck, marked: int, unknown: int, called: int
+) -> str:
+    """Name the user activity state of a card of which some cells could not be told.
+
+    It is what `judge` would say whatever the unknown cells were, and the unread state where they
+    could change that. Arguments are as of `judge`; `unknown` are the cells nobody knows of.
+    """
+    least, most = marked & ~unknown, marked | unknown
+    for state in states:
+        match state.checker:
+            case "complete line":
+                sure, possible = deck.wins(least & called), deck.wins(most & called)
+            case "wrong marks":
+                sure, possible = bool(least & ~called), bool(most & ~called)
+            case "missing marks":
+                sure, possible = bool(called & ~most), bool(called & ~least)
+            case checker:
+                sure = possible = checker == "otherwise"
+        if sure:
+            return state.name
+        if possible:
+            break
+    return next(state.name for state in states if state.checker == "unread")
+
+
 def read_deck(table: Table) -> Deck:
     """Read a deck and check that its cards can be filled."""
     rows = table.whole("rows", 1, 9)

@@ -123,7 +123,8 @@ def _draw(activity: Activity, cards: Sequence[int], seed: int, dpi: float, folde
     listed = []
     for card in cards:
         name = f"card-{card:03}.png"
-        picture = Image.fromarray(draw_face(face, card, seed, activity.title, scale))
+        grey = draw_face(face, card, seed, activity.title, scale)
+        picture = Image.fromarray(grey).convert("RGB")  # as cameras see it
         picture.save(folder / name, dpi=(dpi, dpi))
         listed.append(
             {

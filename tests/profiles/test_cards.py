@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from random import Random
 
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
-from tangy_profiles.cards import PATTERNS, CardState, Column, Deck, judge, read_deck
+from tangy_profiles.cards import PATTERNS, CardState, Column, Deck, judge, judge_partly, read_deck
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import Table
 
@@ -139,6 +140,21 @@ def test_a_full_line_with_an_uncalled_number_is_no_win() -> None:
     row = DECK.lines[0]
     assert judge(BINGO.card_states, DECK, row, row) == "bingo"
     assert judge(BINGO.card_states, DECK, row, row & ~1) == "incorrectly marked"
+
+
+@given(masks, masks, st.lists(st.integers(0, 24), max_size=4, unique=True))
+def test_cells_nobody_knows_matter_only_where_they_could_change_the_state(
+    marked: int, called: int, unknown: list[int]
+) -> None:
+    cells = [1 << cell for cell in unknown]
+    hidden = sum(cells)
+    possible = {
+        judge(BINGO.user_states, DECK, marked & ~hidden | sum(lying), called)
+        for count in range(len(cells) + 1)
+        for lying in combinations(cells, count)
+    }
+    told = judge_partly(BINGO.user_states, DECK, marked, hidden, called)
+    assert told == (possible.pop() if len(possible) == 1 else "occluded")
 
 
 @given(st.permutations(BINGO.card_states[:-1]), masks, masks)
