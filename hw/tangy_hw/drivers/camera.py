@@ -1,0 +1,321 @@
+"""A camera as the program sees it: its newest picture, and what state it is in.
+
+It is read in a process of its own (see `camera_child`, which also documents how it is spoken to);
+here that is started, asked, watched, and ended and started again when it hangs or has died.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+import sys
+import time
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from tangy_hw.drivers.camera_look import Look
+from tangy_hw.drivers.camera_source import CameraError, CameraSource
+from tangy_hw.drivers.camera_state import USUAL, Limits, Sight, State, Watch
+from tangy_profiles.health import Reading
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_look import Image
+
+CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.camera_child")
+SILENT_SECONDS = 3.0  # without a heartbeat: the process itself hangs
+START_SECONDS = 20.0  # until its first: 0.1 s when nothing else runs
+READ_SECONDS = 2.5  # for one picture, which a stream gives up by itself before
+OPEN_SECONDS = 10.0  # some cameras take 4 s to begin
+AGAIN_SECONDS = 0.2  # until a process that ended is started again
+TICK_SECONDS = 0.1  # between two looks at what state it is in
+END_SECONDS = 1.0
+LARGEST_LINE = 1 << 22
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A picture: which one it was, when it came (monotonic, s), and its pixels, BGR, row by row.
+
+    `sight` is what state the camera was in with it.
+    """
+
+    seq: int
+    stamp: float
+    width: int
+    height: int
+    pixels: bytes
+    sight: Sight
+
+    def image(self) -> Image:
+        """Return it as OpenCV has it; it cannot be written to."""
+        import numpy as np
+
+        return np.frombuffer(self.pixels, np.uint8).reshape(self.height, self.width, 3)
+
+
+def _nobody(*_: object) -> None:
+    """Tell nobody."""
+
+
+class Camera:
+    """Pictures of one source: `async for frame in camera` gives the newest each time.
+
+    Start it with `async with`, or with `start` and `close`.
+    """
+
+    def __init__(
+        self,
+        source: CameraSource,
+        *,
+        device: str = "camera",
+        log: Path | None = None,
+        limits: Limits = USUAL,
+    ) -> None:
+        """Prepare a camera.
+
+        Args:
+            source: where its pictures come from.
+            device: what the robot's profile calls it.
+            log: where its process's messages go; nowhere if not given.
+            limits: when it is in which state.
+        """
+        self.source = source
+        self.changed: Callable[[Sight], None] = _nobody
+        """Is called when its state has changed."""
+        self._device = device
+        self._log = log
+        self._limits = limits
+        self._watch = self._new_watch()
+        self._shown: State = "OPENING"
+        self._process: asyncio.subprocess.Process | None = None
+        self._tasks: list[asyncio.Task[None]] = []
+        self._asked: dict[int, tuple[int, asyncio.Future[Frame | None]]] = {}
+        self._requests = 0
+        self._next = 0  # the number of the next picture
+        self._last = -1  # of the last one that was given
+        self._error = ""
+        self._closing = False
+
+    async def __aenter__(self) -> Camera:
+        await self.start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    @property
+    def name(self) -> str:
+        """Its source, as it was named."""
+        return self.source.name
+
+    @property
+    def pid(self) -> int | None:
+        """The process that reads it, if one runs."""
+        alive = self._process is not None and self._process.returncode is None
+        return self._process.pid if alive and self._process else None
+
+    @property
+    def sight(self) -> Sight:
+        """The state it is in now, and the evidence for it."""
+        return self._watch.at(time.monotonic())
+
+    @property
+    def over(self) -> bool:
+        """Whether no picture will come any more."""
+        return self._watch.over
+
+    def reading(self) -> Reading:
+        """Return what the diagnosis is told of it."""
+        return self.sight.reading(self._device)
+
+    async def start(self) -> None:
+        """Begin to read it; that it cannot be read is a state, no error."""
+        self._closing = False
+        self._watch = self._new_watch()
+        self._tasks = [asyncio.create_task(self._run()), asyncio.create_task(self._tick())]
+
+    async def close(self) -> None:
+        """End its process, whatever that is doing; whoever waits for a picture gets none."""
+        self._closing = True
+        for task in self._tasks:
+            task.cancel()
+        if self._tasks:
+            await asyncio.wait(self._tasks)
+        await self._end()
+        self._answer_all()
+
+    async def frame(self, *, after: int | None = None, wait: float | None = None) -> Frame | None:
+        """Return the newest picture, of a higher number than the last that was given.
+
+        Args:
+            after: of a higher number than this instead.
+            wait: at most so many s.
+
+        Returns:
+            None if there was none in that time, or there will be none any more.
+
+        Raises:
+            CameraError: a file or folder could not be read.
+        """
+        if not self.over and not self._closing:
+            self._requests += 1
+            id = self._requests
+            asked: asyncio.Future[Frame | None] = asyncio.get_running_loop().create_future()
+            self._asked[id] = self._last if after is None else after, asked
+            self._send({"frame": id, "after": self._asked[id][0]})
+            try:
+                async with asyncio.timeout(wait):
+                    frame = await asked
+            except TimeoutError:
+                frame = None
+            finally:
+                self._asked.pop(id, None)
+            if frame is not None:
+                self._last = max(self._last, frame.seq)
+                return frame
+        if self._error:
+            raise CameraError(self._error)
+        return None
+
+    def __aiter__(self) -> AsyncIterator[Frame]:
+        return self._frames()
+
+    async def _frames(self) -> AsyncIterator[Frame]:
+        while (frame := await self.frame()) is not None:
+            yield frame
+
+    def _new_watch(self) -> Watch:
+        source = self.source
+        interval = 1 / source.rate if source.rate else 0.0
+        return Watch(time.monotonic(), self._limits, each=source.each, interval=interval)
+
+    async def _tick(self) -> None:
+        """Tell of every change of state, also of those that come of nothing happening."""
+        while True:
+            self._tell()
+            await asyncio.sleep(TICK_SECONDS)
+
+    def _tell(self) -> None:
+        sight = self.sight
+        if sight.state != self._shown:
+            self._shown = sight.state
+            self.changed(sight)
+
+    async def _run(self) -> None:
+        """Keep a process that reads, until there is nothing left to read."""
+        while not self.over:
+            try:
+                await self._begin()
+                await self._listen()
+            except OSError as error:
+                self._watch.lost(f"its process cannot be started ({error.strerror})")
+            finally:
+                await self._end()
+            if not self.over:
+                await asyncio.sleep(AGAIN_SECONDS)
+        self._answer_all()
+        self._tell()
+
+    async def _begin(self) -> None:
+        with self._log_file() as log:
+            self._process = await asyncio.create_subprocess_exec(
+                *CHILD,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=log,
+                limit=LARGEST_LINE,
+                start_new_session=True,
+            )
+        self._send({"source": self.source.to_json(), "first": self._next})
+        for id, (after, _) in self._asked.items():
+            self._send({"frame": id, "after": after})
+
+    @contextlib.contextmanager
+    def _log_file(self) -> Any:
+        if self._log is None:
+            yield asyncio.subprocess.DEVNULL
+            return
+        file: IO[bytes] | None = None
+        with contextlib.suppress(OSError):
+            file = self._log.open("ab")
+        try:
+            yield file if file is not None else asyncio.subprocess.DEVNULL
+        finally:
+            if file is not None:
+                file.close()
+
+    async def _listen(self) -> None:
+        """Take what the process says, until it ends, or hangs."""
+        assert self._process is not None and self._process.stdout is not None  # noqa: S101
+        answers = self._process.stdout
+        patience = START_SECONDS
+        while True:
+            try:
+                async with asyncio.timeout(patience):
+                    line = await answers.readline()
+                    if not line.endswith(b"\n"):
+                        self._watch.lost("its process ended")
+                        return
+                    said = json.loads(line)
+                    pixels = await answers.readexactly(said["bytes"]) if "bytes" in said else b""
+            except (TimeoutError, ValueError, asyncio.IncompleteReadError):
+                self._watch.lost("its process does not answer")
+                return
+            patience = SILENT_SECONDS
+            if not self._take(said, pixels):
+                return
+
+    def _take(self, said: dict[str, Any], pixels: bytes) -> bool:
+        """Take what the process said; return whether to go on with it."""
+        match said:
+            case {"alive": _, "busy": busy, "for": seconds}:
+                if seconds > {"read": READ_SECONDS, "open": OPEN_SECONDS}.get(busy, seconds):
+                    self._watch.lost("it hangs")
+                    return False
+            case {"look": look}:
+                seen = Look(*look)
+                self._next = max(self._next, seen.seq + 1)
+                self._watch.saw(seen)
+                self._tell()
+            case {"frame": id, "seq": seq, "stamp": stamp, "width": width, "height": height}:
+                self._next = max(self._next, seq + 1)
+                _, asked = self._asked.get(id, (0, None))
+                if asked is not None and not asked.done():
+                    asked.set_result(Frame(seq, stamp, width, height, pixels, self.sight))
+            case {"lost": str(why)}:
+                self._watch.lost(why)
+            case {"over": str(why)}:
+                self._error = f"{self.name}: {why}." if why else ""
+                self._watch.ended(self._error or "That was the last picture.")
+                return False
+        return True
+
+    def _send(self, request: dict[str, Any]) -> None:
+        process = self._process
+        if process is None or process.stdin is None or process.stdin.is_closing():
+            return  # it is asked again when it runs
+        with contextlib.suppress(OSError):
+            process.stdin.write(json.dumps(request).encode() + b"\n")
+
+    def _answer_all(self) -> None:
+        for _, asked in self._asked.values():
+            if not asked.done():
+                asked.set_result(None)
+
+    async def _end(self) -> None:
+        """End the process, with anything it may have started."""
+        process = self._process
+        if process is None:
+            return
+        if process.stdin is not None:
+            process.stdin.close()
+        with contextlib.suppress(ProcessLookupError):
+            if process.returncode is None:
+                os.killpg(process.pid, signal.SIGKILL)
+        await process.communicate()  # wait() alone would wait for what nobody reads any more
+        self._process = None

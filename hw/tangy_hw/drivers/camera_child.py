@@ -1,0 +1,202 @@
+"""The camera's process: reading a picture may block for ever, so it runs on its own.
+
+Run as `python -m tangy_hw.drivers.camera_child`, spoken to by JSON, one object a line:
+
+    {"source": {...}, "first": 17}               what to read (`CameraSource`), and from which
+                                                 number on its pictures are counted
+    {"alive": 9.2, "busy": "read", "for": 0.03}  a few times a second, whatever else happens;
+                                                 busy: "open", "read", or "" while it waits
+    {"look": [...]}                              a picture's measures (`camera_look.Look`)
+    {"lost": "it stopped sending"}               it cannot be read, and is opened anew until it can
+    {"over": "", "sound": true}                  no picture will come any more; sound: it was read
+    {"frame": 3, "after": 16}                    asks for the newest picture, of a number above 16
+    {"frame": 3, "seq": 18, "stamp": 9.1, "width": 1280, "height": 720, "bytes": 2764800}
+                                                 is followed by that many bytes, BGR
+
+It ends when its input closes; what C libraries print goes to standard error.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from contextlib import suppress
+from threading import Condition, Lock, Thread
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
+from tangy_hw.drivers.camera_source import CameraSource
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_look import Image
+
+ALIVE_SECONDS = 0.25  # between two heartbeats
+AGAIN_SECONDS = 0.3  # until a source that has gone is opened anew
+LOOK_SECONDS = 0.09  # between two pictures that are measured
+PIPE_BYTES = 1 << 20
+
+
+class Child:
+    """Reads pictures on one thread, is asked for them on another, and beats on a third."""
+
+    def __init__(self, answers: BinaryIO) -> None:
+        self._answers = answers
+        self._writing = Lock()
+        self._changed = Condition()
+        self._newest: tuple[int, float, Image] | None = None
+        self._asked: dict[int, int] = {}  # request -> the number above which it asks
+        self._taken = True  # whether somebody has had the newest picture
+        self._over = False
+        self._busy = ("", time.monotonic())
+
+    def write(self, answer: dict[str, Any], image: Image | None = None) -> None:
+        """Send one answer, and the picture that belongs to it."""
+        line = json.dumps(answer).encode() + b"\n"
+        with self._writing:
+            try:
+                self._answers.write(line)
+                if image is not None:
+                    self._answers.write(image.data if image.flags.c_contiguous else image.tobytes())
+                self._answers.flush()
+            except (BrokenPipeError, ValueError):
+                os._exit(0)  # nobody looks any more
+
+    def beat(self) -> None:
+        """Say for ever that this process is alive, and what it is busy with."""
+        while True:
+            busy, since = self._busy
+            now = time.monotonic()
+            self.write({"alive": round(now, 3), "busy": busy, "for": round(now - since, 3)})
+            time.sleep(ALIVE_SECONDS)
+
+    def ask(self, request: Any) -> None:
+        """Take a request for a picture."""
+        match request:
+            case {"frame": int(id), "after": int(after)}:
+                with self._changed:
+                    self._asked[id] = after
+                self._answer()
+
+    def _answer(self) -> None:
+        """Give the newest picture to all who have asked for it."""
+        with self._changed:
+            newest = self._newest
+            if newest is None:
+                return
+            met = [id for id, after in self._asked.items() if newest[0] > after]
+            for id in met:
+                del self._asked[id]
+        seq, stamp, image = newest
+        height, width = image.shape[:2]
+        for id in met:
+            self.write(
+                {"frame": id, "seq": seq, "stamp": stamp, "width": width, "height": height,
+                 "bytes": image.nbytes},
+                image,
+            )  # fmt: skip
+        if met:
+            with self._changed:
+                self._taken = True
+                self._changed.notify_all()
+
+    def grab(self, source: CameraSource, first: int) -> None:
+        """Read pictures until there are no more."""
+        import cv2
+
+        from tangy_hw.drivers.camera_look import measure
+
+        cv2.setNumThreads(1)
+        # Not before: while a library is loaded, no other thread may get a turn.
+        Thread(target=self.beat, daemon=True).start()
+        grabber = make_grabber(source)
+        seq, measured, due = first, 0.0, 0.0
+        opened = False
+        while True:
+            try:
+                if not opened:
+                    self._do("open")
+                    grabber.open()
+                    opened, due = True, time.monotonic()
+                self._do("read")
+                image = grabber.read()
+                stamp = time.monotonic()
+                self._do("")
+            except Gone as why:
+                self._do("")
+                opened = False
+                grabber.close()
+                self.write({"lost": str(why)})
+                time.sleep(AGAIN_SECONDS)
+                continue
+            except Over as why:
+                if source.loop and not str(why):
+                    opened = False
+                    continue
+                self._finish(str(why))
+                return
+            if source.each or stamp - measured >= LOOK_SECONDS:
+                measured = stamp
+                self.write({"look": measure(image, seq, stamp)})
+            with self._changed:
+                self._newest, self._taken = (seq, stamp, image), False
+            seq += 1
+            self._answer()
+            due = self._wait(source, grabber, due)
+
+    def _wait(self, source: CameraSource, grabber: Grabber, due: float) -> float:
+        """Wait until the next picture is read; return when that was to be."""
+        if source.each:
+            with self._changed:
+                self._changed.wait_for(lambda: self._taken)
+            return 0.0
+        if source.live or not grabber.rate:
+            return 0.0
+        due = max(due + 1 / grabber.rate, time.monotonic() - 1)
+        time.sleep(max(0.0, due - time.monotonic()))
+        return due
+
+    def _finish(self, why: str) -> None:
+        self._do("")
+        self.write({"over": why, "sound": not why})
+
+    def _do(self, what: str) -> None:
+        self._busy = (what, time.monotonic())
+
+
+def main() -> None:
+    """Read what the first line of standard input names, until standard input closes."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # C libraries print on standard output; the protocol has its own copy of it
+    with suppress(ImportError, AttributeError, OSError):
+        import fcntl
+
+        fcntl.fcntl(answers, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+    child = Child(answers)
+    order = json.loads(sys.stdin.buffer.readline() or b"null")
+    if order is None:
+        return
+    source, first = CameraSource.from_json(order["source"]), int(order["first"])
+    Thread(target=_reads, args=(child, source, first), daemon=True).start()
+    for line in sys.stdin.buffer:
+        try:
+            child.ask(json.loads(line))
+        except ValueError:
+            continue
+    os._exit(0)  # a thread that hangs in a driver must not keep this process
+
+
+def _reads(child: Child, source: CameraSource, first: int) -> None:
+    try:
+        child.grab(source, first)
+    except BaseException:
+        import traceback
+
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)  # a new process begins anew
+
+
+if __name__ == "__main__":
+    main()

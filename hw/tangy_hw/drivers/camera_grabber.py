@@ -1,0 +1,193 @@
+"""Reads pictures in the camera's process: from OpenCV's capture, or from files one by one."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from tangy_hw.drivers.camera_source import CameraError, CameraSource, pictures_in
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_look import Image
+
+OPEN_SECONDS = 1.5  # for a stream to answer
+READ_SECONDS = 1.5  # for its next picture
+FILE_RATE = 10.0  # pictures a second of a video that does not say
+MOST_PIXELS = 50_000_000  # of a picture in a folder
+LOWEST, ALIKE = 8, 12  # rows, and of 255: what is filled in for what did not come
+UNUSABLE = "it holds no pictures that can be read"
+
+
+class Gone(Exception):
+    """No picture could be read; a few words say why. The source is opened again."""
+
+
+class Over(Exception):
+    """There are no more pictures; a few words say why, none if it simply is at its end."""
+
+
+class Grabber(Protocol):
+    """Something that gives one picture after the other; `rate` is how many a second, or 0."""
+
+    rate: float
+
+    def open(self) -> None:
+        """Open it anew.
+
+        Raises:
+            Gone: it cannot be opened now.
+            Over: it never can.
+        """
+
+    def read(self) -> Image:
+        """Return the next picture, as soon as there is one.
+
+        Raises:
+            Gone: it gives none any more and must be opened anew.
+            Over: that was the last.
+        """
+
+    def close(self) -> None:
+        """Give back what was opened."""
+
+
+def make_grabber(source: CameraSource) -> Grabber:
+    """Return what reads a source; nothing is opened yet."""
+    return Folder(source) if source.kind == "folder" else Capture(source)
+
+
+class Capture:
+    """What OpenCV reads: cameras, streams and video files.
+
+    A handle that has failed or timed out never recovers, though it says that it is open: it is
+    dropped and made anew. The last picture of a stream that breaks off is given as if it were
+    whole, its lower part smeared.
+    """
+
+    def __init__(self, source: CameraSource) -> None:
+        self.rate = source.rate
+        self._source = source
+        self._capture: Any = None
+        self._held: Image | None = None
+        self._first = True
+
+    def open(self) -> None:
+        import cv2
+
+        self.close()
+        source, self._first, self._held = self._source, True, None
+        if source.kind == "stream":
+            patience = [
+                cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, int(OPEN_SECONDS * 1000),
+                cv2.CAP_PROP_READ_TIMEOUT_MSEC, int(READ_SECONDS * 1000),
+            ]  # fmt: skip
+            self._capture = cv2.VideoCapture(source.target, cv2.CAP_FFMPEG, patience)
+        elif source.kind == "file":
+            # A file may be a list of other files and addresses, which are none of our business.
+            os.environ["OPENCV_FFMPEG_CAPTURE_OPTIONS"] = "protocol_whitelist;file"
+            self._capture = cv2.VideoCapture(source.target, cv2.CAP_FFMPEG)
+        else:
+            self._open_device(cv2)
+        if not self._capture.isOpened():
+            self.close()
+            if source.kind == "file":
+                raise Over("it is no video that can be read")
+            raise Gone(_why_not_open(source))
+        if source.kind == "file" and not self.rate:
+            said = float(self._capture.get(cv2.CAP_PROP_FPS))
+            self.rate = said if 0.1 <= said <= 240 else FILE_RATE
+
+    def _open_device(self, cv2: Any) -> None:
+        source = self._source
+        if not Path(source.target).exists():
+            raise Gone("there is no such camera")
+        if not os.access(source.target, os.R_OK | os.W_OK):
+            raise Gone("this user may not use it; join the group video")
+        self._capture = cv2.VideoCapture(source.target, cv2.CAP_V4L2)
+        # Few cameras manage this size uncompressed; older pictures than the newest are no use.
+        self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
+        self._capture.set(cv2.CAP_PROP_FRAME_WIDTH, source.width)
+        self._capture.set(cv2.CAP_PROP_FRAME_HEIGHT, source.height)
+        self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+
+    def read(self) -> Image:
+        image = self._read() if self._held is None else self._held
+        self._held = None
+        if self._source.kind == "stream" and _perhaps_half(image):
+            self._held = self._read()  # a stream that goes on was not cut off there
+        return image
+
+    def _read(self) -> Image:
+        source = self._source
+        if source.kind == "device" and not Path(source.target).exists():
+            raise Gone("it is unplugged")  # read() may go on to give the last picture
+        began = time.monotonic()
+        done, image = self._capture.read()
+        late = source.kind == "stream" and time.monotonic() - began > 0.9 * READ_SECONDS
+        if done and image is not None and image.size and not late:
+            self._first = False
+            return image  # type: ignore[no-any-return]
+        if source.kind == "file":
+            raise Over(UNUSABLE if self._first else "")
+        raise Gone("it stopped in the middle" if late else "it stopped sending")
+
+    def close(self) -> None:
+        if self._capture is not None:
+            self._capture.release()
+            self._capture = None
+
+
+class Folder:
+    """A folder of pictures, or one; those that cannot be read are left out."""
+
+    def __init__(self, source: CameraSource) -> None:
+        self.rate = source.rate
+        self._source = source
+        self._left: list[Path] = []
+        self._given = 0
+
+    def open(self) -> None:
+        self._given = 0
+        try:
+            self._left = pictures_in(Path(self._source.target))[::-1]
+        except CameraError:
+            raise Over("the folder cannot be read any more") from None
+
+    def read(self) -> Image:
+        while self._left:
+            image = _read_picture(self._left.pop())
+            if image is not None:
+                self._given += 1
+                return image
+        raise Over("" if self._given else UNUSABLE)
+
+    def close(self) -> None:
+        self._left.clear()
+
+
+def _read_picture(path: Path) -> Image | None:
+    import cv2
+    import numpy as np
+
+    os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))
+    try:
+        content = np.frombuffer(path.read_bytes(), np.uint8)
+        return cv2.imdecode(content, cv2.IMREAD_COLOR)  # type: ignore[return-value]
+    except (OSError, cv2.error):
+        return None
+
+
+def _perhaps_half(image: Image) -> bool:
+    """Say whether the lowest rows are all alike: filled in, or black bars, or nothing there."""
+    import numpy as np
+
+    lowest = image[-LOWEST:].reshape(-1, image.shape[2])
+    return bool(np.all(lowest.max(axis=0) - lowest.min(axis=0) <= ALIKE))
+
+
+def _why_not_open(source: CameraSource) -> str:
+    if source.kind == "device":
+        return "it cannot be opened: does another program use it?"
+    return "nobody sends a stream there"

@@ -1,0 +1,93 @@
+"""What a camera's picture is like: how bright, how full of contrast, how sharp; all from 0 to 1."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Image: TypeAlias = NDArray[np.uint8]
+
+SIDE = 640  # pixels across at which sharpness is measured: sensor noise is averaged away
+FINE, COARSE = 1.0, 4.0  # pixels: of the two blurs whose differences are compared
+EDGES = 0.99  # share of the picture that has weaker edges than those that are looked at
+NOISE = 3.0  # times the median that noise has at that share; 3.8 were it Gaussian, and alone
+WEAKEST = 6  # of 255: where the strongest edges are weaker, there are none
+SOFT = 5  # of 255: where what changes over a tenth of the picture is stronger, there should be
+SOFTEST = 4  # so many times smaller the picture is when that is looked for
+SMALLEST = 32  # pixels: nor of a picture that is smaller
+
+
+class Look(NamedTuple):
+    """One picture as it was measured.
+
+    `stamp` is of the monotonic clock, in s; `fingerprint` is the same for the very same picture.
+    `sharpness` is None where nothing in the picture could be sharp.
+    """
+
+    seq: int
+    stamp: float
+    brightness: float
+    contrast: float
+    sharpness: float | None
+    fingerprint: int
+    width: int
+    height: int
+
+
+def measure(image: Image, seq: int, stamp: float) -> Look:
+    """Measure a picture (BGR or grey)."""
+    import zlib
+
+    import cv2
+
+    height, width = image.shape[:2]
+    grey: Any = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+    if width > SIDE:
+        size = (SIDE, max(1, round(height * SIDE / width)))
+        grey = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+    mean, spread = cv2.meanStdDev(grey)
+    return Look(
+        seq,
+        stamp,
+        float(mean[0, 0]) / 255,
+        float(spread[0, 0]) / 255,
+        _sharpness(grey),
+        zlib.crc32(image.data if image.flags.c_contiguous else image.tobytes()),
+        width,
+        height,
+    )
+
+
+def _sharpness(grey: Any) -> float | None:
+    """Compare fine with coarse differences where they are largest: at the strongest edges.
+
+    A share rather than a strength, so that it depends little on what is in the picture; at strong
+    edges, and without what noise adds there, so that it depends little on noise.
+    """
+    import cv2
+
+    if min(grey.shape) < SMALLEST:
+        return None
+    middle, fine = _differs(grey, FINE)
+    _, coarse = _differs(grey, COARSE)
+    noise = NOISE * middle  # most of a picture is no edge
+    if coarse >= WEAKEST + noise:
+        return min(1.0, math.sqrt(max(0.0, fine**2 - noise**2) / (coarse**2 - noise**2)))
+    small = cv2.resize(grey, None, fx=1 / SOFTEST, fy=1 / SOFTEST, interpolation=cv2.INTER_AREA)
+    return 0.0 if _differs(small, COARSE)[1] >= SOFT else None
+
+
+def _differs(grey: Any, blur: float) -> tuple[float, float]:
+    """Return by how much a picture differs from itself blurred: at most places, at its edges."""
+    import cv2
+    import numpy as np
+
+    difference: Any = cv2.absdiff(grey, cv2.GaussianBlur(grey, (0, 0), blur))
+    counts = cv2.calcHist([difference], [0], None, [256], [0, 256])[:, 0]
+    total = np.concatenate(([0.0], np.cumsum(counts) / difference.size))
+    most, edges = np.interp((0.5, EDGES), total, np.arange(257.0))
+    return float(most), float(edges)

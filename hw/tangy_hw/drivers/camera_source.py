@@ -1,0 +1,145 @@
+"""Where pictures come from, by name.
+
+0, /dev/video2         a camera of this machine (V4L2)
+http://..., rtsp://... a stream: MJPEG over HTTP, or what a network camera sends
+FILE.avi               a recorded video, as fast as it was recorded
+DIR, FILE.png          a folder of pictures in the order of their names, or one of them
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal
+from urllib.parse import urlsplit
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+Kind = Literal["device", "stream", "file", "folder"]
+
+SCHEMES = ("http", "https", "rtsp", "rtsps")
+PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff", ".pgm", ".ppm")
+FOLDER_RATE = 5.0
+"""Pictures a second that a folder gives, unless it is told otherwise."""
+
+WIDTH, HEIGHT = 1280, 720
+"""What a camera is asked for: cards need it."""
+
+
+class CameraError(TangyError):
+    """A camera gives no pictures that can be used; one sentence that names it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CameraSource:
+    """A camera, stream, file or folder.
+
+    `rate` is in pictures a second, 0 for its own; `loop`: it begins again when it is over.
+    `each`: no picture is left out, and the next is read when one was taken; otherwise pictures
+    come in their own time, whether anybody takes them or not.
+    """
+
+    name: str
+    kind: Kind
+    target: str
+    rate: float = 0.0
+    loop: bool = False
+    each: bool = False
+    width: int = WIDTH
+    height: int = HEIGHT
+
+    @property
+    def live(self) -> bool:
+        """Whether it shows what is there now, and so is waited for when it has gone."""
+        return self.kind in ("device", "stream")
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as the camera's process is told of it."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, body: Mapping[str, Any]) -> CameraSource:
+        """Read what `to_json` wrote."""
+        return cls(**body)
+
+
+def find_camera(
+    name: str, *, rate: float = 0.0, loop: bool = False, each: bool = False
+) -> CameraSource:
+    """Find a source by its name; a file is not opened yet.
+
+    Args:
+        name: one of those above.
+        rate: pictures a second of a file or folder, 0 for its own.
+        loop: begin again when a file or folder is over.
+        each: give every picture of a file or folder, as fast as they are taken.
+
+    Raises:
+        CameraError: there is no such thing; one sentence that says why.
+    """
+    shown = plain(name)
+    if re.fullmatch(r"\d{1,3}", name):
+        return CameraSource(shown, "device", f"/dev/video{int(name)}")
+    if "://" in name:
+        return CameraSource(_without_password(name), "stream", _stream(name))
+    path = Path(name)
+    if re.match(r"/dev/", name):
+        return CameraSource(shown, "device", name)
+    try:
+        is_folder, is_file, there = path.is_dir(), path.is_file(), path.exists()
+    except (OSError, ValueError):
+        raise CameraError(f"{shown}: cannot be read (the name is not valid).") from None
+    if not there:
+        raise CameraError(
+            f"{shown}: there is no such file; a camera is 0, /dev/video0, http://... or rtsp://..."
+        )
+    if is_folder:
+        if not pictures_in(path):
+            raise CameraError(f"{shown}: there are no pictures in this folder.")
+        return CameraSource(shown, "folder", name, rate or FOLDER_RATE, loop, each)
+    if not is_file:
+        raise CameraError(f"{shown}: is neither a file nor a folder.")
+    if path.suffix.lower() in PICTURES:
+        return CameraSource(shown, "folder", name, rate or FOLDER_RATE, loop, each)
+    return CameraSource(shown, "file", name, rate, loop, each)
+
+
+def pictures_in(path: Path) -> list[Path]:
+    """Return the pictures of a folder in the order of their names, 2 before 10; or the one.
+
+    Raises:
+        CameraError: the folder cannot be read.
+    """
+    if not path.is_dir():
+        return [path]
+    try:
+        found = [one for one in path.iterdir() if one.suffix.lower() in PICTURES and one.is_file()]
+    except OSError as error:
+        raise CameraError(plain(f"{path}: cannot be read ({error.strerror}).")) from None
+    return sorted(found, key=lambda one: _natural(one.name))
+
+
+def _natural(name: str) -> list[tuple[int, int, str]]:
+    pieces = re.findall(r"[0-9]+|[^0-9]+", name)
+    return [(0, int(one), "") if one.isdecimal() else (1, 0, one.lower()) for one in pieces]
+
+
+def _stream(url: str) -> str:
+    try:
+        parts = urlsplit(url)
+        sound = parts.scheme.lower() in SCHEMES and bool(parts.hostname) and (parts.port or 1) > 0
+    except ValueError:
+        sound = False
+    if not sound or any(ord(sign) <= 32 or ord(sign) == 127 for sign in url):
+        raise CameraError(
+            f"{_without_password(url)}: is no address of a stream; "
+            f"give http://HOST/..., https://, rtsp:// or rtsps://."
+        )
+    return url
+
+
+def _without_password(url: str) -> str:
+    return plain(re.sub(r"(?<=://)[^/@]*@", "", url))

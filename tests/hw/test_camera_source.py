@@ -1,0 +1,75 @@
+"""Cameras by name, and what is refused."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camera, pictures_in
+
+
+class TestNames:
+    @pytest.mark.parametrize(
+        ("name", "kind", "target"),
+        [
+            ("0", "device", "/dev/video0"),
+            ("/dev/video2", "device", "/dev/video2"),
+            ("http://robot:8080/stream", "stream", "http://robot:8080/stream"),
+            ("rtsp://10.0.0.7/1", "stream", "rtsp://10.0.0.7/1"),
+        ],
+    )
+    def test_cameras_and_streams(self, name: str, kind: str, target: str) -> None:
+        source = find_camera(name)
+        assert (source.kind, source.target, source.live) == (kind, target, True)
+
+    def test_files_and_folders(self, tmp_path: Path) -> None:
+        for name in ("video.avi", "one.PNG", "notes.txt"):
+            (tmp_path / name).write_bytes(b"x")
+        assert find_camera(str(tmp_path)).kind == "folder"
+        assert find_camera(str(tmp_path / "one.PNG")).kind == "folder"
+        assert find_camera(str(tmp_path / "video.avi")).kind == "file"
+        assert not find_camera(str(tmp_path)).live
+
+    def test_a_password_is_not_shown(self) -> None:
+        source = find_camera("rtsp://staff:secret@10.0.0.7/1")
+        assert source.name == "rtsp://10.0.0.7/1"
+        assert "secret" in source.target
+
+    @pytest.mark.parametrize(
+        ("name", "word"),
+        [
+            ("none.avi", "no such file"),
+            ("a\0b", "no such file"),
+            ("http://", "no address"),
+            ("http://host:99999/", "no address"),
+            ("http://host/a b", "no address"),
+            ("concat://a|b", "no address"),
+            ("file:///etc/passwd", "no address"),
+            ("ftp://u:secret@host", "^ftp://host: is no address"),
+        ],
+    )
+    def test_what_cannot_be_a_camera_is_refused_in_a_sentence(self, name: str, word: str) -> None:
+        with pytest.raises(CameraError, match=word) as refused:
+            find_camera(name)
+        assert "\n" not in str(refused.value)
+
+    def test_an_empty_folder_and_a_pipe_are_refused(self, tmp_path: Path) -> None:
+        with pytest.raises(CameraError, match="no pictures in this folder"):
+            find_camera(str(tmp_path))
+        os.mkfifo(tmp_path / "pipe")
+        with pytest.raises(CameraError, match="neither a file nor a folder"):
+            find_camera(str(tmp_path / "pipe"))
+
+    def test_it_can_be_told_to_another_process(self) -> None:
+        source = find_camera("http://host/")
+        assert CameraSource.from_json(source.to_json()) == source
+
+
+def test_pictures_come_in_the_order_that_people_count_in(tmp_path: Path) -> None:
+    for name in ("10.png", "9.png", "b2.jpg", "b10.JPG", "notes.txt", "a.png"):
+        (tmp_path / name).write_bytes(b"")
+    (tmp_path / "folder.png").mkdir()
+    found = [path.name for path in pictures_in(tmp_path)]
+    assert found == ["9.png", "10.png", "a.png", "b2.jpg", "b10.JPG"]

@@ -1,0 +1,267 @@
+"""Cameras as they are: files by OpenCV's writer, a folder, and a stream that does what it likes."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tangy_hw.drivers.camera import Camera
+from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camera
+from tangy_hw.drivers.camera_state import State
+from tests.hw.pictures import room, seen
+from tests.real.camera_server import CameraServer
+from tests.real.conftest import PATIENCE
+
+PICTURES = [seen(room(60 + number, 160, 120), np.random.default_rng(number)) for number in range(6)]
+
+
+async def until(camera: Camera, state: State) -> None:
+    """Wait until a camera is in a state."""
+    reached = asyncio.Event()
+    camera.changed = lambda sight: reached.set() if sight.state == state else None
+    if camera.sight.state != state:
+        async with asyncio.timeout(PATIENCE):
+            await reached.wait()
+
+
+def film(path: Path, code: str, rate: float = 10.0) -> Path:
+    """Write the pictures as a video."""
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), rate, (160, 120))
+    assert writer.isOpened()
+    for picture in PICTURES:
+        writer.write(picture)
+    writer.release()
+    return path
+
+
+def differs(image: np.ndarray[tuple[int, ...], np.dtype[np.uint8]], number: int) -> float:
+    """Return by how much a picture differs from the one that it should be, of 255."""
+    return float(np.mean(cv2.absdiff(image, PICTURES[number])))
+
+
+class TestFiles:
+    @pytest.mark.parametrize(
+        ("name", "code"), [("a.avi", "MJPG"), ("a.mkv", "FFV1"), ("a.mp4", "mp4v")]
+    )
+    async def test_every_picture_of_a_video_comes_once_and_in_order(
+        self, name: str, code: str, tmp_path: Path
+    ) -> None:
+        source = find_camera(str(film(tmp_path / name, code)), each=True)
+        async with Camera(source) as camera:
+            frames = [frame async for frame in camera]
+        assert [frame.seq for frame in frames] == [0, 1, 2, 3, 4, 5]
+        stamps = [frame.stamp for frame in frames]
+        assert stamps == sorted(stamps)
+        for number, frame in enumerate(frames):
+            assert differs(frame.image(), number) < 12
+        assert camera.sight.state == "ENDED"
+
+    async def test_a_folder_gives_its_pictures_and_leaves_out_what_is_none(
+        self, tmp_path: Path
+    ) -> None:
+        for number, picture in enumerate(PICTURES):
+            cv2.imwrite(str(tmp_path / f"{number + 8}.png"), picture)
+        (tmp_path / "8b.png").write_bytes(b"this is no picture")
+        (tmp_path / "8c.jpg").write_bytes((tmp_path / "8.png").read_bytes()[:900])
+        cv2.imwrite(str(tmp_path / "9z.png"), np.zeros((1, 1), np.uint8))
+        async with Camera(find_camera(str(tmp_path), each=True)) as camera:
+            frames = [frame async for frame in camera]
+        assert [(frame.width, frame.height) for frame in frames].count((1, 1)) == 1
+        whole = [frame for frame in frames if frame.width == 160]
+        assert [differs(frame.image(), n) for n, frame in enumerate(whole[-6:])] == [0] * 6
+
+    async def test_a_file_that_is_over_begins_again_when_asked(self, tmp_path: Path) -> None:
+        path = film(tmp_path / "a.avi", "MJPG")
+        async with Camera(find_camera(str(path), each=True, loop=True)) as camera:
+            frames = [await camera.frame() for _ in range(15)]
+        assert [frame and frame.seq for frame in frames] == list(range(15))
+
+    async def test_a_video_comes_in_its_own_time_and_the_newest_counts(
+        self, tmp_path: Path
+    ) -> None:
+        path = film(tmp_path / "a.avi", "MJPG", rate=20)
+        async with Camera(find_camera(str(path))) as camera:
+            await until(camera, "ENDED")
+            assert await camera.frame() is None
+
+    @pytest.mark.parametrize(
+        ("name", "content", "word"),
+        [
+            ("a.avi", b"hello, I am no video " * 50, "no video that can be read"),
+            ("a.avi", b"", "no video that can be read"),
+            ("a.png", b"nor I a picture", "no pictures that can be read"),
+        ],
+    )
+    async def test_what_cannot_be_read_is_an_error_in_a_sentence(
+        self, name: str, content: bytes, word: str, tmp_path: Path
+    ) -> None:
+        (tmp_path / name).write_bytes(content)
+        async with Camera(find_camera(str(tmp_path / name))) as camera:
+            with pytest.raises(CameraError, match=word):
+                await camera.frame(wait=PATIENCE)
+
+    async def test_a_playlist_reads_nothing_else(self, tmp_path: Path) -> None:
+        path = tmp_path / "list.m3u8"
+        path.write_text("#EXTM3U\n#EXTINF:10,\nhttp://127.0.0.1:9/x.ts\n#EXT-X-ENDLIST\n")
+        async with Camera(find_camera(str(path))) as camera:
+            with pytest.raises(CameraError, match="can be read"):
+                await camera.frame(wait=PATIENCE)
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[CameraServer]:
+    with CameraServer() as one:
+        yield one
+
+
+class TestStream:
+    """One camera through all its troubles; each is named, and so is its end."""
+
+    @pytest.mark.parametrize(
+        ("mode", "state"),
+        [
+            ("frozen", "FROZEN"),
+            ("covered", "COVERED"),
+            ("dark", "DARK"),
+            ("blurred", "BLURRED"),
+            ("half", "DISCONNECTED"),
+            ("rubbish", "DISCONNECTED"),
+            ("hang", "DISCONNECTED"),
+        ],
+    )
+    async def test_trouble_is_named_and_its_end_too(
+        self, mode: str, state: State, server: CameraServer
+    ) -> None:
+        server.mode = "live"
+        async with Camera(find_camera(server.url)) as camera:
+            await until(camera, "OK")
+            before = await camera.frame(wait=PATIENCE)
+            server.mode = mode
+            await until(camera, state)
+            server.mode = "live"
+            await until(camera, "OK")
+            after = await camera.frame(wait=PATIENCE)
+        assert before is not None and after is not None
+        assert after.seq > before.seq and after.stamp > before.stamp
+
+    async def test_a_camera_that_is_unplugged_is_opened_anew(self) -> None:
+        with CameraServer() as server:
+            async with Camera(find_camera(server.url)) as camera:
+                await until(camera, "OK")
+                server.unplug()
+                await until(camera, "DISCONNECTED")
+                server.mode = "live"
+                server.listen()
+                await until(camera, "OK")
+
+    async def test_only_whole_pictures_are_given(self) -> None:
+        with CameraServer() as server:
+            async with Camera(find_camera(server.url)) as camera:
+                given = [await camera.frame(wait=PATIENCE)]
+                server.mode = "half"
+                await until(camera, "DISCONNECTED")
+                given.append(await camera.frame(after=-1, wait=PATIENCE))
+                server.mode = "live"
+                given += [await camera.frame(wait=PATIENCE) for _ in range(4)]
+        like = server.still
+        assert all(one and np.mean(cv2.absdiff(one.image(), like)) < 5 for one in given)
+
+
+class TestProcess:
+    async def test_one_that_is_killed_is_started_again_and_owes_nothing(
+        self, server: CameraServer
+    ) -> None:
+        server.mode = "live"
+        async with Camera(find_camera(server.url)) as camera:
+            first = await camera.frame(wait=PATIENCE)
+            assert first is not None and camera.pid is not None
+            asked = asyncio.create_task(camera.frame(after=first.seq + 20))
+            os.kill(camera.pid, signal.SIGKILL)
+            later = await asyncio.wait_for(asked, PATIENCE)
+        assert later is not None and later.seq > first.seq + 20
+
+    async def test_one_that_hangs_as_a_whole_is_ended_and_started_again(
+        self, server: CameraServer, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("tangy_hw.drivers.camera.SILENT_SECONDS", 1.0)
+        server.mode = "live"
+        async with Camera(find_camera(server.url)) as camera:
+            await until(camera, "OK")
+            hung = camera.pid
+            assert hung is not None
+            os.kill(hung, signal.SIGSTOP)
+            await until(camera, "DISCONNECTED")
+            await until(camera, "OK")
+            assert camera.pid != hung
+        with pytest.raises(ProcessLookupError):
+            os.kill(hung, 0)
+
+    async def test_one_that_hangs_in_a_read_is_ended_and_started_again(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("tangy_hw.drivers.camera.OPEN_SECONDS", 0.5)
+        path = tmp_path / "pipe.avi"
+        os.mkfifo(path)  # whoever opens it waits for ever
+        source = CameraSource("pipe", "file", str(path), each=True)
+        async with Camera(source) as camera:
+            asked = asyncio.create_task(camera.frame())
+            await another(camera, await another(camera, None))
+            film(tmp_path / "a.avi", "MJPG")
+            path.unlink()
+            (tmp_path / "a.avi").rename(path)
+            frame = await asyncio.wait_for(asked, PATIENCE)
+        assert frame is not None and differs(frame.image(), 0) < 12
+
+    async def test_closing_ends_it_and_whoever_waits_gets_nothing(
+        self, server: CameraServer
+    ) -> None:
+        server.mode = "hang"
+        camera = Camera(find_camera(server.url))
+        await camera.start()
+        asked = asyncio.create_task(camera.frame())
+        process = await another(camera, None)
+        await camera.close()
+        assert await asked is None
+        assert await camera.frame() is None
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
+
+    async def test_what_libraries_print_goes_to_the_log(
+        self, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    ) -> None:
+        (tmp_path / "a.avi").write_bytes(b"nothing")
+        source = find_camera(str(tmp_path / "a.avi"))
+        async with Camera(source, log=tmp_path / "camera.log") as camera:
+            with pytest.raises(CameraError):
+                await camera.frame(wait=PATIENCE)
+        assert (tmp_path / "camera.log").stat().st_size > 0
+        assert capfd.readouterr() == ("", "")
+
+    async def test_a_log_that_cannot_be_written_is_no_matter(self, tmp_path: Path) -> None:
+        cv2.imwrite(str(tmp_path / "a.png"), PICTURES[0])
+        source = replace(find_camera(str(tmp_path / "a.png")), each=True)
+        async with Camera(source, log=tmp_path / "no" / "camera.log") as camera:
+            assert await camera.frame() is not None
+
+    async def test_a_wait_that_is_over_gives_nothing(self) -> None:
+        async with Camera(find_camera("/dev/video93")) as camera:
+            assert await camera.frame(wait=0.05) is None
+            await until(camera, "DISCONNECTED")
+            assert "no such camera" in camera.sight.why
+
+
+async def another(camera: Camera, pid: int | None) -> int:
+    """Wait until another process reads a camera, and return it."""
+    async with asyncio.timeout(PATIENCE):
+        while camera.pid in (pid, None):  # noqa: ASYNC110 - nobody tells
+            await asyncio.sleep(0.01)
+    assert camera.pid is not None
+    return camera.pid
