@@ -17,6 +17,7 @@ from tangy_profiles.reading import plain
 from tangy_tui import __version__
 from tangy_tui.verbs import (
     activity,
+    camera,
     cards,
     demonstrations,
     drill,
@@ -76,6 +77,8 @@ VERBS: tuple[Callable[..., None], ...] = (
     drill.drill,
     listen.listen,
     say.say,
+    camera.camera,
+    camera.capture,
     machine.doctor,
 )
 for verb in VERBS:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from tangy_hw.drivers.camera_devices import list_cameras
 from tangy_hw.sound.arecord import list_microphones
 from tangy_hw.sound.player import examine_output
 from tangy_hw.sound.synthesis import examine_voice
@@ -53,7 +54,21 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
         _voice(which),
         _sound_output(which),
         _microphone(which("arecord")),
+        _camera(),
     ]
+
+
+def _camera() -> Finding:
+    found = list_cameras()
+    if not found:
+        return Finding("camera", False, "none is found; plug one in, or name a stream or a video.")
+    usable = [f"{device} ({title})" for device, title, may in found if may]
+    if not usable:
+        what = f"this user may not use {found[0][0]} ({found[0][1]}); join the group video."
+        return Finding("camera", False, what, broken=True)
+    return Finding(
+        "camera", True, f"{', '.join(usable)} can be used (try: tangy camera {found[0][0]})."
+    )
 
 
 def _voice(which: Callable[[str], str | None]) -> Finding:

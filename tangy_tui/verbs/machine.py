@@ -6,7 +6,7 @@ from tangy_tui.verbs.common import Data, Json, Seed, print_json
 
 
 def doctor(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
-    """Say what of this machine works: terminal, store, speech, voice, microphone."""
+    """Say what of this machine works: terminal, store, speech, voice, microphone, camera."""
     from tangy_tui.doctor import examine
     from tangy_tui.house import data_folder
 

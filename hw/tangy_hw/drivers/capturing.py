@@ -1,0 +1,114 @@
+"""Records a camera's pictures to be labelled: a PNG each, and beside it what is known of it.
+
+    000001.png
+    000001.json   {"file": "000001.png", "source", "taken", "stamp", "seq", "state", "why",
+                   "evidence": {"age", "unchanged", "brightness", "contrast", "sharpness"},
+                   "seen": what a reader made of it, or null, "label": null}
+
+`label` is for a person to fill in. A folder that has pictures already is added to.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import time
+from collections.abc import AsyncIterator, Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.drivers.camera import Camera, Frame
+from tangy_hw.drivers.camera_source import CameraError
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_look import Image
+
+Reader = Callable[["Image"], Any]
+"""Says of a picture (BGR) what is in it, as JSON."""
+
+
+async def capture(
+    camera: Camera,
+    folder: Path,
+    *,
+    count: int | None = None,
+    seconds: float | None = None,
+    every: float = 0.0,
+    reader: Reader | None = None,
+) -> AsyncIterator[dict[str, Any]]:
+    """Record pictures of a camera that was started, and give what was written beside each.
+
+    Args:
+        camera: where they come from.
+        folder: where they go; it is made if need be.
+        count: at most so many; without an end otherwise.
+        seconds: for at most so long.
+        every: at least so many s between two.
+        reader: what else is to be said of each.
+
+    Raises:
+        CameraError: the source cannot be read, or the folder cannot be written to.
+    """
+    number = await asyncio.to_thread(_prepare, folder)
+    began = time.monotonic()
+    last, kept = -every, 0
+    while count is None or kept < count:
+        left = None if seconds is None else began + seconds - time.monotonic()
+        if left is not None and left <= 0:
+            return
+        frame = await camera.frame(wait=left)
+        if frame is None:
+            return
+        if frame.stamp - last < every:
+            continue
+        last, kept = frame.stamp, kept + 1
+        yield await asyncio.to_thread(_keep, frame, folder, number + kept, camera.name, reader)
+
+
+def _prepare(folder: Path) -> int:
+    """Make the folder, for its owner alone; return the highest number that is used in it."""
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        names = [path.stem for path in folder.iterdir()]
+    except OSError as error:
+        reason = error.strerror or "it is not possible"
+        raise CameraError(plain(f"{folder}: cannot be used ({reason}).")) from None
+    return max((int(name) for name in names if re.fullmatch(r"[0-9]{6}", name)), default=0)
+
+
+def _keep(
+    frame: Frame, folder: Path, number: int, source: str, reader: Reader | None
+) -> dict[str, Any]:
+    import cv2
+
+    image = frame.image()
+    path = folder / f"{number:06}.png"
+    taken = time.time() - (time.monotonic() - frame.stamp)
+    known = {
+        "file": path.name,
+        "source": source,
+        "taken": datetime.fromtimestamp(taken, UTC).isoformat(timespec="milliseconds"),
+        "stamp": round(frame.stamp, 3),
+        "seq": frame.seq,
+        "state": frame.sight.state,
+        "why": frame.sight.why,
+        "evidence": frame.sight.evidence(),
+        "seen": None if reader is None else reader(image),
+        "label": None,
+    }
+    encoded = cv2.imencode(".png", image)[1].tobytes()
+    try:
+        for place, content in (
+            (path, encoded),
+            (path.with_suffix(".json"), json.dumps(known, indent=2).encode()),
+        ):
+            with place.open("xb") as file:
+                place.chmod(0o600)
+                file.write(content)
+    except OSError as error:
+        reason = error.strerror or "it is not possible"
+        raise CameraError(plain(f"{path}: cannot be written ({reason}).")) from None
+    return known

@@ -1,0 +1,184 @@
+"""`tangy camera` and `tangy capture`: see whether a camera works, and record what it sees."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, Json, Seed, print_json
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera import Frame
+    from tangy_hw.drivers.camera_source import CameraSource
+    from tangy_hw.drivers.camera_state import Sight
+
+SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video, a picture or a folder of them"
+STATES = {
+    "OPENING": "no picture yet",
+    "OK": "it works",
+    "DISCONNECTED": "disconnected",
+    "FROZEN": "frozen",
+    "COVERED": "covered",
+    "DARK": "too dark",
+    "BLURRED": "blurred",
+    "ENDED": "at its end",
+}
+
+
+def camera(
+    source: Annotated[str, typer.Argument(help=f"{SOURCES}.")],
+    seconds: Annotated[float, typer.Option(min=0.1, help="How long it is watched.")] = 5.0,
+    picture: Annotated[
+        Path | None, typer.Option(metavar="FILE.png", help="Keep its last picture there.")
+    ] = None,
+    log: Annotated[Path | None, typer.Option(help="Where its driver's messages go.")] = None,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Watch a camera, and say what state it is in, and why.
+
+    The status is 0 if pictures came and it works in the end, and 1 if it does not.
+    """
+    from tangy_hw.drivers.camera_source import find_camera
+
+    if picture is not None and picture.suffix.lower() not in (".png", ".jpg"):
+        raise TangyError(plain(f"--picture {picture}: name it .png or .jpg."))
+    found = asyncio.run(_watch(find_camera(source), seconds, log, tell=not as_json))
+    frame: Frame | None = found.pop("frame")
+    if picture is not None and frame is not None:
+        _write(frame, picture)
+    if as_json:
+        print_json(found)
+    elif found["frames"]:
+        print(f"{found['width']} x {found['height']}, {found['rate']:.1f} pictures a second.")
+    if not found["works"]:
+        raise typer.Exit(1)
+
+
+async def _watch(
+    source: CameraSource, seconds: float, log: Path | None, *, tell: bool
+) -> dict[str, Any]:
+    from tangy_hw.drivers.camera import Camera
+
+    began = time.monotonic()
+    states: list[dict[str, Any]] = []
+    frame: Frame | None = None
+
+    def changed(sight: Sight) -> None:
+        at = time.monotonic() - began
+        row = {"at": round(at, 2), "state": sight.state, "why": sight.why, **sight.evidence()}
+        states.append(row)
+        if tell and (sight.state != "ENDED" or frame is not None):
+            print(f"{at:5.1f} s  {STATES[sight.state]}{_reason(sight)}", flush=True)
+
+    camera = Camera(source, log=log)
+    camera.changed = changed
+    stamps: list[float] = []
+    first = 0
+    async with camera:
+        while not camera.over and (left := began + seconds - time.monotonic()) > 0:
+            newest = await camera.frame(wait=left)
+            if newest is None:
+                continue
+            if frame is None:
+                first = newest.seq
+            frame = newest
+            stamps.append(newest.stamp)
+        sight = camera.sight
+    lasted = stamps[-1] - stamps[0] if stamps else 0.0
+    well = [row["state"] for row in states if row["state"] != "ENDED"]
+    return {
+        "source": source.name,
+        "works": bool(frame) and bool(well) and well[-1] == "OK",
+        "state": sight.state,
+        "why": sight.why,
+        "evidence": sight.evidence(),
+        "frames": len(stamps),
+        "width": frame.width if frame else None,
+        "height": frame.height if frame else None,
+        "rate": round((frame.seq - first) / lasted, 2) if frame and lasted > 0 else 0.0,
+        "states": states,
+        "frame": frame,
+    }
+
+
+def _reason(sight: Sight) -> str:
+    if sight.state == "OK":
+        measures = [("brightness", sight.brightness), ("contrast", sight.contrast),
+                    ("sharpness", sight.sharpness)]  # fmt: skip
+        return ": " + ", ".join(f"{name} {one:.2f}" for name, one in measures if one is not None)
+    return f": {sight.why}" if sight.why else ""
+
+
+def _write(frame: Frame, path: Path) -> None:
+    import cv2
+
+    encoded = cv2.imencode(path.suffix.lower(), frame.image())[1].tobytes()
+    try:
+        path.write_bytes(encoded)
+    except OSError as error:
+        raise TangyError(plain(f"{path}: cannot be written ({error.strerror}).")) from None
+
+
+def capture(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where the pictures go.")],
+    source: Annotated[str, typer.Option("--from", metavar="SOURCE", help=f"{SOURCES}.")],
+    count: Annotated[int | None, typer.Option(min=1, help="At most so many pictures.")] = None,
+    seconds: Annotated[float | None, typer.Option(min=0.1, help="For at most so long.")] = None,
+    every: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Seconds between two: 1, or 0 (all) of a file or folder."),
+    ] = None,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Record a camera's pictures with what was seen, to be labelled; Ctrl-C ends it.
+
+    Beside each picture is a JSON file with the camera's state and an empty "label". Pictures show
+    people: record them with their consent only, and delete them when they are no longer needed.
+    """
+    from tangy_hw.drivers.camera_source import find_camera
+
+    found = find_camera(source)
+    between = (1.0 if found.live else 0.0) if every is None else every
+    if not found.live and between == 0:
+        found = find_camera(source, each=True)
+    kept = asyncio.run(_capture(found, folder, count, seconds, between, tell=not as_json))
+    if as_json:
+        print_json(kept)
+    elif kept:
+        shown = plain(str(folder))
+        print(f"{len(kept)} pictures are in {shown}, each with a JSON file to be labelled.")
+    if not kept:
+        print(f"tangy: {found.name}: no picture came.", file=sys.stderr)
+        raise typer.Exit(1)
+
+
+async def _capture(
+    source: CameraSource,
+    folder: Path,
+    count: int | None,
+    seconds: float | None,
+    every: float,
+    *,
+    tell: bool,
+) -> list[dict[str, Any]]:
+    from tangy_hw.drivers.camera import Camera
+    from tangy_hw.drivers.capturing import capture as record
+
+    kept: list[dict[str, Any]] = []
+    async with Camera(source) as camera:
+        async for known in record(camera, folder, count=count, seconds=seconds, every=every):
+            kept.append(known)
+            if tell:
+                print(f"{known['file']}  {STATES[known['state']]}", flush=True)
+    return kept
