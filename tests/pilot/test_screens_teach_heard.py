@@ -331,9 +331,8 @@ async def test_names_are_listened_for_as_they_are_said_now(run: Run, house: Hous
         assert ears.asks  # commands are not for this screen
         house.pronounce(house.people[0], "Y UW Z ER, W AH N")
         before = len(ears.books)
-        await pilot.app.workers.wait_for_complete(
-            [worker for worker in pilot.app.workers if worker.group == "read"]
-        )
+        for worker in [one for one in pilot.app.workers if one.group == "read"]:
+            await worker.wait()
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
