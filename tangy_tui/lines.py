@@ -140,11 +140,16 @@ class TeachingLines:
             command = self._command(line) if isinstance(line, str) else line
             if command == "quit":
                 break
+            asked = teaching.question
             if isinstance(command, Stop):
+                if asked is not None:
+                    self._tell(teaching.apply(Reply(yes=False)))
                 write(STOPPED)
             elif not isinstance(command, str):
                 self._tell(teaching.apply(command))
             if self._ears is not None:
+                if asked is not None and teaching.question is not asked:  # it answers no other
+                    self._ears.asking(False)
                 self._ears.asking(teaching.question is not None)
 
     def _leave(self) -> None:

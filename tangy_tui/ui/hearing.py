@@ -78,6 +78,8 @@ class Hearing:
         self._kept: deque[Say] = deque()
         self._understood: Phrasebook | None = None
         self._failed = ""
+        self._state = ""
+        self._about: VerifyingDialog | None = None  # the question when somebody began to speak
         ears.changed = self._changed
         ears.tell = self.tell
 
@@ -203,9 +205,9 @@ class Hearing:
                 self.look()
 
     def _answer(self, yes: bool) -> None:
-        """Answer the open question as its key would."""
+        """Answer the open question as its key would, if it was there when somebody began."""
         question = self._question
-        if question is None:
+        if question is None or self._about not in (None, question):
             return
         wrong = question.hear(yes=yes)
         said = f"Heard: {'yes' if yes else 'no'}."
@@ -231,6 +233,11 @@ class Hearing:
         return screen if isinstance(screen, VerifyingDialog) else None
 
     def _changed(self) -> None:
+        state = self.ears.state
+        if state != self._state:
+            self._state = state
+            if state in (("listening", "speaking") if self.ears.live else ("thinking",)):
+                self._about = self._question
         for show in tuple(self._watching):
             show()
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from tangy_hw.sound.wav import RATE
 from tangy_tui.learning.speech.evidence import Evidence, Expecting, Wanted
+from tangy_tui.learning.speech.understanding import NO, YES
 
 PATIENCE = 10.0
 
@@ -123,7 +124,9 @@ class FakeRecogniser:
         if self.failures:
             raise self.failures.pop(0)
         letter = Counter(pcm.decode()).most_common(1)[0][0] if pcm else ""
-        return Evidence(WORDS.get(letter, ""), "", 0.0, 1.0, len(pcm) / 2 / RATE)
+        words = WORDS.get(letter, "")
+        phrase = words if words in (*YES, *NO) else ""
+        return Evidence(words, phrase, 0.0, 1.0, len(pcm) / 2 / RATE)
 
 
 WORKER = r"""

@@ -11,6 +11,8 @@ import pytest
 
 from tangy_hw.sound.wav import read_wav
 from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_sim.users import load_users
@@ -26,7 +28,16 @@ from tangy_tui.learning.speech.recordings import (
     consented,
     forget_recordings,
 )
-from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.learning.teaching_events import Begun, StepUndone
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Stop,
+)
 
 SOUND = b"\1\0" * 8000
 NOON = datetime(2026, 1, 2, 12, 0, 0, tzinfo=UTC)
@@ -47,6 +58,23 @@ def spoken(book: Phrasebook) -> Callable[[str], Say]:
 def recorder(tmp_path: Path) -> Recorder:
     (tmp_path / "data").mkdir(exist_ok=True)
     return Recorder(tmp_path / "data", "rosa", now=lambda: NOON)
+
+
+@pytest.fixture
+def teaching(activity: Activity, people: tuple[Person, ...], store: Store) -> Teaching:
+    """A session that has begun."""
+    made = Teaching(
+        activity,
+        people,
+        store,
+        lambda shown: SimulatedWorld(
+            activity, shown.people, seed=shown.seed, users=load_users().teaching()
+        ),
+        teacher="rosa",
+        seed=1,
+    )
+    made.begin()
+    return made
 
 
 def kept(recorder: Recorder) -> list[str]:
@@ -123,40 +151,70 @@ class TestKeeping:
         for folder in (file.parent, recorder.folder):
             assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
-    def test_what_was_not_verified_is_no_label(
-        self, recorder: Recorder, spoken: Callable[[str], Say], book: Phrasebook
+    def test_what_was_not_verified_is_not_kept(
+        self, recorder: Recorder, spoken: Callable[[str], Say]
     ) -> None:
         recorder.heard(SOUND, spoken("tell a joke"))
-        recorder.rejected()
+        recorder.follow([Rejected("tell a joke")])
+        recorder.verified("joke", None)
         recorder.heard(SOUND, Say("banana", 0.0, ()))
+        recorder.heard(SOUND, Stop("stop"))
+        recorder.verified("joke", None)
+        assert not recorder.folder.exists()
+        recorder.heard(SOUND, spoken("tell a joke"))
         recorder.heard(SOUND, spoken("call number"))  # nobody answered about the one before
         recorder.verified("call number", None)
-        assert [name.partition("/")[0] for name in kept(recorder)] == [
-            "call-number", "rejected", "rejected"
-        ]  # fmt: skip
-        found = Labels(book).find(recorder.folder)
-        assert len(found.recordings) == 1
-        assert len(found.left_out) == 2
+        recorder.verified("call number", None)
+        assert kept(recorder) == ["call-number/20260102T120000-1.wav"]
 
     def test_what_was_typed_is_never_the_label_of_what_was_said_before(
-        self, recorder: Recorder
+        self, recorder: Recorder, spoken: Callable[[str], Say]
     ) -> None:
         recorder.heard(SOUND, Say("banana", 0.0, ()))
         recorder.heard(b"", Say("tell a joke"))
         recorder.verified("joke", None)
-        assert [name.partition("/")[0] for name in kept(recorder)] == ["rejected"]
-
-    def test_what_stops_is_not_kept_nor_anything_twice(
-        self, recorder: Recorder, spoken: Callable[[str], Say]
-    ) -> None:
-        recorder.heard(SOUND, Stop("stop"))
+        recorder.heard(SOUND, spoken("call number"))
+        recorder.verified("joke", None)  # typed, and nobody told the recorder
+        recorder.heard(SOUND, spoken("tell a joke"))
+        typed = Asked("joke", "joke", "joke please", 0.9, (), None)
+        recorder.follow([typed])
         recorder.verified("joke", None)
         assert kept(recorder) == []
+
+    @pytest.mark.parametrize("again", [Begun, StepUndone, NotUnderstood, Refused])
+    def test_what_closes_the_question_without_a_yes_drops_what_was_said(
+        self,
+        again: type,
+        recorder: Recorder,
+        spoken: Callable[[str], Say],
+        demonstrate: Callable[[str, int, int], Demonstration],
+    ) -> None:
+        game = demonstrate("bingo", 1, 4)
+        event = {
+            Begun: Begun(game, resumed=False),
+            StepUndone: StepUndone(1, game.steps[0]),
+            NotUnderstood: NotUnderstood("banana", ()),
+            Refused: Refused("Nobody asks for help.", "tell a joke"),
+        }[again]
         recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.follow([event])
         recorder.verified("joke", None)
-        recorder.verified("joke", None)
-        recorder.rejected()
-        assert len(kept(recorder)) == 1
+        assert kept(recorder) == []
+
+    def test_an_answer_that_is_refused_keeps_what_was_said_for_the_next_one(
+        self, recorder: Recorder, book: Phrasebook, teaching: Teaching
+    ) -> None:
+        commands = (*book.choices("tell a joke"), *book.choices("greet everyone"))
+        for command in (
+            Say("tell a greeting", 0.5, commands, sure=False),
+            Reply(yes=True),  # to an offer: which?
+            Reply(yes=True, alternative=7),  # there is none
+            Reply(yes=True, alternative=2),
+            Reply(yes=True),
+        ):
+            recorder.heard(SOUND, command)
+            recorder.follow(teaching.apply(command))
+        assert [name.partition("/")[0] for name in kept(recorder)] == ["greeting"]
 
     def test_a_full_disk_is_told_once_and_teaching_goes_on(
         self, tmp_path: Path, spoken: Callable[[str], Say]
@@ -176,21 +234,8 @@ class TestKeeping:
         self,
         recorder: Recorder,
         spoken: Callable[[str], Say],
-        activity: Activity,
-        people: tuple[Person, ...],
-        store: Store,
+        teaching: Teaching,
     ) -> None:
-        teaching = Teaching(
-            activity,
-            people,
-            store,
-            lambda shown: SimulatedWorld(
-                activity, shown.people, seed=shown.seed, users=load_users().teaching()
-            ),
-            teacher="rosa",
-            seed=1,
-        )
-        teaching.begin()
         for pcm, command in (
             (SOUND, spoken("greet everyone")),
             (b"", Reply(yes=True)),
@@ -202,9 +247,23 @@ class TestKeeping:
         ):
             recorder.heard(pcm, command)
             recorder.follow(teaching.apply(command))
-        assert [name.partition("/")[0] for name in kept(recorder)] == [
-            "greeting", "rejected", "rejected"
-        ]  # fmt: skip
+        assert [name.partition("/")[0] for name in kept(recorder)] == ["greeting"]
+
+    @pytest.mark.parametrize("link", [FOLDER, f"{FOLDER}/joke"])
+    def test_nothing_is_recorded_through_a_link(
+        self, link: str, recorder: Recorder, spoken: Callable[[str], Say], tmp_path: Path
+    ) -> None:
+        elsewhere = tmp_path / "elsewhere"
+        elsewhere.mkdir()
+        place = recorder.folder.parent / link
+        place.parent.mkdir(exist_ok=True)
+        place.symlink_to(elsewhere)
+        recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.verified("joke", None)
+        assert (recorder.kept, list(elsewhere.iterdir())) == (0, [])
+        if link == FOLDER:
+            with pytest.raises(TangyError, match=r"is a symbolic link; make it a folder"):
+                Recorder(recorder.folder.parent, "rosa")
 
 
 class TestForgetting:
@@ -228,9 +287,9 @@ class TestForgetting:
         elsewhere.mkdir(parents=True)
         (elsewhere / "20260102T120000-1.wav").write_bytes(b"x")
         (store.folder / FOLDER).symlink_to(elsewhere.parent)
-        assert forget_recordings(store) == (0, 0)
+        assert forget_recordings(store) == (0, 1)
         (store.folder / FOLDER).unlink()
         (store.folder / FOLDER).mkdir()
         (store.folder / FOLDER / "joke").symlink_to(elsewhere)
-        assert forget_recordings(store) == (0, 0)
+        assert forget_recordings(store) == (0, 1)
         assert list(elsewhere.iterdir())

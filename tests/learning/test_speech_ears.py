@@ -274,6 +274,27 @@ class TestAsking:
         await here.say(sound("s"))
         assert here.words == ["stop"]
 
+    @pytest.mark.parametrize("between", ["a question", "the robot speaks"])
+    async def test_a_stop_counts_whatever_came_between(self, enter: Enter, between: str) -> None:
+        here = await enter(answers=True).ready()
+        here.ears.talk()
+        await here.source.feed(sound("s"))
+        if between == "a question":
+            here.ears.asking(True)
+        else:
+            here.ears.shut()
+        await soon(lambda: bool(here.heard))
+        assert here.heard == [Stop("stop")]
+
+    async def test_whoever_opens_the_microphone_opens_no_others(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.ears.shut()
+        here.ears.shut()
+        here.ears.open()
+        assert here.state == "shut"
+        here.ears.open()
+        assert here.state != "shut"
+
     async def test_a_stop_is_heard_whatever_is_asked(self, enter: Enter) -> None:
         here = await enter().ready()
         await here.say(sound("s"))

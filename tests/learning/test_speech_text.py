@@ -247,7 +247,7 @@ class TestUnderstanding:
     ) -> None:
         found = understand(Evidence(words, "", -9.0, 0.0, 0.3), BOOK, settings)
         assert found == Stop(words)
-        assert answer(evidence(words)) == Stop(words)
+        assert answer(evidence(words), settings) == Stop(words)
         assert stops(words)
 
     @pytest.mark.parametrize(
@@ -271,7 +271,16 @@ class TestUnderstanding:
         ],
     )
     def test_an_answer_is_one_of_a_few_words(self, words: str, meant: Reply | None) -> None:
-        assert answer(evidence(words)) == meant
+        sure = replace(evidence(words), phrase=words, margin=-0.4)
+        assert answer(sure, USUAL) == meant
+
+    @pytest.mark.parametrize("words", ["yes", "no"])
+    def test_what_only_sounds_like_an_answer_is_none(self, words: str) -> None:
+        sure = replace(evidence(words), phrase=words, margin=-0.4)
+        assert answer(replace(sure, phrase=""), USUAL) is None  # any phones explain it better
+        assert answer(replace(sure, margin=-1.0), USUAL) is None
+        assert answer(sure, replace(USUAL, shift=1.0)) is None
+        assert answer(sure, PAPER) is None
 
     def test_the_papers_confidence_is_that_of_the_sound_and_of_the_match(self) -> None:
         exact = understand(evidence("go to the front", 0.9), BOOK, PAPER)

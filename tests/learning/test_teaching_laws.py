@@ -139,7 +139,8 @@ def test_however_often_another_choice_is_made_there_are_at_most_three_more(store
         chosen = asked.alternatives[-1]
         asked = teaching.apply(Reply(yes=False, alternative=len(asked.alternatives)))[0]
         assert asked == teaching.question
-        assert teaching.question.behaviour == chosen
+        assert isinstance(asked, Asked)
+        assert asked.behaviour == chosen
     assert teaching.demonstration.steps == ()
 
 

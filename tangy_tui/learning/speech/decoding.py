@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from tangy_tui.learning.speech.cleaning import cleaned
+from tangy_tui.learning.speech.cleaning import cleaned, surrounded
 from tangy_tui.learning.speech.evidence import RATE, Evidence, Expecting, Wanted
 from tangy_tui.learning.speech.language import (
     EVERYDAY,
@@ -104,7 +104,7 @@ class TwoDecoders:
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._said[expecting]:
             return Evidence(seconds=seconds)
-        pcm = cleaned(pcm)
+        pcm = cleaned(surrounded(pcm))
         words, score, _ = _best_path(self._words, pcm, expecting)
         phrase, garbage, _ = _best_path(self._grammar, pcm, expecting)
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN

@@ -145,6 +145,7 @@ class Ears:
         self._talks = asyncio.Event()  # it has begun, or none will
         self._free = asyncio.Event()
         self._free.set()
+        self._shuts = 0  # those who have shut it, and not opened it again
         self._asking = False
         self._ended = False  # the source has no more
         self._closed = False
@@ -177,14 +178,18 @@ class Ears:
 
     def shut(self) -> None:
         """Hear nothing for a while: the robot speaks. A recording has no robot in it."""
-        if self.live and self._free.is_set():
+        if not self.live:
+            return
+        self._shuts += 1
+        if self._free.is_set():
             self._free.clear()
             self._end(dropped=True)
             self.changed()
 
     def open(self) -> None:
         """Hear again, a moment from now: the room still rings."""
-        if not self._free.is_set():
+        self._shuts = max(0, self._shuts - 1)
+        if not self._shuts and not self._free.is_set():
             self._deaf = round(RINGING * RATE) * 2
             self._free.set()
             self.changed()
@@ -310,6 +315,8 @@ class Ears:
                 self._partial("")
             self.sound = recogniser.said
             if utterance.dropped:
+                if self._stops(evidence):  # that counts, whatever came between
+                    yield evidence
                 continue
             if self.hands_free:
                 self._go_on(recogniser.left + utterance.rest())
@@ -362,9 +369,12 @@ class Ears:
         if self._utterance is not None and self._utterance.over:
             self._now("thinking")
 
+    def _stops(self, evidence: Evidence) -> bool:
+        return isinstance(understand(evidence, self._phrasebook, self._settings), Stop)
+
     def _understand(self, evidence: Evidence) -> Heard | None:
         if self._asking:
-            said = answer(evidence)
+            said = answer(evidence, self._settings)
             return said if self.answers or isinstance(said, Stop) else None
         if not evidence.words:
             if self.live and evidence.seconds:

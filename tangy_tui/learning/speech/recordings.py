@@ -2,12 +2,12 @@
 
 Each utterance lies in the folder of what was verified, DATA/recordings/INTENT/TIME-N.wav, so that
 `tangy listen --bench DATA/recordings` reads it as it is. The label is what the teacher said yes to.
-What was rejected or not understood lies in `rejected`, because nobody said what was meant; practice
-leaves it out. What stops the robot, and spoken answers, are not kept: nobody verified them.
+Nothing else is kept: what nobody said yes to may be the talk of people who never agreed.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import wave
@@ -17,10 +17,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from tangy_hw.sound.wav import RATE
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.learning.speech.labels import REJECTED
-from tangy_tui.learning.teaching_events import Executed, TeachingEvent
-from tangy_tui.learning.verifying import NotUnderstood, Refused, Rejected, Reply, Say, Stop
+from tangy_tui.learning.teaching_events import Begun, Executed, StepUndone, TeachingEvent
+from tangy_tui.learning.verifying import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Stop,
+)
 
 FOLDER = "recordings"  # in the data folder
 CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
@@ -32,8 +42,8 @@ _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 def consent_question(store: Store) -> str:
     """Return what a teacher is asked before anything is recorded."""
     return (
-        "May Tangy keep recordings of what you say while you teach, to practise on? They stay on "
-        f"this machine, in {store.folder / FOLDER}; "
+        "May Tangy keep recordings of the commands that you say, and say yes to, while you teach, "
+        f"to practise on? They stay on this machine, in {store.folder / FOLDER}; "
         "`tangy listen --forget-recordings` deletes them all."
     )
 
@@ -58,7 +68,7 @@ def forget_recordings(store: Store) -> tuple[int, int]:
     """Delete every recording, and take back all consent.
 
     Returns:
-        How many were deleted, and how many files were left because they are something else.
+        How many were deleted, and how many files and links were left, being something else.
 
     Raises:
         StoreError: the log cannot be written.
@@ -68,8 +78,11 @@ def forget_recordings(store: Store) -> tuple[int, int]:
     deleted = left = 0
     store.append(FORGOTTEN, {})
     if top.is_symlink() or not top.is_dir():
-        return 0, 0
-    for folder in (one for one in top.iterdir() if one.is_dir() and not one.is_symlink()):
+        return 0, int(top.is_symlink() or top.exists())
+    for folder in top.iterdir():
+        if folder.is_symlink() or not folder.is_dir():
+            left += 1
+            continue
         for file in folder.iterdir():
             if _OURS.fullmatch(file.name.removeprefix(".")) and not file.is_symlink():
                 file.unlink()
@@ -84,10 +97,9 @@ def forget_recordings(store: Store) -> tuple[int, int]:
 
 
 class Recorder:
-    """Keeps utterances once it is known what was said in them. Ask for consent before.
+    """Keeps utterances that were verified, and only those. Ask for consent before.
 
-    Give it every command with `heard`, spoken or typed, then what follows from it: with `follow`,
-    or with `verified` and `rejected`.
+    Give it every spoken command with `heard`, then all that follows with `follow`.
     """
 
     def __init__(
@@ -105,24 +117,33 @@ class Recorder:
             teacher: whose voice it is; is not written down with the recordings.
             now: the clock that they are named by.
             tell: is called with a sentence if nothing can be kept any more.
+
+        Raises:
+            TangyError: the folder of recordings is a symbolic link.
         """
         self.folder = folder / FOLDER
         self.teacher = teacher
         self.kept = 0
-        """How many recordings were kept, rejected ones among them."""
+        """How many recordings were kept."""
         self._now = now
         self._tell = tell
         self._pcm = b""  # of the command that is not verified yet
-        self._named: frozenset[tuple[str, str | None]] = frozenset()  # whom it may have named
+        self._texts: frozenset[str] = frozenset()  # what it may be called in a question
+        self._named: frozenset[tuple[str, str | None]] = frozenset()  # what it may mean, for whom
         self._works = True
+        if self.folder.is_symlink():  # what is kept elsewhere would not be forgotten
+            raise TangyError(
+                plain(f"{self.folder}: is a symbolic link; make it a folder to record into.")
+            )
 
     def heard(self, pcm: bytes, command: Say | Stop | Reply) -> None:
         """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
         if isinstance(command, Reply):
             return  # the question that is answered is still about what was said before
-        self.rejected()
-        if isinstance(command, Say) and command.commands is not None:
+        self._pcm = b""
+        if isinstance(command, Say) and command.commands:
             self._pcm = pcm
+            self._texts = frozenset((command.text, *(c.heard for c in command.commands)))
             self._named = frozenset(
                 (c.behaviour, c.arguments.get("user")) for c in command.commands
             )
@@ -133,27 +154,26 @@ class Recorder:
             match event:
                 case Executed(step=step):
                     self.verified(step.behaviour, step.target)
-                case NotUnderstood() | Refused() | Rejected():
-                    self.rejected()
+                case Rejected() | NotUnderstood() | Begun() | StepUndone():
+                    self._pcm = b""
+                case Refused(heard=text) if text:  # without: the answer was, and the question stays
+                    self._pcm = b""
+                case (Asked() | Offered()) as question if question.heard not in self._texts:
+                    self._pcm = b""  # it is about something typed meanwhile
                 case _:
                     pass
 
     def verified(self, behaviour: str, target: str | None) -> None:
         """Keep the last utterance as that of a behaviour, and of the person if it named one.
 
-        Most behaviours are for somebody whom nobody named: whoever Tangy is with.
+        Most behaviours are for somebody whom nobody named: whoever Tangy is with. One that the
+        utterance cannot mean was asked for otherwise.
         """
-        named = target if (behaviour, target) in self._named else None
-        self._keep(" ".join(filter(None, (behaviour, named))))
-
-    def rejected(self) -> None:
-        """Keep the last utterance apart, if nobody has said what it meant."""
-        self._keep(REJECTED)
-
-    def _keep(self, label: str) -> None:
         pcm, self._pcm = self._pcm, b""
-        if not pcm or not self._works:
+        if not pcm or not self._works or behaviour not in {meant for meant, _ in self._named}:
             return
+        named = target if (behaviour, target) in self._named else None
+        label = " ".join(filter(None, (behaviour, named)))
         try:
             self._write(pcm, self.folder / re.sub(r"\W+", "-", label))
             self.kept += 1
@@ -163,8 +183,10 @@ class Recorder:
 
     def _write(self, pcm: bytes, folder: Path) -> None:
         """Write a file that only its owner reads, and that is there as a whole or not at all."""
-        folder.parent.mkdir(mode=0o700, exist_ok=True)
-        folder.mkdir(mode=0o700, exist_ok=True)
+        for place in (folder.parent, folder):
+            if place.is_symlink():
+                raise OSError(errno.ELOOP, "it is, or holds, a symbolic link")
+            place.mkdir(mode=0o700, exist_ok=True)
         time = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%S")
         number = 1
         while (file := folder / f"{time}-{number}.wav").exists():

@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
+from itertools import dropwhile
 
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech.evidence import Evidence, Settings, Wanted
@@ -31,11 +32,16 @@ SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the
 UNDERSTOOD = 0.35
 """The confidence below which the paper's mode takes nothing for a command."""
 
-STOPS = ("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "halt")
+STOPS = (
+    *("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "stop stop stop", "halt"),
+    *("no stop", "oh stop", "wait stop"),
+)
 OWN_NAME = {"tangy": ("T AE NG IY",)}
-YES = ("yes", "yes please", "yes do it", "yes that is right", "that is right")
-NO = ("no", "no thank you", "no do not", "that is wrong", "no that is wrong")
-MOST_STOP_WORDS = 2
+YES = ("yes", "yes please", "yes do it", "yes that is right")
+NO = ("no", "no thank you", "no do not", "no that is wrong")
+LEAST_ANSWER = -0.9  # the margin below which no word is taken for an answer
+MOST_STOP_WORDS = 2  # different ones, after those that only call for attention
+CALLS = frozenset(("no", "oh", "wait"))
 
 
 def wanted(
@@ -89,20 +95,25 @@ def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
     return words, evidence.margin
 
 
-def answer(evidence: Evidence) -> Reply | Stop | None:
-    """Return the answer to a question that an utterance gives, if it gives one."""
+def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
+    """Return the answer to a question that an utterance gives, if it gives one.
+
+    A yes moves the robot: the grammar, in which any phones can be said instead, has to find it as
+    well. The paper's mode has nothing that other speech could be, so it hears no answers.
+    """
     said = evidence.words
     if stops(said):
         return Stop(said)
-    if said in YES or said in NO:
+    agreed = said == evidence.phrase and evidence.margin - settings.shift >= LEAST_ANSWER
+    if settings.mode != "paper" and agreed and (said in YES or said in NO):
         return Reply(said in YES)
     return None
 
 
 def stops(text: str) -> bool:
     """Say whether words stop the robot, whatever else is going on."""
-    words = bare(words_of(text))
-    return 1 <= len(words) <= MOST_STOP_WORDS and words[0] in ("stop", "halt")
+    words = [*dropwhile(CALLS.__contains__, bare(words_of(text)))]
+    return bool(words) and words[0] in ("stop", "halt") and len({*words}) <= MOST_STOP_WORDS
 
 
 def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:

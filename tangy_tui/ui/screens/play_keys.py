@@ -51,7 +51,8 @@ HELP = (
     "game, and Enter there what to do. When it is critical Tangy stands still until you clear it. "
     "f brings about a fault in the simulated room. v lets Tangy speak, or be quiet: as fast as "
     "in life (x1) every line is heard to its end, and in a faster game the next one cuts it. With "
-    "a microphone, t talks where Tangy asks, and stop, said at any time, stops the robot."
+    "a microphone, t talks where Tangy asks, and stop, said while Tangy does not speak, stops the "
+    "robot (ctrl+x always does)."
 )
 
 BINDINGS: list[BindingType] = [
