@@ -36,14 +36,8 @@ class Splitter:
     def __init__(self, floor: float = QUIETEST / LOUDER) -> None:
         self._levels: deque[float] = deque(maxlen=round(FLOOR_SECONDS * RATE / FRAME))
         self._levels.extend([floor] * (self._levels.maxlen or 1))
-        self.level = 0.0
         self._rest = b""
         self._begin()
-
-    @property
-    def speaking(self) -> bool:
-        """Whether an utterance has begun and not yet ended."""
-        return bool(self._frames)
 
     def feed(self, pcm: bytes) -> list[bytes]:
         """Take samples and return the utterances that have ended in them."""
@@ -64,11 +58,6 @@ class Splitter:
         self._rest = b""
         return [utterance] if utterance else []
 
-    def forget(self) -> None:
-        """Drop what has been heard of an utterance."""
-        self._rest = b""
-        self._begin()
-
     def _begin(self) -> None:
         self._before: deque[tuple[bytes, bool]] = deque(maxlen=round(MARGIN * RATE / FRAME) + 5)
         self._frames: list[bytes] = []
@@ -76,7 +65,6 @@ class Splitter:
         self._quiet = 0
 
     def _hear(self, frame: bytes, level: float) -> bytes:
-        self.level = level
         self._levels.append(level)
         floor = sorted(self._levels)[len(self._levels) // 10]
         loud = level > max(QUIETEST, LOUDER * floor)
