@@ -15,6 +15,7 @@ from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Alike, Lexicon, distinct_word
 from tangy_tui.learning.phrases import Phrase
 from tangy_tui.learning.pronouncing import can_look_up
+from tangy_tui.learning.speech.understanding import NO, YES, stops
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,8 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
     except ProfileError as error:
         mistakes.append(str(error))
     phrasebook = Phrasebook(activity, people)
-    mistakes += [*_phrases(activity, phrasebook), *_fillers(activity, phrasebook)]
+    mistakes += [*_phrases(activity, phrasebook), *_reserved(activity, phrasebook)]
+    mistakes += _fillers(activity, phrasebook)
     mistakes += _sounds(activity, phrasebook)
     warnings = [*_stages(activity), *_unused(activity, phrasebook)]
     return Checked(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
@@ -107,6 +109,20 @@ def _heard(phrasebook: Phrasebook, phrase: str) -> str | None:
 def _as(lost: tuple[str, str | None]) -> str:
     phrase, heard = lost
     return f"{phrase!r} is " + ("not understood" if heard is None else f"heard as {heard!r}")
+
+
+def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that always mean something else: they stop the robot, or answer it."""
+    for phrase in phrasebook.table.all():
+        stop, said = stops(phrase.said), phrase.said
+        if phrase.heard and (stop or said in YES or said in NO):
+            why = "always stops the robot" if stop else "is an answer to Tangy's questions"
+            word = distinct_word(phrasebook, phrase.behaviour, phrase)
+            such = f", such as {word!r}" if word else ""
+            yield (
+                f"{activity.source}: behaviours[{phrase.behaviour}].phrases = {phrase.shown!r}: "
+                f"it {why}; ask for it with another word{such}."
+            )
 
 
 def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:

@@ -226,6 +226,24 @@ def test_phrases_that_cannot_be_told_apart_are_refused_with_a_word_that_helps(
     assert not mistakes(tmp_path, better)
 
 
+@pytest.mark.parametrize(
+    ("phrase", "why"),
+    [
+        ("stop now", "always stops the robot"),
+        ("please halt", "always stops the robot"),
+        ("yes please", "is an answer to Tangy's questions"),
+        ("no thank you", "is an answer to Tangy's questions"),
+    ],
+)
+def test_a_phrase_that_stops_the_robot_or_answers_it_is_refused_with_another_word(
+    tmp_path: Path, phrase: str, why: str
+) -> None:
+    (found,) = mistakes(tmp_path, with_phrases(("tell a joke", phrase)))
+    assert f"behaviours[joke].phrases = '{phrase}': it {why}; " in found
+    word = found.partition("another word, such as ")[2].strip("'.")
+    assert not mistakes(tmp_path, with_phrases(("tell a joke", f"{word} {phrase}")))
+
+
 def test_an_activity_with_such_phrases_is_refused_and_loads(tangy: Tangy, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     text = with_phrases(("tell a joke", "raise it"), ("remove markers", "raze it"))
