@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from random import Random
@@ -118,6 +119,8 @@ class House:
     def rename(self, person: Person, name: str) -> None:
         """Give a person another name, one that nobody else answers to.
 
+        Lines that were spoken with the old one are forgotten.
+
         Raises:
             TangyError: the name is somebody else's name or id, or a place.
         """
@@ -130,8 +133,11 @@ class House:
                 )
         if wanted in taken:
             raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
+        old = self.name(person.id)
         self.store.rename(person.id, name)
         self.read_people()
+        if self.name(person.id) != old:
+            _forget_spoken()
 
     def pronounce(self, person: Person, phones: str | None) -> None:
         """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
@@ -289,3 +295,13 @@ class House:
         from tangy_tui.interaction.record import read_records
 
         return read_records(self.store, self.memory(), people or self.people)
+
+
+def _forget_spoken() -> None:
+    """Empty the cache of spoken lines, if there is one; a name is not kept back by it."""
+    from tangy_hw.sound.synthesis import Synthesiser, VoiceError, cache_folder
+
+    folder = cache_folder()
+    with suppress(OSError, VoiceError):
+        if folder.is_dir():
+            Synthesiser(folder).clear()

@@ -63,6 +63,14 @@ def _demonstration(name: str, seed: int, users: int) -> Demonstration:
     return Demonstration(f"{name}-{seed}", name, "test", seed, people, tuple(steps), True)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Keep the tests away from the user's cache: a new name empties that of spoken lines."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
 @pytest.fixture(scope="session")
 def activity() -> Activity:
     """The activity that ships."""

@@ -27,6 +27,9 @@ def say(
     sink: Annotated[str, typer.Option(help=f"Where it is heard: {SINKS}.")] = "auto",
     out: Annotated[Path | None, typer.Option(help="Write this WAV file, play nothing.")] = None,
     voices: Annotated[bool, typer.Option("--voices", help="List the voices there are.")] = False,
+    forget: Annotated[
+        bool, typer.Option("--forget", help="Delete the spoken lines that are kept.")
+    ] = False,
     activity: ActivityName = "bingo",
     seed: Seed = None,
     data: Data = None,
@@ -52,6 +55,9 @@ def say(
     from tangy_profiles.voice import VoicePreference
 
     synthesiser = Synthesiser()
+    if forget:
+        _forget(synthesiser, as_json)
+        return
     if voices:
         _list(synthesiser, as_json)
         return
@@ -93,6 +99,15 @@ def say(
         print(f"tangy: {problem}", file=sys.stderr)
         if out is not None or sink != "auto":
             raise typer.Exit(1)
+
+
+def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
+    """Empty the cache of spoken lines, and print how many there were."""
+    count = synthesiser.clear()
+    if as_json:
+        print_json({"deleted": count})
+        return
+    print(f"{count} spoken {'line' if count == 1 else 'lines'} deleted.")
 
 
 def _list(synthesiser: Synthesiser, as_json: bool) -> None:

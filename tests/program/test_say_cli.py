@@ -120,6 +120,45 @@ def test_the_voices_are_listed(tangy: Tangy) -> None:
     assert found["variants"] == ["f3"]
 
 
+def lines_kept(cache: Path) -> int:
+    return len(list(cache.rglob("*.wav")))
+
+
+@pytest.mark.usefixtures("speaker")
+def test_spoken_lines_are_forgotten_and_counted(tangy: Tangy, tmp_path: Path) -> None:
+    assert tangy("say", "--forget").stdout == "0 spoken lines deleted.\n"
+    assert not (tmp_path / "cache").exists()
+    for text in ("one", "two", "three"):
+        tangy("say", text, "--sink", "null")
+    assert lines_kept(tmp_path / "cache") == 3
+    assert json.loads(tangy("say", "--forget", "--json").stdout) == {"deleted": 3}
+    assert lines_kept(tmp_path / "cache") == 0
+
+
+def refused(path: Path, missing_ok: bool = False) -> None:
+    raise PermissionError(13, "Permission denied")
+
+
+@pytest.mark.usefixtures("speaker")
+def test_a_new_name_forgets_what_was_spoken_with_the_old_one(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def rename(name: str) -> int:
+        return tangy("people", "rename", "user1", name, "--data", tmp_path / "data").returncode
+
+    assert rename("Rosa") == 0
+    assert not (tmp_path / "cache").exists()
+    tangy("say", "Rosa, it is your turn", "--sink", "null")
+    assert rename("Rosa") == 0
+    assert lines_kept(tmp_path / "cache") == 1, "it is the same name"
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "unlink", refused)
+        assert rename("Maria") == 0
+        assert "cannot be deleted (Permission denied)" in tangy("say", "--forget").stderr
+    assert rename("Anna") == 0
+    assert lines_kept(tmp_path / "cache") == 0
+
+
 @pytest.mark.usefixtures("mute")
 def test_voices_that_cannot_be_listed_are_an_error(tangy: Tangy) -> None:
     done = tangy("say", "--voices")

@@ -160,12 +160,25 @@ class Synthesiser:
             for process in self._running:
                 _kill(process)
 
-    def clear(self) -> None:
-        """Forget every WAV: names were spoken in them."""
-        for path, _, _ in self._kept():
-            path.unlink(missing_ok=True)
-        with self._lock:
-            self._bytes = None
+    def clear(self) -> int:
+        """Forget every WAV, for names were spoken in them, and return how many there were.
+
+        Raises:
+            VoiceError: one of them cannot be deleted.
+        """
+        count = 0
+        try:
+            for path, _, _ in self._kept():
+                path.unlink(missing_ok=True)
+                count += path.suffix == ".wav"
+        except OSError as error:
+            raise VoiceError(
+                plain(f"{self.folder}: what was said cannot be deleted ({error.strerror}).")
+            ) from None
+        finally:
+            with self._lock:
+                self._bytes = None
+        return count
 
     def _key(self, marked_up: str, chosen: VoicePreference) -> str:
         parts = (self.version, str(chosen.voice), str(chosen.rate), marked_up)
