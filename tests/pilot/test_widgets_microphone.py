@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import pytest
 from rich.cells import cell_len
 from textual.app import ComposeResult
 
@@ -38,35 +37,39 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("ears", HEARD, ids=lambda ears: ears.state)
-@pytest.mark.parametrize("width", [60, 80, 120])
-async def test_every_state_is_said_in_words_and_fits(
-    run: Run, ears: SampleEars, width: int
-) -> None:
+async def test_every_state_is_said_in_words_and_fits(run: Run) -> None:
+    screen = Line(SampleEars("off"))
+    async with run(screen) as pilot:
+        for width in (60, 80, 120):
+            await pilot.resize_terminal(width, 24)
+            for ears in HEARD:
+                screen.line._ears = ears
+                screen.line._ticks = 0
+                screen.line.look()
+                screen.line._tick()
+                await pilot.pause()
+                text = screen.line.text
+                assert cell_len(text) <= width - 2
+                assert text.strip() in pilot.text()
+                if ears.trouble:
+                    assert ears.trouble[:40] in text
+                else:
+                    assert text.startswith(SAID[ears.state])
+                    assert ears.words in text
+                plain = to_ascii(text)
+                assert plain.isascii()
+                assert plain.count("?") == text.count("?")
+
+
+async def test_the_bar_is_as_long_as_it_is_loud(run: Run) -> None:
+    ears = SampleEars("listening")
     screen = Line(ears)
-    async with run(screen, (width, 24)) as pilot:
-        screen.line._tick()
-        await pilot.pause()
-        text = screen.line.text
-        assert cell_len(text) <= width - 2
-        assert text.strip() in pilot.text()
-        if ears.trouble:
-            assert ears.trouble[:40] in text
-        else:
-            assert text.startswith(SAID[ears.state])
-            assert ears.words in text
-        plain = to_ascii(text)
-        assert plain.isascii()
-        assert plain.count("?") == text.count("?")
-
-
-@pytest.mark.parametrize(("level", "full"), [(0.0, 0), (0.5, 6), (1.0, 12), (7.0, 12), (-1.0, 0)])
-async def test_the_bar_is_as_long_as_it_is_loud(run: Run, level: float, full: int) -> None:
-    screen = Line(SampleEars("listening", level=level))
     async with run(screen):
-        screen.line._tick()
-        assert screen.line.text.count("■") == full
-        assert screen.line.text.count("·") == BAR - full
+        for level, full in ((0.0, 0), (0.5, 6), (1.0, 12), (7.0, 12), (-1.0, 0)):
+            ears.level = level
+            screen.line._tick()
+            assert screen.line.text.count("■") == full
+            assert screen.line.text.count("·") == BAR - full
 
 
 async def test_of_many_words_the_last_are_shown(run: Run) -> None:
