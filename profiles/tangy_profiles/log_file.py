@@ -37,6 +37,8 @@ MIGRATIONS: tuple[str, ...] = (
     """,
 )
 """MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
+NAMING = ("name", "speech")
+"""The tables that tell of people by name."""
 
 
 class LogFile:
@@ -171,7 +173,11 @@ class LogFile:
         self.notices.append(plain(notice))
 
     def _migrate(self, db: sqlite3.Connection) -> None:
-        """Bring the log to this version, all steps or none, after copying it as it was."""
+        """Bring the log to this version, all steps or none, after copying it as it was.
+
+        The copy stays, so nobody is named in it: whoever goes back to it has every event, and
+        gives the people their names anew.
+        """
         old, new = self._version(db), len(MIGRATIONS)
         if old == new:
             return
@@ -179,15 +185,30 @@ class LogFile:
         steps = "".join(MIGRATIONS[old:])
         try:
             if db.execute("SELECT 1 FROM sqlite_master").fetchone():
-                copy.touch(0o600)
-                with closing(sqlite3.connect(copy)) as target:
-                    db.backup(target)
+                self._copy(db, copy)
             db.executescript(f"BEGIN IMMEDIATE; {steps} PRAGMA user_version = {new}; COMMIT;")
         except sqlite3.Error as error:
             db.rollback()
             copy.unlink(missing_ok=True)  # of a log that is still as it was
             problem = f"is unchanged: it cannot be brought from version {old} to {new}"
             raise self.wrong(f"{problem} ({error})") from None
+
+    def _copy(self, db: sqlite3.Connection, copy: Path) -> None:
+        """Copy the log without the names in it; before that is done, it is not called a copy."""
+        begun = self.folder / f"{FILE}.copying"
+        begun.unlink(missing_ok=True)  # of one that was cut off, maybe with names
+        begun.touch(0o600)
+        try:
+            with closing(sqlite3.connect(begun, isolation_level=None)) as target:
+                db.backup(target)
+                for setting in ("journal_mode=MEMORY", "secure_delete=ON"):
+                    target.execute(f"PRAGMA {setting}").fetchall()
+                there = target.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+                for table in {name for (name,) in there.fetchall()}.intersection(NAMING):
+                    target.execute(f"DELETE FROM {table}")  # noqa: S608
+            begun.rename(copy)
+        finally:
+            begun.unlink(missing_ok=True)
 
     def _version(self, db: sqlite3.Connection) -> int:
         """Return the version of the log, if it is one that can be used."""

@@ -538,6 +538,29 @@ def test_check_says_what_was_tampered_with(tmp_path: Path, tampering: str, word:
 # Versions
 
 
+def fill_first_version(folder: Path) -> None:
+    """Make a log as the first Tangy did, in which somebody is named."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
+        with Store.open(folder) as store:
+            store.append("greeting", {})
+            store._write("INSERT INTO name VALUES ('user1', 'Rosalind')")
+
+
+def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
+    fill_first_version(tmp_path)
+    (tmp_path / "tangy.db.copying").write_text("Rosalind: a copy that was cut off")
+    with Store.open(tmp_path) as store:
+        assert store.names() == {"user1": "Rosalind"}
+    (copy,) = tmp_path.glob("tangy.db.*")
+    assert copy.name.startswith("tangy.db.version-1-")
+    assert b"Rosalind" not in copy.read_bytes()
+    with closing(sqlite3.connect(copy)) as db:
+        assert db.execute("SELECT kind FROM event").fetchall() == [("greeting",)]
+        assert db.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert b"Rosalind" in log_of(tmp_path).read_bytes()
+
+
 def test_an_older_log_is_copied_and_brought_up_to_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
