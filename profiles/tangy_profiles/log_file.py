@@ -18,6 +18,7 @@ from tangy_profiles.reading import plain
 FILE = "tangy.db"
 ALWAYS_CHECKED = 16_000_000  # bytes: 13 ms of quick_check
 
+_SPEECH = "TABLE speech (person TEXT PRIMARY KEY, pronunciation TEXT, rate INTEGER, voice TEXT);"
 # No index on uuid: it costs a third of the appending speed for what only a merge asks.
 MIGRATIONS: tuple[str, ...] = (
     """
@@ -32,11 +33,11 @@ MIGRATIONS: tuple[str, ...] = (
     CREATE TRIGGER unchanged BEFORE UPDATE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
     CREATE TRIGGER undeleted BEFORE DELETE ON event BEGIN SELECT RAISE(ABORT, 'append only'); END;
     """,
-    """
-    CREATE TABLE speech (person TEXT PRIMARY KEY, pronunciation TEXT, rate INTEGER, voice TEXT);
-    """,
+    f"CREATE {_SPEECH}",
 )
 """MIGRATIONS[n] takes a log from version n to n + 1; version 0 is an empty file."""
+INSTEAD = {1: f"CREATE TEMP {_SPEECH}"}
+"""What a reader that may not take step n has in its place, for itself alone: what is empty."""
 NAMING = ("name", "speech")
 """The tables that tell of people by name."""
 
@@ -56,6 +57,7 @@ class LogFile:
         self.notices: list[str] = []
         self.db: sqlite3.Connection | None = None
         self.damaged = False  # a damaged log is not vouched for when it is closed
+        self._behind = False  # a reader's log is of an older version
         self._held: FileIO | None = None
         self._now = now
 
@@ -67,6 +69,10 @@ class LogFile:
         self._held, left = _hold(self.folder / "tangy.lock")
         if not self._sound(left):
             self._set_aside()
+        return self._take_up()
+
+    def _take_up(self) -> sqlite3.Connection:
+        """Open the log for its writer, and bring it up to date."""
         self.path.touch(0o600)
         # By path: closing a descriptor of ours would drop SQLite's own locks on the file. SQLite
         # gives -wal and -shm the mode of the log.
@@ -79,14 +85,45 @@ class LogFile:
         return db
 
     def reading(self) -> sqlite3.Connection | None:
-        """Return the reader's connection, made as soon as there is a log to read."""
+        """Return the reader's connection, made as soon as there is a log to read.
+
+        A log of an older version is first brought up to date, as its writer would; where another
+        process writes to it, or nobody can, it is read as it is.
+        """
+        if self.db is not None and self._behind and self._version(self.db) == len(MIGRATIONS):
+            self.db.close()  # its writer has brought it up to date meanwhile
+            self.db = None
         if self.db is None and self._size():
             with closing(self._connect()) as db:
-                ready = self._version(db) > 0  # 0: its writer is just making it
-            if ready:
-                self.db = self._connect()
-                self.db.execute("PRAGMA query_only=ON")
+                version = self._version(db)
+            if 0 < version < len(MIGRATIONS):
+                version = self._bring_up_to_date() or version
+            if version:  # 0: its writer is just making it
+                db = self._connect()
+                self._behind = version < len(MIGRATIONS)
+                if self._behind:
+                    steps = range(version, len(MIGRATIONS))
+                    instead = "".join(INSTEAD.get(step, "") for step in steps)
+                    db.executescript(f"PRAGMA temp_store=MEMORY; {instead}")
+                db.execute("PRAGMA query_only=ON")
+                self.db = db
         return self.db
+
+    def _bring_up_to_date(self) -> int:
+        """Bring an older log that is sound up to date; return its version then, 0 if not done."""
+        writer = LogFile(self.folder, True, self._now)
+        writer.damaged = True  # until it is known better
+        try:
+            writer._held, left = _hold(self.folder / "tangy.lock")
+            if not writer._sound(left):
+                return 0  # the next writer sets it aside
+            version = writer._version(writer._take_up())
+            writer.damaged = False
+            return version
+        except (sqlite3.Error, OSError, StoreError):
+            return 0
+        finally:
+            writer.close()
 
     def close(self) -> None:
         """Close the connection and let another writer in; may be repeated."""
@@ -130,6 +167,8 @@ class LogFile:
     def _connect(self) -> sqlite3.Connection:
         # mode=rw never creates a file; a URI holds whatever characters a folder may have.
         uri = self.path.as_uri() + "?mode=rw"
+        if not self.writable and not self._size("-wal") and _is_read_only(self.folder):
+            uri += "&immutable=1"  # else SQLite wants to make -shm, even to read
         return sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
 
     def _size(self, end: str = "") -> int:
@@ -214,14 +253,9 @@ class LogFile:
         """Return the version of the log, if it is one that can be used."""
         version: int = db.execute("PRAGMA user_version").fetchone()[0]
         known = len(MIGRATIONS)
-        if version > known or (0 < version < known and not self.writable):
-            whose = (
-                "a newer Tangy; update this one"
-                if version > known
-                else "an older Tangy; `tangy teach` updates it"
-            )
-            problem = f"was written (as version {version}; this is {known}) by {whose}"
-            raise self.wrong(f"{problem}, or choose another folder with --data")
+        if version > known:
+            problem = f"was written (as version {version}; this is {known}) by a newer Tangy"
+            raise self.wrong(f"{problem}; update this one, or choose another folder with --data")
         return version
 
     def _unused(self, what: str) -> Path:
@@ -249,6 +283,11 @@ def _hold(path: Path) -> tuple[FileIO, str]:
     file.truncate(0)
     os.pwrite(file.fileno(), str(os.getpid()).encode(), 0)
     return file, left
+
+
+def _is_read_only(folder: Path) -> bool:
+    """Say whether a folder lies on a disk that nobody can write to."""
+    return bool(os.statvfs(folder).f_flag & os.ST_RDONLY)
 
 
 def _tells_damage(error: sqlite3.Error) -> bool:

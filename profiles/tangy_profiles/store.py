@@ -95,6 +95,7 @@ class Store:
 
         A damaged log is renamed aside and a new one begun, and `notices` says so. With
         `write=False` nothing is made: a folder without a log reads as empty until there is one.
+        An older log is brought up to date, by a reader only where it can be.
 
         Raises:
             StoreBusy: another process writes to this folder.

@@ -550,8 +550,8 @@ def fill_first_version(folder: Path) -> None:
 def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
     fill_first_version(tmp_path)
     (tmp_path / "tangy.db.copying").write_text("Rosalind: a copy that was cut off")
-    with Store.open(tmp_path) as store:
-        assert store.names() == {"user1": "Rosalind"}
+    with Store.open(tmp_path, write=False) as console:
+        assert console.names() == {"user1": "Rosalind"}
     (copy,) = tmp_path.glob("tangy.db.*")
     assert copy.name.startswith("tangy.db.version-1-")
     assert b"Rosalind" not in copy.read_bytes()
@@ -561,16 +561,60 @@ def test_a_copy_of_an_older_log_names_nobody(tmp_path: Path) -> None:
     assert b"Rosalind" in log_of(tmp_path).read_bytes()
 
 
-def test_an_older_log_is_copied_and_brought_up_to_date(
+def test_an_older_log_that_another_process_writes_is_read_as_it_is(tmp_path: Path) -> None:
+    fill_first_version(tmp_path)
+    held, _ = log_file._hold(tmp_path / "tangy.lock")
+    before = log_of(tmp_path).read_bytes()
+    with Store.open(tmp_path, write=False) as console:
+        assert console.names() == {"user1": "Rosalind"}
+        assert (console.pronunciations(), console.voices(), console.check()) == ({}, {}, [])
+        assert log_of(tmp_path).read_bytes() == before
+        held.close()
+        with Store.open(tmp_path) as store:
+            store.pronounce("user1", "R OW Z")
+            assert console.pronunciations() == {"user1": "R OW Z"}
+
+
+def test_an_older_log_that_cannot_be_written_is_read_as_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill_first_version(tmp_path)
+
+    def refused(path: Path) -> None:
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(log_file, "_hold", refused)
+    monkeypatch.setattr(log_file, "_is_read_only", lambda folder: True)
+    there = set(tmp_path.iterdir())
+    with Store.open(tmp_path, write=False) as console:
+        assert console.names() == {"user1": "Rosalind"}
+        assert console.voices() == {}
+        assert set(tmp_path.iterdir()) == there, "SQLite makes nothing beside it"
+
+
+def test_an_older_log_that_is_damaged_is_left_to_its_writer(tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
+        fill(tmp_path)
+    damaged = scribble(log_of(tmp_path))
+    with Store.open(tmp_path, write=False) as console:
+        assert console.check() != []
+    assert log_of(tmp_path).read_bytes() == damaged
+    with Store.open(tmp_path) as store:
+        assert len(store.notices) == 1
+
+
+@pytest.mark.parametrize("write", [True, False])
+def test_an_older_log_is_copied_and_brought_up_to_date(
+    tmp_path: Path, write: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill(tmp_path, 3)
     later = (*log_file.MIGRATIONS, "CREATE TABLE shelf (x); INSERT INTO shelf VALUES (7);")
     monkeypatch.setattr(log_file, "MIGRATIONS", later)
-    with pytest.raises(StoreError, match="older"):
-        Store.open(tmp_path, write=False)
-    with Store.open(tmp_path, now=lambda: NOON) as store:
+    with Store.open(tmp_path, write=write, now=lambda: NOON) as store:
         assert len(list(store.events())) == 3
+        assert store.notices == []
+    with Store.open(tmp_path, now=lambda: NOON) as store:
         assert store.append("state", {}) == 4
     now = len(later) - 1
     copy = tmp_path / f"tangy.db.version-{now}-20260304T120000Z"

@@ -9,6 +9,7 @@ import pytest
 
 from tangy_hw.sound.arecord import list_microphones
 from tangy_hw.sound.wav import SoundError
+from tangy_profiles import log_file
 from tangy_profiles.store import Store
 from tangy_tui.doctor import Finding, examine
 from tests.hw.speakers import Speaker, program
@@ -93,6 +94,16 @@ def test_a_folder_that_is_sound_or_can_be_made_is_ok(tmp_path: Path) -> None:
     assert found.state == "ok"
     assert "is made as soon as there is something to keep" in found.text
     assert not new.exists(), "looking makes nothing"
+
+
+def test_a_log_of_an_older_tangy_is_ok(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
+        Store.open(tmp_path).close()
+    held, _ = log_file._hold(tmp_path / "tangy.lock")
+    assert data_folder(tmp_path) == Finding("data folder", True, f"{tmp_path} is sound.")
+    held.close()
+    assert data_folder(tmp_path) == Finding("data folder", True, f"{tmp_path} is sound.")
 
 
 def test_a_damaged_log_is_broken(tmp_path: Path) -> None:
