@@ -28,7 +28,7 @@ from tangy_tui.learning.speech.recordings import (
     consented,
     forget_recordings,
 )
-from tangy_tui.learning.teaching_events import Begun, StepUndone
+from tangy_tui.learning.teaching_events import Begun, StepUndone, TeachingEvent
 from tangy_tui.learning.verifying import (
     Asked,
     NotUnderstood,
@@ -190,14 +190,14 @@ class TestKeeping:
         demonstrate: Callable[[str, int, int], Demonstration],
     ) -> None:
         game = demonstrate("bingo", 1, 4)
-        event = {
+        events: dict[type, TeachingEvent] = {
             Begun: Begun(game, resumed=False),
             StepUndone: StepUndone(1, game.steps[0]),
             NotUnderstood: NotUnderstood("banana", ()),
             Refused: Refused("Nobody asks for help.", "tell a joke"),
-        }[again]
+        }
         recorder.heard(SOUND, spoken("tell a joke"))
-        recorder.follow([event])
+        recorder.follow([events[again]])
         recorder.verified("joke", None)
         assert kept(recorder) == []
 
