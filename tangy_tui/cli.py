@@ -31,6 +31,7 @@ from tangy_tui.verbs import (
     people,
     people_speech,
     play,
+    read_card,
     say,
     teach,
 )
@@ -79,6 +80,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     say.say,
     camera.camera,
     camera.capture,
+    read_card.read_card,
     machine.doctor,
 )
 for verb in VERBS:

@@ -50,7 +50,7 @@ class View:
     noise: float = 3.0
     quality: int = 90
     bend: float = 0.0  # mm
-    hand: str = ""  # "", "finger", "thumb" or "flat"
+    hand: str = ""  # "", "finger", "thumb", "flat", or "thing" for something else
     size: tuple[int, int] = (1280, 720)
 
 

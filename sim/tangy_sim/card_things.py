@@ -195,6 +195,8 @@ def draw_hand(
     import numpy as np
 
     skin, sleeve = np.zeros(seen.shape, np.uint8), np.zeros(seen.shape, np.uint8)
+    if kind == "thing":
+        return _draw_thing(table, seen, scale, around, face, random)
 
     def limb(mask: NDArray[np.uint8], points: list[tuple[float, float]], radius: float) -> None:
         ends = [(round((x + around) * scale), round((y + around) * scale)) for x, y in points]
@@ -250,6 +252,45 @@ def draw_hand(
     stuff = np.array(_tone(random.uniform(0, 360), random.uniform(0, 0.8), random.uniform(0.1, 1)))
     _cloth(table, seen, sleeve, stuff.astype(np.float32), scale, random, striped=True)
     return both
+
+
+def _draw_thing(
+    table: Real,
+    seen: Real,
+    scale: float,
+    around: float,
+    face: Face,
+    random: np.random.Generator,
+) -> Real:
+    """Lay something else on the card: a cup, a sheet of paper, glasses; round or with corners."""
+    import cv2
+    import numpy as np
+
+    both = np.zeros(seen.shape, np.uint8)
+    x, y = random.uniform(face.grid.left, face.grid.right), random.uniform(20, HEIGHT - 20)
+    size = random.uniform(34, 110, 2) * scale
+    middle = ((x + around) * scale, (y + around) * scale)
+    box = (middle, (float(size[0]), float(size[1])), random.uniform(0, 90))
+    if random.random() < 0.5:
+        cv2.ellipse(both, box, 255, -1, cv2.LINE_AA)
+    else:
+        cv2.fillPoly(both, [cv2.boxPoints(box).astype(np.int32)], 255, cv2.LINE_AA)
+    shade = cv2.GaussianBlur(both.astype(np.float32) / 255, (0, 0), max(1.0, 3 * scale))
+    table *= 1 - random.uniform(0, 0.4) * shade[..., None]
+    like = random.choice(3)
+    tone = _skin(random)
+    if like:
+        saturation = random.uniform(0, 1) if like == 1 else 0.05
+        tone = np.array(_tone(random.uniform(0, 360), saturation, random.uniform(0.1, 1)))
+    if random.random() < 0.5:
+        _cloth(table, seen, both, tone, scale, random, striped=True)
+    else:
+        alpha = both.astype(np.float32)[..., None] / 255
+        table *= 1 - alpha
+        table += alpha * tone.astype(np.float32)
+        np.maximum(seen, alpha[..., 0], out=seen)
+    covered: Real = both.astype(np.float32) / 255
+    return covered
 
 
 def _skin(random: np.random.Generator) -> Real:

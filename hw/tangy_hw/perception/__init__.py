@@ -1,0 +1,1 @@
+"""What pictures show: cards, faces, requests."""

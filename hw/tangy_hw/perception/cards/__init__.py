@@ -1,0 +1,1 @@
+"""Printed cards: where they are, which they are, what is marked on them."""

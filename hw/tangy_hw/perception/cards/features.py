@@ -1,0 +1,271 @@
+"""What is measured of each cell of a grid that is seen straight on."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.perception.cards.rectifying import RIM, SIDE, Flat
+from tangy_profiles.card_face import Face
+from tangy_profiles.card_picture import draw_number
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Picture = NDArray[Any]
+    Real = NDArray[Any]
+
+HALF = SIDE // 2  # pixels of a cell in the maps
+AWAY = 6  # how far from a cell's middle a chip's middle is looked for, in pixels of the maps
+INNER = 26  # pixels of the middle of a cell in which its number stands
+LARGEST = 1.4  # a scale above which nothing more is seen
+SHIFT = 2  # how far a number may be off its place, in pixels
+
+NAMES = (
+    "print", "print here", "own number", "crossings least", "crossings mean",
+    "colour disc", "colour ring", "colour uneven", "change disc", "change ring",
+    "light disc", "light ring", "light uneven", "red", "blue", "offset",
+    "colour middle", "change middle", "change cell", "colour cell",
+    "corner colour least", "corner colour most", "corner light least", "corner change least",
+    "corner change most", "white light", "white red", "white blue", "full light", "full colour",
+    "bright", "kind", "best", "scale", "sharpness", "matched", "number contrast", "side change",
+    "arm", "way out",
+)  # fmt: skip
+"""What the features are called, in their order."""
+
+
+def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real, Real]:
+    """Measure the cells of a card; return a row of features for each, and how they are read.
+
+    The second array has, for each cell, the correlation with the number that the card has there,
+    and the best correlation with any other number of its column.
+    """
+    import cv2
+    import numpy as np
+
+    rows, columns = face.deck.rows, len(face.deck.columns)
+    colour = cv2.GaussianBlur(flat.picture, (3, 3), 0).astype(np.float32) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (25, 25))
+    white = cv2.GaussianBlur(cv2.dilate(colour, kernel), (0, 0), 8)
+    shown = colour / white
+    light, tint = _light_and_tint(shown)
+    expected = cv2.GaussianBlur(flat.expected, (0, 0), min(2.5, 0.55 / flat.scale)) / 255.0
+
+    read = _numbers_read(light, face, numbers, flat.scale)
+    inked = light[(expected < 0.25)]
+    ink = float(np.clip(np.percentile(inked, 30), 0.02, 0.7)) if inked.size else 0.3
+    paper = np.median(white[RIM:-RIM:4, RIM:-RIM:4].reshape(-1, 3), 0)
+    change = np.abs(light - (ink + (1 - ink) * expected))
+    full_light, full_tint = _light_and_tint(colour / paper)
+    least = cv2.min(cv2.min(*cv2.split(flat.picture)[:2]), flat.picture[..., 2])
+    layers = [
+        tint, change, light, shown[..., 2] - shown[..., 1], shown[..., 0] - shown[..., 1],
+        full_light, full_tint, least > 250, tint**2, light**2,
+    ]  # fmt: skip
+    size = flat.picture.shape[1] // 2, flat.picture.shape[0] // 2
+    maps = np.stack(
+        [
+            cv2.resize(layer.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+            for layer in layers
+        ],
+        -1,
+    )
+    in_disc, first = _disc(maps), np.ascontiguousarray(maps[..., :3])
+    in_ring = _ring(first)
+    chipped = in_disc[..., 0] - in_ring[..., 0] + 0.7 * (in_disc[..., 1] - in_ring[..., 1])
+
+    start = RIM // 2
+    near = _cells(chipped, rows, columns)[:, HALF // 2 - AWAY : HALF // 2 + AWAY + 1]
+    near = near[:, :, HALF // 2 - AWAY : HALF // 2 + AWAY + 1]
+    side = 2 * AWAY + 1
+    best = near.reshape(-1, side * side).argmax(1)
+    dy, dx = best // side - AWAY, best % side - AWAY
+    cell = np.arange(rows * columns)
+    y = start + cell // columns * HALF + HALF // 2
+    x = start + cell % columns * HALF + HALF // 2
+    at, ringed, middle = in_disc[y + dy, x + dx], in_ring[y + dy, x + dx], in_disc[y, x]
+    deviation = np.sqrt(np.maximum(at[:, 8:10] - at[:, (0, 2)] ** 2, 0))
+
+    dots = _dot(first)
+    corners = _corners(dots, rows, columns)
+    sides = _sides(dots[..., 1], rows, columns)
+    whites = cv2.resize(white, size, interpolation=cv2.INTER_AREA)[y, x] / paper
+    crossings = _around(flat.crossings.reshape(rows + 1, columns + 1))
+    inside = _cells(maps[..., 1], rows, columns), _cells(maps[..., 0], rows, columns)
+    strength = chipped[y + dy, x + dx]
+    strong = strength > 0.3
+    kind = np.median(at[strong][:, [2, 3, 4]], 0) if strong.any() else np.full(3, 0.5)
+    row = [
+        read[:, 0], read[:, 2], read[:, 0] - read[:, 1], crossings.min(1), crossings.mean(1),
+        at[:, 0], ringed[:, 0], deviation[:, 0], at[:, 1], ringed[:, 1],
+        at[:, 2], ringed[:, 2], deviation[:, 1], at[:, 3], at[:, 4], np.hypot(dx, dy) / HALF,
+        middle[:, 0], middle[:, 1], inside[0].mean((1, 2)), inside[1].mean((1, 2)),
+        corners[:, :, 0].min(1), corners[:, :, 0].max(1), corners[:, :, 2].min(1),
+        corners[:, :, 1].min(1), corners[:, :, 1].max(1), whites.mean(1),
+        whites[:, 2] - whites[:, 1], whites[:, 0] - whites[:, 1], at[:, 5], at[:, 6], at[:, 7],
+        np.abs(at[:, [2, 3, 4]] - kind).sum(1), strength,
+        np.full(len(cell), np.log(min(flat.scale, LARGEST))),
+        np.full(len(cell), np.median(flat.crossings)),
+        np.full(len(cell), flat.matched / len(flat.crossings)), read[:, 3], sides.max(1),
+        *_ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx),
+    ]  # fmt: skip
+    return np.stack(row, 1).astype(np.float32), read[:, :2]
+
+
+def _light_and_tint(picture: Real) -> tuple[Real, Real]:
+    """Return how light each pixel is, and how far its colours are from grey."""
+    import cv2
+
+    blue, green, red = cv2.split(picture)
+    light = (blue + green + red) / 3
+    return light, cv2.max(cv2.max(blue, green), red) - cv2.min(cv2.min(blue, green), red)
+
+
+def _numbers_read(light: Real, face: Face, numbers: tuple[int, ...], scale: float) -> Real:
+    """Compare what stands in each cell with the numbers that can stand there.
+
+    Returns, for each cell, the best correlation with its own number, with any other of its column,
+    with its own where it should stand exactly, and how much the cell's middle varies.
+    """
+    import numpy as np
+
+    rows, columns = face.deck.rows, len(face.deck.columns)
+    cells = _whole_cells(light, rows, columns)
+    edge = (SIDE - INNER) // 2
+    found = np.zeros((rows * columns, 4), np.float32)
+    shifts = [(a, b) for a in range(-SHIFT, SHIFT + 1) for b in range(-SHIFT, SHIFT + 1)]
+    windows = np.stack(
+        [cells[:, edge + a : edge + a + INNER, edge + b : edge + b + INNER] for a, b in shifts],
+        1,
+    ).reshape(rows * columns, len(shifts), -1)
+    windows = windows - windows.mean(2, keepdims=True)
+    spread = np.linalg.norm(windows, axis=2, keepdims=True)
+    windows = windows / np.maximum(spread, 1e-3)
+    for place, column in enumerate(face.deck.columns):
+        prints = _prints(face, column.low, column.high, round(min(1.5, scale), 1))
+        here = np.arange(place, rows * columns, columns)
+        match = windows[here] @ prints.T  # cells, shifts, numbers
+        best = match.max(1)
+        for order, cell in enumerate(here):
+            own = numbers[cell] - column.low
+            others = np.delete(best[order], own)
+            found[cell] = (
+                best[order, own],
+                others.max() if others.size else -1.0,
+                match[order, len(shifts) // 2, own],
+                spread[cell, len(shifts) // 2, 0] / INNER,
+            )
+    return found
+
+
+@lru_cache(maxsize=1000)
+def _drawn(face: Face, number: int) -> Picture:
+    return draw_number(face, number, SIDE)
+
+
+@lru_cache(maxsize=256)
+def _prints(face: Face, low: int, high: int, scale: float) -> Real:
+    """Return numbers as they look at a scale, each as a row of length 1 and mean 0."""
+    import cv2
+    import numpy as np
+
+    edge = (SIDE - INNER) // 2
+    rows = []
+    for number in range(low, high + 1):
+        drawn = cv2.GaussianBlur(_drawn(face, number), (0, 0), min(2.5, 0.55 / scale))
+        inner = drawn[edge : edge + INNER, edge : edge + INNER].astype(np.float32).ravel()
+        inner = inner - inner.mean()
+        rows.append(inner / max(float(np.linalg.norm(inner)), 1e-3))
+    return np.array(rows, np.float32)
+
+
+def _disc(maps: Real) -> Real:
+    """Average over what a chip's top covers."""
+    import cv2
+
+    return cv2.GaussianBlur(maps, (13, 13), 2.4)
+
+
+def _ring(maps: Real) -> Real:
+    """Average over a ring around a chip."""
+    import cv2
+
+    outer, inner = 17, 13
+    whole = cv2.boxFilter(maps, -1, (outer, outer), normalize=False)
+    core = cv2.boxFilter(maps, -1, (inner, inner), normalize=False)
+    return (whole - core) / (outer**2 - inner**2)
+
+
+def _dot(maps: Real) -> Real:
+    import cv2
+
+    return cv2.blur(maps, (3, 3))
+
+
+def _cells(layer: Real, rows: int, columns: int) -> Real:
+    """Cut a map into its cells."""
+    start = RIM // 2
+    grid = layer[start : start + rows * HALF, start : start + columns * HALF]
+    cut: Real = grid.reshape(rows, HALF, columns, HALF).swapaxes(1, 2).reshape(-1, HALF, HALF)
+    return cut
+
+
+def _whole_cells(layer: Real, rows: int, columns: int) -> Real:
+    """Cut a picture of the grid into its cells."""
+    grid = layer[RIM : RIM + rows * SIDE, RIM : RIM + columns * SIDE]
+    cut: Real = grid.reshape(rows, SIDE, columns, SIDE).swapaxes(1, 2).reshape(-1, SIDE, SIDE)
+    return cut
+
+
+def _around(at_crossings: Real) -> Real:
+    """Return for each cell the values at its four crossings."""
+    import numpy as np
+
+    a = at_crossings
+    four: Real = np.stack([a[:-1, :-1], a[:-1, 1:], a[1:, :-1], a[1:, 1:]], -1)
+    return four.reshape(-1, 4)
+
+
+def _corners(dots: Real, rows: int, columns: int) -> Real:
+    """Return what is in the four corners of each cell, inside its lines."""
+    import numpy as np
+
+    cell = np.arange(rows * columns)
+    y = RIM // 2 + cell // columns * HALF
+    x = RIM // 2 + cell % columns * HALF
+    inset = 2
+    far = HALF - 1 - inset
+    places = [(inset, inset), (inset, far), (far, inset), (far, far)]
+    return np.stack([dots[y + a, x + b] for a, b in places], 1)
+
+
+def _ways_out(covered: Real, y: Real, x: Real) -> tuple[Real, Real]:
+    """Follow straight ways out of a cell; return how well the most and the least hidden are.
+
+    From a chip every way leads over paper; a finger is hidden all along the way that it came.
+    """
+    import numpy as np
+
+    angles = np.arange(16) * (2 * np.pi / 16)
+    far = np.array([0.5, 0.62, 0.74, 0.86]) * HALF
+    down = np.rint(np.sin(angles)[:, None] * far).astype(int)
+    right = np.rint(np.cos(angles)[:, None] * far).astype(int)
+    rows = np.clip(y[:, None, None] + down, 0, covered.shape[0] - 1)
+    columns = np.clip(x[:, None, None] + right, 0, covered.shape[1] - 1)
+    ways = covered[rows, columns].min(2)
+    return ways.max(1), ways.min(1)
+
+
+def _sides(dots: Real, rows: int, columns: int) -> Real:
+    """Return what is in the middle of the four sides of each cell, inside its lines."""
+    import numpy as np
+
+    cell = np.arange(rows * columns)
+    y = RIM // 2 + cell // columns * HALF
+    x = RIM // 2 + cell % columns * HALF
+    half, inset = HALF // 2, 2
+    far = HALF - 1 - inset
+    return np.stack(
+        [dots[y + a, x + b] for a, b in [(inset, half), (far, half), (half, inset), (half, far)]],
+        1,
+    )

@@ -1,0 +1,140 @@
+"""A folder of pictures of cards with what is really on them, and how many are read as that."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.perception.cards.reader import CardReading
+from tangy_hw.perception.pictures import read_picture
+from tangy_profiles.cards import Deck
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LABELS = "labels.json"
+
+
+@dataclass(frozen=True)
+class Label:
+    """What is really in a picture; cells in `hidden` nobody can tell."""
+
+    path: Path
+    card: int | None
+    marked: int
+    hidden: int
+
+
+@dataclass
+class Counted:
+    """How many pictures of a labelled folder were read as they are."""
+
+    pictures: int = 0
+    read: int = 0
+    whole: int = 0
+    wrong_cards: int = 0
+    wrong_cells: int = 0
+    seen_cells: int = 0
+    not_told: int = 0
+    mistakes: list[dict[str, Any]] = field(default_factory=list)
+
+    def document(self) -> dict[str, Any]:
+        """Return it as JSON has it."""
+        return dict(vars(self))
+
+    def lines(self) -> list[str]:
+        """Say it in a few lines."""
+        told = [
+            f"{self.pictures} pictures: {self.read} cards read, {self.whole} of them whole.",
+            f"Wrong cards: {self.wrong_cards}. Wrong cells: {self.wrong_cells}. "
+            f"Not told, though in sight: {self.not_told} of {self.seen_cells} cells.",
+        ]
+        return told + [plain(f"  {m['file']}: {m['what']}") for m in self.mistakes]
+
+
+def labelled(folder: Path, deck: Deck) -> list[Label]:
+    """Read the labels of a folder: a list in the form that reading pictures prints.
+
+    Raises:
+        TangyError: there are none, or one of them cannot be understood.
+    """
+    path = folder / LABELS
+    name = plain(str(path))
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise TangyError(
+            f"{name}: there is no such file; it says what is in the pictures."
+        ) from None
+    except OSError as error:
+        raise TangyError(f"{name}: cannot be read ({error.strerror}).") from None
+    except ValueError:
+        raise TangyError(f"{name}: is not JSON.") from None
+    if not isinstance(told, list) or not told:
+        raise TangyError(f"{name}: must be a list with an entry for each picture.")
+    return [_label(entry, place, folder, deck, name) for place, entry in enumerate(told)]
+
+
+def _label(entry: Any, place: int, folder: Path, deck: Deck, name: str) -> Label:
+    try:
+        card = entry["card"]
+        if card is not None and (isinstance(card, bool) or not isinstance(card, int)):
+            raise TypeError
+        marked, hidden = (_mask(entry.get(key, []), deck) for key in ("marked", "hidden"))
+        file = folder / Path(str(entry["file"])).name
+        return Label(file, card, marked, hidden & ~deck.free)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise TangyError(
+            f"{name}: entry {place + 1} needs `file`, `card` (a number or null) and `marked` "
+            "(a list of [row, column] from 0)."
+        ) from None
+
+
+def _mask(places: Any, deck: Deck) -> int:
+    columns = len(deck.columns)
+    mask = deck.free
+    for row, column in places:
+        if not (0 <= row < deck.rows and 0 <= column < columns):
+            raise ValueError
+        mask |= 1 << (row * columns + column)
+    return mask
+
+
+def count_labelled(labels: list[Label], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
+    """Read each picture and compare it with its label.
+
+    Raises:
+        PictureError: a picture cannot be read.
+    """
+    counted = Counted()
+    for label in labels:
+        reading = read(read_picture(label.path))
+        counted.pictures += 1
+        if reading.card is not None and reading.card != label.card:
+            counted.wrong_cards += 1
+            right = "none" if label.card is None else f"card {label.card}"
+            what = f"read as card {reading.card}, is {right}"
+            counted.mistakes.append({"file": label.path.name, "what": what})
+            continue
+        cells = len(reading.cells)
+        seen = ~label.hidden & ((1 << cells) - 1)
+        if label.card is not None:
+            counted.seen_cells += seen.bit_count()
+        if reading.card is None:
+            counted.not_told += seen.bit_count() if label.card is not None else 0
+            continue
+        told = seen & ~reading.hidden
+        wrong = (reading.marked ^ label.marked) & told
+        counted.read += 1
+        counted.whole += not wrong and told == seen
+        counted.wrong_cells += wrong.bit_count()
+        counted.not_told += (seen & ~told).bit_count()
+        if wrong:
+            what = f"{wrong.bit_count()} cells read wrongly"
+            counted.mistakes.append({"file": label.path.name, "what": what})
+    return counted

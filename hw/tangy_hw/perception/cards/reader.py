@@ -1,0 +1,203 @@
+"""The card in a picture: which one it is, which cells are marked, and which cannot be told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
+from tangy_hw.perception.cards.features import features_of
+from tangy_hw.perception.cards.locating import Sighting, find_cards
+from tangy_hw.perception.cards.rectifying import flatten
+from tangy_profiles.card_face import USUAL_SEED, Face, called_cells, numbers_of
+from tangy_profiles.cards import CardState, Deck, judge_partly
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Picture = NDArray[Any]
+    Real = NDArray[Any]
+
+WIDEST = 1920  # pixels: a larger picture is made smaller first
+TRIES = 4  # sightings that are looked at, the surest first
+LEGIBLE = 0.6  # correlation from which a number is taken to be read
+AGREE, FEWEST_AGREE = 0.6, 4  # the share of the legible numbers that must be the card's, and many
+NO_TAGS = "no card in sight"
+TOO_LITTLE = "too little of the card in sight"
+OTHER_NUMBERS = "not a card of this deck"
+UNCERTAIN = 1 / 3
+
+
+@dataclass(frozen=True)
+class CardReading:
+    """What was read of a card: its number (None where it cannot be told) and its cells.
+
+    Masks have the bits of `Deck`'s cells. `cells` is the probability that a cell is marked;
+    `confidence` that of the least sure cell that was told; `problem` says why there is no card.
+    """
+
+    card: int | None
+    marked: int
+    hidden: int
+    confidence: float
+    cells: tuple[float, ...]
+    problem: str = ""
+    parts: tuple[tuple[float, float, float], ...] = ()
+    corners: tuple[tuple[float, float], ...] = ()
+
+
+class CardReader:
+    """Reads cards of one deck."""
+
+    def __init__(self, deck: Deck, deck_seed: int = USUAL_SEED) -> None:
+        self.deck = deck
+        self.deck_seed = deck_seed
+        self.face = Face(deck)
+
+    def read(self, picture: Picture) -> CardReading:
+        """Read the card in a picture (blue, green, red); of several, the one best seen."""
+        import cv2
+        import numpy as np
+
+        larger = max(picture.shape[:2]) / WIDEST
+        if larger > 1:
+            size = round(picture.shape[1] / larger), round(picture.shape[0] / larger)
+            smaller = cv2.resize(picture, size, interpolation=cv2.INTER_AREA).astype(np.uint8)
+            reading = self._read(smaller)
+            if reading.problem != NO_TAGS:
+                return reading
+        return self._read(picture)
+
+    def _read(self, picture: Picture) -> CardReading:
+        import cv2
+
+        grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY).astype("uint8")
+        problem = NO_TAGS
+        for seen in find_cards(grey)[:TRIES]:
+            reading = self._read_card(picture, seen)
+            if reading.card is not None:
+                return reading
+            if seen.tags > 1:  # a single one may be no tag at all
+                problem = reading.problem
+        return self.nothing(problem)
+
+    def nothing(self, problem: str) -> CardReading:
+        """Return a reading of nothing at all."""
+        cells = self.deck.rows * len(self.deck.columns)
+        return CardReading(
+            None,
+            self.deck.free,
+            ((1 << cells) - 1) & ~self.deck.free,
+            0.0,
+            (0.5,) * cells,
+            problem,
+            ((UNCERTAIN,) * 3,) * cells,
+        )
+
+    def _read_card(self, picture: Picture, seen: Sighting) -> CardReading:
+        import numpy as np
+
+        from tangy_hw.perception.cards.locating import project
+
+        flat = flatten(picture, seen, self.face, self.deck_seed)
+        if flat is None:
+            return self.nothing(TOO_LITTLE)
+        numbers = numbers_of(self.deck, seen.card, self.deck_seed)
+        features, read = features_of(flat, self.face, numbers)
+        legible = read.max(1) >= LEGIBLE
+        own = int((legible & (read[:, 0] >= read[:, 1])).sum())
+        if own < FEWEST_AGREE or own < AGREE * int(legible.sum()):
+            few = int(legible.sum()) < FEWEST_AGREE
+            return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
+        parts = load_classifier().probabilities(features)
+        grid = self.face.grid
+        ends = [
+            (grid.left, grid.top),
+            (grid.right, grid.top),
+            (grid.right, grid.bottom),
+            (grid.left, grid.bottom),
+        ]
+        corners = project(flat.plane, np.array(ends))
+        return self.told(seen.card, parts, tuple((float(x), float(y)) for x, y in corners))
+
+    def told(
+        self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()
+    ) -> CardReading:
+        """Say what is told of cells, and which cannot be told, from their probabilities."""
+        sure = load_classifier().sure
+        marked = hidden = 0
+        confidence = 1.0
+        for cell, part in enumerate(parts):
+            if self.deck.free >> cell & 1:
+                marked |= 1 << cell
+                continue
+            best = float(max(part[UNMARKED], part[MARKED]))
+            if best < sure:
+                hidden |= 1 << cell
+                continue
+            confidence = min(confidence, best)
+            marked |= int(part[MARKED] > part[UNMARKED]) << cell
+        return CardReading(
+            card,
+            marked,
+            hidden,
+            confidence,
+            tuple(
+                1.0 if self.deck.free >> cell & 1 else float(part[MARKED] + part[HIDDEN] / 2)
+                for cell, part in enumerate(parts)
+            ),
+            "",
+            tuple((float(a), float(b), float(c)) for a, b, c in parts),
+            corners,
+        )
+
+    def fuse(self, readings: Sequence[CardReading]) -> CardReading:
+        """Make one reading of several of the same card; where they name different ones, none."""
+        import numpy as np
+
+        cards = {reading.card for reading in readings if reading.card is not None}
+        if len(cards) != 1:
+            problem = readings[-1].problem if readings and not cards else "different cards in sight"
+            return self.nothing(problem or NO_TAGS)
+        if len(readings) == 1:
+            return readings[0]
+        parts = np.array([r.parts for r in readings if r.card is not None], float)
+        odds = np.log(np.clip(parts, 1e-6, 1)[..., MARKED] / np.clip(parts, 1e-6, 1)[..., UNMARKED])
+        seen = 1 - parts[..., HIDDEN]
+        # Frames of one camera go wrong together, so that many of them count less than each alone.
+        total = (odds * seen).sum(0) / np.maximum(seen.sum(0), 1) ** 0.5
+        hidden = np.prod(parts[..., HIDDEN], 0) ** (1 / len(parts) ** 0.5)
+        marked = (1 - hidden) / (1 + np.exp(-total))
+        fused = np.stack([1 - hidden - marked, marked, hidden], 1).astype(np.float32)
+        return self.told(cards.pop(), fused, readings[-1].corners)
+
+    def state(self, reading: CardReading, states: Sequence[CardState], called: set[int]) -> str:
+        """Name the user activity state of a card that was read; the unread one if not certain."""
+        unread = next(state.name for state in states if state.checker == "unread")
+        if reading.card is None:
+            return unread
+        numbers = numbers_of(self.deck, reading.card, self.deck_seed)
+        cells = called_cells(self.deck, numbers, called)
+        return judge_partly(states, self.deck, reading.marked, reading.hidden, cells)
+
+    def document(self, reading: CardReading) -> dict[str, Any]:
+        """Write a reading as JSON has it."""
+        columns = len(self.deck.columns)
+
+        def places(mask: int) -> list[list[int]]:
+            return [
+                list(divmod(cell, columns))
+                for cell in range(self.deck.rows * columns)
+                if mask >> cell & 1
+            ]
+
+        cells = [round(part, 4) for part in reading.cells]
+        return {
+            "card": reading.card,
+            "marked": places(reading.marked) if reading.card is not None else [],
+            "hidden": places(reading.hidden),
+            "confidence": round(reading.confidence, 4),
+            "cells": [cells[row * columns : (row + 1) * columns] for row in range(self.deck.rows)],
+            "problem": reading.problem or None,
+        }

@@ -1,0 +1,147 @@
+"""Cards are read as they lie there; what cannot be told is said so; foreign ones are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import cv2
+import numpy as np
+import pytest
+
+from tangy_hw.perception.cards.reader import (
+    NO_TAGS,
+    OTHER_NUMBERS,
+    TOO_LITTLE,
+    CardReader,
+    CardReading,
+)
+from tangy_profiles.activity import Activity, load_activity, read_activity
+from tangy_profiles.card_face import numbers_of
+from tangy_sim.card_frames import CardCamera, Frame, View
+from tests.conftest import TESTS
+
+CLEAN = View(pixels=36, noise=1, quality=95)
+ALL = (1 << 25) - 1
+Take = Callable[..., Frame]
+
+
+@cache
+def camera(name: str = "bingo", deck_seed: int = 1) -> CardCamera:
+    activity = load_activity(name) if name == "bingo" else read_activity(TESTS / f"{name}.toml")
+    return CardCamera(activity.deck, deck_seed=deck_seed, title=activity.title)
+
+
+@pytest.fixture(scope="module")
+def reader(activity: Activity) -> CardReader:
+    return CardReader(activity.deck)
+
+
+def taken(marked: int, view: View = CLEAN, *, card: int = 17, seed: int = 5) -> Frame:
+    random = np.random.default_rng(seed)
+    return camera().take(card, camera().chips(random, marked), view, random)
+
+
+@pytest.mark.parametrize("tilt", [0, 35, 60])
+@pytest.mark.parametrize("marked", [0, 0b00100_01010_10001_00000_11111])
+def test_a_card_is_read_as_it_lies_there(reader: CardReader, tilt: int, marked: int) -> None:
+    frame = taken(marked, replace(CLEAN, tilt=float(tilt), spin=200.0, size=(800, 600)))
+    reading = reader.read(frame.picture)
+    assert (reading.card, reading.marked, reading.hidden) == (17, frame.marked, 0)
+    assert reading.confidence > 0.9 and reading.problem == ""
+    assert np.abs(np.array(reading.corners) - np.array(frame.corners)).max() < 2  # pixels
+
+
+def test_rendered_frames_are_never_read_wrongly(reader: CardReader) -> None:
+    for frame in camera().frames(31, 8, size=(720, 560)):
+        reading = reader.read(frame.picture)
+        assert reading.card in (frame.card, None)
+        assert not (reading.marked ^ frame.marked) & ~reading.hidden
+
+
+def test_cells_under_a_hand_are_hidden_and_the_others_are_read(reader: CardReader) -> None:
+    frame = taken(0b1111100000, replace(CLEAN, hand="finger", size=(800, 600)), seed=2)
+    covered = frame.unknown(0.8)
+    assert covered  # or this frame tests nothing
+    reading = reader.read(frame.picture)
+    assert reading.card == 17
+    assert reading.hidden & covered == covered
+    assert not (reading.marked ^ frame.marked) & ~reading.hidden
+    assert reading.hidden.bit_count() < 20
+
+
+def test_a_card_of_another_deck_is_not_claimed(reader: CardReader) -> None:
+    random = np.random.default_rng(1)
+    picture = camera(deck_seed=2).take(17, {}, CLEAN, random).picture
+    reading = reader.read(picture)
+    assert (reading.card, reading.marked, reading.hidden) == (None, 0, ALL)
+    assert reading.problem == OTHER_NUMBERS
+    assert CardReader(reader.deck, 2).read(picture).card == 17
+
+
+def test_what_is_no_card_is_not_claimed(reader: CardReader) -> None:
+    noise = np.random.default_rng(2).integers(0, 256, (240, 320, 3), np.uint8)
+    assert reader.read(noise).problem == NO_TAGS
+    covered = taken(0).picture.copy()
+    bounds = np.array(taken(0).corners)
+    low, high = bounds.min(0).astype(int) - 4, bounds.max(0).astype(int) + 4
+    cv2.rectangle(covered, low.tolist(), high.tolist(), (90, 120, 200), -1)
+    reading = reader.read(covered)
+    assert reading.card is None and reading.problem == TOO_LITTLE
+
+
+def test_large_pictures_are_read_as_well(reader: CardReader) -> None:
+    frame = taken(0b10101, replace(CLEAN, size=(500, 500)))
+    large = cv2.resize(frame.picture, None, fx=5, fy=5, interpolation=cv2.INTER_CUBIC)
+    reading = reader.read(np.asarray(large, np.uint8))
+    assert (reading.card, reading.marked, reading.hidden) == (17, frame.marked, 0)
+
+
+def test_cards_of_another_shape_are_read_with_their_free_cell(lanterns: Activity) -> None:
+    random = np.random.default_rng(3)
+    frame = camera("lanterns").take(9, camera("lanterns").chips(random, 0b100000011), CLEAN, random)
+    reading = CardReader(lanterns.deck).read(frame.picture)
+    assert (reading.card, reading.hidden) == (9, 0)
+    assert reading.marked == frame.marked | lanterns.deck.free
+
+
+def reading_of(
+    reader: CardReader, card: int, parts: dict[int, tuple[float, float, float]]
+) -> CardReading:
+    rows = np.array([parts.get(cell, (0.999, 0.0005, 0.0005)) for cell in range(25)], np.float32)
+    return reader.told(card, rows)
+
+
+def test_frames_are_fused_and_what_one_hides_another_shows(reader: CardReader) -> None:
+    hidden, seen = (0.02, 0.02, 0.96), (0.0005, 0.999, 0.0005)
+    first = reading_of(reader, 3, {0: hidden, 7: seen})
+    second = reading_of(reader, 3, {0: seen, 7: seen, 8: hidden})
+    assert first.hidden == 1 and second.hidden == 1 << 8
+    fused = reader.fuse([first, second, reader.nothing(NO_TAGS)])
+    assert (fused.card, fused.marked, fused.hidden) == (3, 1 << 0 | 1 << 7, 0)
+
+
+def test_frames_that_contradict_each_other_tell_nothing(reader: CardReader) -> None:
+    yes, no = (0.001, 0.998, 0.001), (0.998, 0.001, 0.001)
+    fused = reader.fuse([reading_of(reader, 3, {4: yes}), reading_of(reader, 3, {4: no})])
+    assert fused.hidden == 1 << 4
+    other = reading_of(reader, 4, {})
+    assert reader.fuse([reading_of(reader, 3, {}), other]).card is None
+    assert reader.fuse([reader.nothing(OTHER_NUMBERS)]).problem == OTHER_NUMBERS
+
+
+def test_a_hidden_cell_matters_only_where_it_could_change_the_state(
+    reader: CardReader, activity: Activity
+) -> None:
+    numbers = numbers_of(activity.deck, 3)
+    hidden, seen = (0.02, 0.02, 0.96), (0.0005, 0.999, 0.0005)
+    states = activity.user_states
+    row = dict.fromkeys(range(5), seen)
+    called = set(numbers[:5])
+    whole = reading_of(reader, 3, {**row, 12: hidden})
+    assert reader.state(whole, states, called) == "bingo"
+    assert reader.state(reading_of(reader, 3, {12: hidden}), states, called) == "occluded"
+    assert reader.state(reading_of(reader, 3, {12: hidden}), states, set()) == "occluded"
+    assert reader.state(reading_of(reader, 3, {}), states, called) == "missing numbers"
+    assert reader.state(reader.nothing(NO_TAGS), states, called) == "occluded"
