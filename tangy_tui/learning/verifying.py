@@ -146,7 +146,10 @@ class Verifier:
             stranger = self._phrasebook.stranger(said.text)
             if stranger is not None:
                 return Refused(self._nobody(stranger), said.text)
-            return NotUnderstood(said.text, self._phrasebook.suggestions(said.text))
+            heard = said.commands is not None  # speech that asks for nothing suggests nothing
+            return NotUnderstood(
+                said.text, () if heard else self._phrasebook.suggestions(said.text)
+            )
         if not said.sure:
             return self._offer(said, commands)
         return self._ask(commands[0], commands[1:])

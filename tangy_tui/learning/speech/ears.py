@@ -161,7 +161,7 @@ class Ears:
     def trouble(self) -> str:
         """What is wrong with the sound, in a sentence; "" if nothing is."""
         listens = self.state in ("listening", "speaking")
-        spoken = self._state == "speaking" or not self.hands_free
+        spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
         return self.meter.words(speaking=spoken) if self.live and listens else ""
 
     def talk(self) -> None:

@@ -295,6 +295,8 @@ class TeachScreen(TangyScreen[bool]):
             steps.focus()
         elif steps.chosen is not None:
             steps.release()
+        elif (bar := self.query_one(CommandBar)).text and self._listener.by_key:
+            bar.drop()  # words that were heard, and left there
         else:
             self.close(False)
 

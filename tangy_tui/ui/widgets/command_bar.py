@@ -289,6 +289,10 @@ class CommandBar(Vertical):
         if focus:
             self._input.focus()
 
+    def drop(self) -> None:
+        """Empty the line, whoever has the keys."""
+        self._input.put("")
+
     def ready(self) -> None:
         """Open the bar for the next command."""
         self._stop_waiting()
