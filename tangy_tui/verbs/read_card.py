@@ -31,9 +31,7 @@ def read_card(
     ] = False,
     bench: Annotated[
         Path | None,
-        typer.Option(
-            metavar="DIR", help="Count how well pictures in DIR with labels.json are read."
-        ),
+        typer.Option(metavar="DIR", help="Count how well labelled pictures in DIR are read."),
     ] = None,
     method: Annotated[
         str, typer.Option(help="tags, or paper (grid lines, textures, red blobs) to compare.")
@@ -48,7 +46,8 @@ def read_card(
     person is doing; hidden cells matter only where they could change it.
 
     With --bench the truth is in DIR/labels.json, in the form in which --json prints: make it with
-    `tangy read-card DIR/*.jpg --json > DIR/labels.json` and correct what is wrong in it.
+    `tangy read-card DIR/*.jpg --json > DIR/labels.json` and correct what is wrong in it. Or it is
+    the "label" of the file that `tangy capture` wrote beside each picture.
     """
     from tangy_hw.perception.cards.labelled import count_labelled, labelled
     from tangy_hw.perception.cards.reader import CardReader

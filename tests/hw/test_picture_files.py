@@ -100,3 +100,17 @@ def test_a_labelled_folder_is_counted(tangy: Tangy, tmp_path: Path) -> None:
     assert done.returncode == 2 and "entry 1" in done.stderr
     assert tangy("read-card", "--bench", tmp_path / "no").returncode == 2
     assert "no number of the deck" in tangy("read-card", "x.png", "--called", "99").stderr
+
+
+def test_pictures_with_a_label_beside_them_are_counted(tangy: Tangy, tmp_path: Path) -> None:
+    tangy("cards", "print", "--first", 7, "--count", 3, "--png", tmp_path, "--dpi", 60)
+    (tmp_path / "cards.json").unlink()
+    seen = json.loads(tangy("read-card", tmp_path / "card-007.png", "--json").stdout)[0]
+    labels = {"card-007": True, "card-008": {"card": 8, "marked": []}, "card-009": None}
+    for name, label in labels.items():
+        told = {"file": f"{name}.png", "seen": seen, "label": label}
+        (tmp_path / f"{name}.json").write_text(json.dumps(told))
+    counted = json.loads(tangy("read-card", "--bench", tmp_path, "--json").stdout)
+    assert (counted["pictures"], counted["whole"], counted["wrong_cells"]) == (2, 2, 0)
+    (tmp_path / "card-008.json").write_text('{"file": "card-008.png", "label": 3}')
+    assert "card-008.json" in tangy("read-card", "--bench", tmp_path).stderr

@@ -58,29 +58,53 @@ class Counted:
 
 
 def labelled(folder: Path, deck: Deck) -> list[Label]:
-    """Read the labels of a folder: a list in the form that reading pictures prints.
+    """Read what is in the pictures of a folder.
+
+    That stands in its labels.json, a list in the form that reading pictures prints; or, as
+    `tangy capture` records it, in the `label` of a JSON file beside each picture, which is a
+    reading as well, or true where what was `seen` is right. The others are left out.
 
     Raises:
         TangyError: there are none, or one of them cannot be understood.
     """
     path = folder / LABELS
     name = plain(str(path))
-    try:
-        told = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    if path.is_file():
+        told = _json(path)
+        if not isinstance(told, list) or not told:
+            raise TangyError(f"{name}: must be a list with an entry for each picture.")
+        return [
+            _label(entry, folder, deck, f"{name}: entry {place + 1}")
+            for place, entry in enumerate(told)
+        ]
+    labels = []
+    for beside in sorted(folder.glob("*.json")):
+        told = _json(beside)
+        label = told.get("label") if isinstance(told, dict) else None
+        if label is None:
+            continue
+        seen = told.get("seen") if label is True else label
+        entry = {**seen, "file": told.get("file")} if isinstance(seen, dict) else None
+        labels.append(_label(entry, folder, deck, f"{plain(str(beside))}: its label"))
+    if not labels:
         raise TangyError(
-            f"{name}: there is no such file; it says what is in the pictures."
-        ) from None
+            f"{plain(str(folder))}: holds no {LABELS}, and no JSON file beside a picture has a "
+            "`label`: nothing says what is in the pictures."
+        )
+    return labels
+
+
+def _json(path: Path) -> Any:
+    name = plain(str(path))
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise TangyError(f"{name}: cannot be read ({error.strerror}).") from None
     except ValueError:
         raise TangyError(f"{name}: is not JSON.") from None
-    if not isinstance(told, list) or not told:
-        raise TangyError(f"{name}: must be a list with an entry for each picture.")
-    return [_label(entry, place, folder, deck, name) for place, entry in enumerate(told)]
 
 
-def _label(entry: Any, place: int, folder: Path, deck: Deck, name: str) -> Label:
+def _label(entry: Any, folder: Path, deck: Deck, where: str) -> Label:
     try:
         card = entry["card"]
         if card is not None and (isinstance(card, bool) or not isinstance(card, int)):
@@ -90,7 +114,7 @@ def _label(entry: Any, place: int, folder: Path, deck: Deck, name: str) -> Label
         return Label(file, card, marked, hidden & ~deck.free)
     except (KeyError, TypeError, ValueError, AttributeError):
         raise TangyError(
-            f"{name}: entry {place + 1} needs `file`, `card` (a number or null) and `marked` "
+            f"{where} needs `file`, `card` (a number or null) and `marked` "
             "(a list of [row, column] from 0)."
         ) from None
 
