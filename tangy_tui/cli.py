@@ -32,6 +32,7 @@ from tangy_tui.verbs import (
     people_speech,
     play,
     read_card,
+    requests,
     say,
     teach,
 )
@@ -80,6 +81,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     say.say,
     camera.camera,
     camera.capture,
+    requests.requests,
     read_card.read_card,
     machine.doctor,
 )

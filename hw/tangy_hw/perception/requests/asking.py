@@ -1,0 +1,132 @@
+"""Who asks for help: what every source of requests promises, wherever it learns of them."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Callable, Sequence
+from typing import NamedTuple
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.health import OK, Reading
+
+DEVICE = "requests"
+"""What the robot's profile calls whatever tells requests."""
+
+
+class RequestError(TangyError):
+    """A source of requests cannot be used; one sentence that names it."""
+
+
+class Ask(NamedTuple):
+    """Somebody asks: at which seat (from 1), who sits there ("": it is not known).
+
+    `since` is of the monotonic clock, in s; `sure` is from 0 to 1.
+    """
+
+    seat: int
+    person: str
+    since: float
+    sure: float = 1.0
+
+
+def _nobody(*_: object) -> None:
+    """Tell nobody."""
+
+
+class RequestSource:
+    """Tells who asks: look at `asking` at any time, or `async for asks in source` at each change.
+
+    Start it with `async with`, or with `start` and `close`.
+    """
+
+    def __init__(self, name: str, seats: int, people: Sequence[str] = ()) -> None:
+        """Prepare a source.
+
+        Args:
+            name: as it was given.
+            seats: how many there are.
+            people: the ids of who sits at them, where that is known.
+        """
+        self.name = name
+        self.seats = seats
+        self.tell: Callable[[str], None] = _nobody
+        """Is called with a sentence when something must be said about the source."""
+        self._people = tuple(people)
+        self._asks: dict[int, Ask] = {}
+        self._changed = asyncio.Event()
+        self._closed = False
+        self._error: RequestError | None = None
+
+    async def __aenter__(self) -> RequestSource:
+        await self.start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    @property
+    def asking(self) -> tuple[Ask, ...]:
+        """Who asks now, the one who has waited longest first."""
+        return tuple(sorted(self._asks.values(), key=lambda ask: ask.since))
+
+    def answered(self, seat: int) -> None:
+        """Take note that somebody has been helped, where nothing but that ends a request."""
+        self._withdraw(seat)
+
+    def reading(self) -> Reading:
+        """Return what the diagnosis is told of it."""
+        return Reading(DEVICE, 0.0, OK)
+
+    async def start(self) -> None:
+        """Begin to listen; that nothing is heard is a state, no error."""
+
+    async def close(self) -> None:
+        """Stop listening for good; whoever waits for a change gets none."""
+        self._closed = True
+        self._changed.set()
+
+    async def __aiter__(self) -> AsyncIterator[tuple[Ask, ...]]:
+        """Give who asks, each time that this has changed.
+
+        Raises:
+            RequestError: it cannot go on; one sentence that says why.
+        """
+        shown: tuple[tuple[int, float], ...] = ()
+        while not self._closed:
+            now = tuple((ask.seat, ask.since) for ask in self.asking)
+            if now != shown:
+                shown = now
+                yield self.asking
+                continue
+            self._changed.clear()
+            await self._changed.wait()
+        if self._error is not None:
+            raise self._error
+
+    def _ask(self, seat: int, sure: float = 1.0, since: float | None = None) -> None:
+        """Take note that somebody asks, or still does; of a seat there is."""
+        if not 1 <= seat <= self.seats:
+            return
+        ask = self._asks.get(seat)
+        if ask is None:
+            began = time.monotonic() if since is None else since
+            self._asks[seat] = Ask(seat, self._person(seat), began, sure)
+            self._changed.set()
+        else:
+            self._asks[seat] = ask._replace(sure=sure)
+
+    def _withdraw(self, seat: int) -> None:
+        """Take note that somebody does not ask any more."""
+        if self._asks.pop(seat, None) is not None:
+            self._changed.set()
+
+    def _person(self, seat: int) -> str:
+        return self._people[seat - 1] if seat <= len(self._people) else ""
+
+    def _seat_of(self, word: str) -> int:
+        """Return the seat that "2", "seat 2", "seat-2" or a person's id names, or 0."""
+        if word in self._people:
+            return self._people.index(word) + 1
+        number = word.lower().removeprefix("seat").strip(" -_")
+        return int(number) if number.isascii() and number.isdigit() and len(number) < 4 else 0

@@ -1,0 +1,20 @@
+"""Requests by the number keys, for whoever watches the table: the simplest source."""
+
+from __future__ import annotations
+
+from tangy_hw.perception.requests.asking import RequestSource
+
+
+class Keyboard(RequestSource):
+    """The program hands in the keys; a seat's number asks, and pressed again takes that back."""
+
+    def press(self, key: str) -> bool:
+        """Take a key; return whether it was one of ours."""
+        seat = int(key) if len(key) == 1 and key in "123456789" else 0
+        if not 1 <= seat <= self.seats:
+            return False
+        if seat in self._asks:
+            self._withdraw(seat)
+        else:
+            self._ask(seat)
+        return True

@@ -1,0 +1,202 @@
+"""Requests by signs: people turn up a triangle that shines in the picture of an infrared camera.
+
+The camera looks at the whole table from a fixed place. Where the four corners of the table are in
+its picture is enough to know at which seat a sign stands.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import replace
+from math import hypot
+from typing import TYPE_CHECKING
+
+from tangy_hw.drivers.camera import Camera
+from tangy_hw.drivers.camera_source import CameraError, CameraSource
+from tangy_hw.drivers.camera_state import USUAL as USUAL_CAMERA
+from tangy_hw.perception.requests.asking import DEVICE, RequestError, RequestSource
+from tangy_hw.perception.requests.triangles import USUAL, Limits, find_triangles
+from tangy_profiles.health import OK, STALE, Reading
+from tangy_profiles.room import Point, Room
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_look import Image
+
+Corners = tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
+
+OF, BEGINS, ENDS = 5, 3, 1
+"""Of the last five pictures a sign must be in three; in one at most, and it is down again."""
+
+FAR = 0.9  # metres from where a sign of that seat would stand
+EDGE = 0.25  # metres off the table that a sign may seem to stand
+PAUSE = 0.1  # s between two pictures that are looked at
+
+# An infrared picture is dark, and often shows little: neither is a fault of the camera.
+INFRARED = replace(USUAL_CAMERA, dark=0.0, flat=0.0, blurred=0.0)
+
+
+class TableView:
+    """Where in the picture of a fixed camera which seat is."""
+
+    def __init__(self, corners: Corners, room: Room, seats: int) -> None:
+        """Take where the table's corners are.
+
+        Args:
+            corners: of the table, in pixels: left near, right near, right far, left far, as the
+                room has it; near is the side on which the robot stands.
+            room: where table and seats are.
+            seats: how many people sit there.
+
+        Raises:
+            RequestError: the corners do not make a table.
+        """
+        left, near, right, far = room.table
+        self._table = room.table
+        self._matrix = _homography(
+            corners, ((left, near), (right, near), (right, far), (left, far))
+        )
+        self._places = [
+            Point(min(max(seat.x, left), right), min(max(seat.y, near), far))
+            for seat in room.seated(seats)
+        ]
+
+    def place(self, x: float, y: float) -> Point | None:
+        """Return the place on the table, in metres, that a pixel shows; None beyond its horizon."""
+        a, b, c = (row[0] * x + row[1] * y + row[2] for row in self._matrix)
+        return Point(a / c, b / c) if c > 1e-9 else None
+
+    def seat(self, x: float, y: float) -> int:
+        """Return the seat (from 1) at which a sign stands that is seen there, or 0."""
+        place = self.place(x, y)
+        left, near, right, far = self._table
+        if (
+            place is None
+            or not left - EDGE <= place.x <= right + EDGE
+            or not near - EDGE <= place.y <= far + EDGE
+        ):
+            return 0
+        distances = [place.distance(seat) for seat in self._places]
+        least = min(distances)
+        return distances.index(least) + 1 if least <= FAR else 0
+
+
+class Persistence:
+    """Believes what is seen in three of five pictures, until it is in one of five at most."""
+
+    def __init__(self) -> None:
+        self._seen: dict[int, deque[float]] = {}
+        self._believed: set[int] = set()
+
+    def take(self, found: dict[int, float]) -> dict[int, float]:
+        """Take what one picture shows, seat to how sure; return the same of what is believed."""
+        for seat in found:
+            self._seen.setdefault(seat, deque((0.0,) * OF, OF))
+        for seat, last in list(self._seen.items()):
+            last.append(found.get(seat, 0.0))
+            times = sum(sure > 0 for sure in last)
+            if times >= BEGINS:
+                self._believed.add(seat)
+            elif times <= ENDS:
+                self._believed.discard(seat)
+            if not times:
+                del self._seen[seat]
+        return {seat: sum(self._seen[seat]) / OF for seat in self._believed}
+
+
+class SignWatcher:
+    """Says of one picture after the other at which seats signs are up."""
+
+    def __init__(self, view: TableView, limits: Limits = USUAL) -> None:
+        self._view = view
+        self._limits = limits
+        self._persistence = Persistence()
+        self.found: dict[int, float] = {}
+        """Of the last picture alone: seat to how sure."""
+
+    def look(self, image: Image) -> dict[int, float]:
+        """Take a picture; return who asks: seat (from 1) to how sure."""
+        self.found = {}
+        for one in find_triangles(image, self._limits):
+            seat = self._view.seat(one.x, one.y)
+            if seat:
+                self.found[seat] = max(self.found.get(seat, 0.0), one.sure)
+        return self._persistence.take(self.found)
+
+
+class Signs(RequestSource):
+    """Who has a sign up before a camera."""
+
+    def __init__(
+        self, source: CameraSource, view: TableView, seats: int, people: Sequence[str] = ()
+    ) -> None:
+        """Prepare to watch the signs at a table through a camera that was not started."""
+        super().__init__(f"signs:{source.name}", seats, people)
+        self.camera = Camera(source, device=DEVICE, limits=INFRARED)
+        self._watcher = SignWatcher(view)
+        self._task: asyncio.Task[None] | None = None
+
+    def reading(self) -> Reading:
+        """Return what the diagnosis is told: how old the newest picture is."""
+        sight = self.camera.sight
+        return Reading(DEVICE, sight.age, OK if sight.state == "OK" else STALE)
+
+    async def start(self) -> None:
+        self.camera.changed = lambda sight: self.tell(sight.why) if sight.why else None
+        await self.camera.start()
+        self._task = asyncio.create_task(self._watch())
+
+    async def close(self) -> None:
+        await super().close()
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.wait({self._task})
+        await self.camera.close()
+
+    def answered(self, seat: int) -> None:
+        """Do nothing: a request ends when the sign is turned down."""
+
+    async def _watch(self) -> None:
+        try:
+            await self._look()
+        except CameraError as error:
+            self._error = RequestError(str(error))
+        self._closed = True  # a file is over
+        self._changed.set()
+
+    async def _look(self) -> None:
+        async for frame in self.camera:
+            asks = await asyncio.to_thread(self._watcher.look, frame.image())
+            for seat, sure in asks.items():
+                self._ask(seat, sure, frame.stamp)
+            for seat in set(self._asks) - set(asks):
+                self._withdraw(seat)
+            if not self.camera.source.each:
+                await asyncio.sleep(max(0.0, PAUSE - (time.monotonic() - frame.stamp)))
+
+
+def _homography(pixels: Corners, places: Corners) -> list[list[float]]:
+    import numpy as np
+
+    if len({*pixels}) < 4 or not _goes_round(pixels):
+        raise RequestError(
+            "The corners of the table must go round it: left near, right near, right far, left far."
+        )
+    rows, wanted = [], []
+    for (x, y), (a, b) in zip(pixels, places, strict=True):
+        rows += [[x, y, 1, 0, 0, 0, -a * x, -a * y], [0, 0, 0, x, y, 1, -b * x, -b * y]]
+        wanted += [a, b]
+    found = [*np.linalg.solve(np.array(rows, float), np.array(wanted, float)), 1.0]
+    return [[float(one) for one in found[row : row + 3]] for row in (0, 3, 6)]
+
+
+def _goes_round(corners: Corners) -> bool:
+    """Say whether four points make a convex shape of some size."""
+    turns = []
+    for here in range(4):
+        (ax, ay), (bx, by), (cx, cy) = corners[here - 2], corners[here - 1], corners[here]
+        long = hypot(bx - ax, by - ay) * hypot(cx - bx, cy - by)
+        turns.append(((bx - ax) * (cy - by) - (by - ay) * (cx - bx)) / max(long, 1e-9))
+    return min(turns) > 0.05 or max(turns) < -0.05
