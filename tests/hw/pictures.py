@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 Image: TypeAlias = NDArray[np.uint8]
 
+WIDE = 16  # pixels of blur from which on a picture is made smaller for it
+
 
 def room(seed: int, width: int = 1280, height: int = 720) -> Image:
     """Draw a room: a wall, things on it, people, a table, a card or two on that."""
@@ -69,7 +71,11 @@ def seen(
 ) -> Image:
     """Return a picture as a camera sees it: with so much light, blur (pixels), noise, JPEG."""
     values: Any = image
-    if blur:
+    if blur > WIDE:  # as good, and in a hundredth of the time
+        small = cv2.resize(image, None, fx=1 / WIDE, fy=1 / WIDE, interpolation=cv2.INTER_AREA)
+        small = cv2.GaussianBlur(small, (0, 0), blur / WIDE)
+        values = cv2.resize(small, image.shape[1::-1], interpolation=cv2.INTER_CUBIC)
+    elif blur:
         values = cv2.GaussianBlur(values, (0, 0), blur)
     shown = values.astype(np.float32) * light
     if noise:
