@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -152,18 +153,21 @@ def capture(
     between = (1.0 if found.live else 0.0) if every is None else every
     if not found.live and between == 0:
         found = find_camera(source, each=True)
-    kept = asyncio.run(_capture(found, folder, count, seconds, between, tell=not as_json))
+    kept: list[dict[str, Any]] = []
+    with suppress(KeyboardInterrupt):
+        asyncio.run(_capture(kept, found, folder, count, seconds, between, tell=not as_json))
     if as_json:
         print_json(kept)
     elif kept:
         shown = plain(str(folder))
-        print(f"{len(kept)} pictures are in {shown}, each with a JSON file to be labelled.")
+        print(f"The pictures are in {shown}, each with a JSON file to be labelled.")
     if not kept:
         print(f"tangy: {found.name}: no picture came.", file=sys.stderr)
         raise typer.Exit(1)
 
 
 async def _capture(
+    kept: list[dict[str, Any]],
     source: CameraSource,
     folder: Path,
     count: int | None,
@@ -171,14 +175,12 @@ async def _capture(
     every: float,
     *,
     tell: bool,
-) -> list[dict[str, Any]]:
+) -> None:
     from tangy_hw.drivers.camera import Camera
     from tangy_hw.drivers.capturing import capture as record
 
-    kept: list[dict[str, Any]] = []
     async with Camera(source) as camera:
         async for known in record(camera, folder, count=count, seconds=seconds, every=every):
             kept.append(known)
             if tell:
                 print(f"{known['file']}  {STATES[known['state']]}", flush=True)
-    return kept

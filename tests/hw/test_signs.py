@@ -106,7 +106,7 @@ class TestPersistence:
 def test_who_asks_is_seen_and_nobody_else() -> None:
     """A small piece of `tests/bench/requests.py`, of other seeds than it."""
     asked = seen = false = pictures = 0
-    for seed in range(700_000, 700_030):
+    for seed in range(700_000, 700_016):
         watcher = SignWatcher(VIEW)
         for scene in sequence(seed, 6):
             asks = set(watcher.look(scene.image))
@@ -116,6 +116,6 @@ def test_who_asks_is_seen_and_nobody_else() -> None:
             if scene.since >= 4:
                 asked += len(true)
                 seen += len(asks & true)
-    assert asked > 80
+    assert asked > 40
     assert seen / asked >= 0.97
     assert false / pictures <= 0.01

@@ -18,7 +18,7 @@ from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camer
 from tangy_hw.drivers.camera_state import State
 from tests.hw.pictures import room, seen
 from tests.real.camera_server import CameraServer
-from tests.real.conftest import PATIENCE
+from tests.real.conftest import PATIENCE, TANGY
 
 PICTURES = [seen(room(60 + number, 160, 120), np.random.default_rng(number)) for number in range(6)]
 
@@ -176,6 +176,25 @@ class TestStream:
 
 
 class TestProcess:
+    async def test_recording_ends_with_ctrl_c_and_says_what_there_is(
+        self, server: CameraServer, tmp_path: Path
+    ) -> None:
+        server.mode = "live"
+        process = await asyncio.create_subprocess_exec(
+            TANGY, "capture", str(tmp_path / "set"), "--from", server.url, "--every", "0.05",
+            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, start_new_session=True,
+        )  # fmt: skip
+        assert process.stdout is not None
+        first = await asyncio.wait_for(process.stdout.readline(), PATIENCE)
+        process.send_signal(signal.SIGINT)
+        rest, said = await asyncio.wait_for(process.communicate(), PATIENCE)
+        assert (process.returncode, said) == (0, b"")
+        assert first == b"000001.png  it works\n"
+        assert rest.decode().splitlines()[-1].startswith("The pictures are in ")
+        names = [path.name for path in sorted((tmp_path / "set").iterdir())]
+        assert names[:2] == ["000001.json", "000001.png"]
+        assert len(names) % 2 == 0  # none without what is known of it
+
     async def test_one_that_is_killed_is_started_again_and_owes_nothing(
         self, server: CameraServer
     ) -> None:
