@@ -50,6 +50,7 @@ class SampleEars:
     level: float = 0.0
     live: bool = True
     hands_free: bool = False
+    records: bool = False
 
     @property
     def meter(self) -> SampleEars:
@@ -61,6 +62,7 @@ HEARD = (
     SampleEars("off"),
     SampleEars("listening", level=0.2),
     SampleEars("speaking", "call the next", level=0.7),
+    SampleEars("speaking", "call the next", level=0.7, records=True),
     SampleEars("thinking", "call the next number"),
     SampleEars("shut"),
     SampleEars(

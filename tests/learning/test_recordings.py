@@ -220,7 +220,8 @@ class TestKeeping:
         self, tmp_path: Path, spoken: Callable[[str], Say]
     ) -> None:
         told: list[str] = []
-        recorder = Recorder(tmp_path / "data", "rosa", tell=told.append)
+        recorder = Recorder(tmp_path / "data", "rosa")
+        recorder.tell = told.append
         recorder.folder.parent.mkdir()
         recorder.folder.write_text("in the way")
         for _ in range(2):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +16,8 @@ from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech import ears as room
 from tangy_tui.learning.speech.ears import Ears, Heard
 from tangy_tui.learning.speech.recogniser import SpeechUnavailable
+from tangy_tui.learning.speech.recordings import Recorder
+from tangy_tui.learning.speech.utterance import LONGEST_TALK, MOST_WAITING
 from tangy_tui.learning.verifying import Reply, Say, Stop
 from tests.learning.speech_fakes import PATIENCE, FakeRecogniser, FakeSource, soon, sound
 
@@ -23,7 +27,7 @@ BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 class Room:
     """Ears, somebody who speaks into them, and somebody who takes what they hear."""
 
-    def __init__(self, source: FakeSource, **options: bool) -> None:
+    def __init__(self, source: FakeSource, **options: object) -> None:
         self.source = source
         self.ears = Ears("socket", BOOK, **options)  # type: ignore[arg-type]
         self.told: list[str] = []
@@ -44,6 +48,10 @@ class Room:
     @property
     def state(self) -> str:
         return self.ears.state
+
+    @property
+    def listened_for(self) -> tuple[str, ...]:
+        return self.decoder.wanted.phrases if self.decoder.wanted else ()
 
     @property
     def words(self) -> list[str]:
@@ -76,7 +84,7 @@ async def enter(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Enter]:
     FakeRecogniser.made = []
     monkeypatch.setattr(room, "Recogniser", FakeRecogniser)
 
-    def one(*, live: bool = True, **options: bool) -> Room:
+    def one(*, live: bool = True, **options: object) -> Room:
         source = FakeSource(live=live)
         monkeypatch.setattr(room, "open_source", lambda *_, **__: source)
         opened.append(Room(source, **options))
@@ -119,6 +127,18 @@ class TestPushToTalk:
         await here.ready()
         assert here.decoder.heard == [(sound("c", 1), "commands")]
 
+    async def test_a_push_too_early_is_answered(self, enter: Enter) -> None:
+        here = await enter().ready()
+        here.decoder.decoding.clear()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.ears.talk()
+        here.ears.talk()
+        assert here.told == ["Still thinking. Push again in a moment."]
+        here.decoder.decoding.set()
+        await here.ready()
+        assert here.words == ["call number"]
+
     async def test_two_pushes_in_one_turn_are_an_utterance_without_sound(
         self, enter: Enter
     ) -> None:
@@ -141,7 +161,7 @@ class TestPushToTalk:
         for _ in range(round(8 / size) or 1):
             await here.source.feed(sound("c", size))
         await here.ready()
-        assert [len(pcm) / 2 / RATE for pcm, _ in here.decoder.heard] == [room.LONGEST_TALK]
+        assert [len(pcm) / 2 / RATE for pcm, _ in here.decoder.heard] == [LONGEST_TALK]
         assert here.words == ["call number"]
 
     async def test_pushing_while_it_thinks_or_starts_does_nothing(self, enter: Enter) -> None:
@@ -241,6 +261,45 @@ class TestShutting:
         assert here.words == ["call number"]
 
 
+class TestOtherPhrases:
+    @pytest.mark.parametrize("hands_free", [False, True])
+    async def test_are_listened_for_from_the_next_utterance_on(
+        self, enter: Enter, hands_free: bool
+    ) -> None:
+        here = await enter(hands_free=hands_free).ready("listening" if hands_free else "off")
+        people = (*load_people(3), replace(load_people(4)[3], name="Zoe"))
+        other = Phrasebook(load_activity("bingo"), people)
+        assert "go to zoe" not in here.listened_for
+        here.ears.understand_by(other)
+        if hands_free:
+            await here.source.feed(sound("c"), sound(" "))
+        else:
+            await here.say(sound("c"))
+        await soon(lambda: "go to zoe" in here.listened_for)
+        assert here.words == ["call number"]
+
+    async def test_the_same_phrases_disturb_nobody(self, enter: Enter) -> None:
+        here = await enter().ready()
+        before = here.decoder.wanted
+        here.ears.understand_by(BOOK)
+        await here.say(sound("c"))
+        assert here.decoder.wanted is before
+
+
+class TestRecording:
+    async def test_a_teacher_is_told_of_it(self, enter: Enter, tmp_path: Path) -> None:
+        here = await enter(recorder=Recorder(tmp_path, "rosa")).ready()
+        assert here.ears.records
+        assert here.told == ["What you say, and say yes to, is recorded."]
+
+    async def test_of_what_has_no_end_only_the_beginning_is_heard(self, enter: Enter) -> None:
+        here = enter(live=False)
+        await here.source.feed(sound("c", 20))
+        here.source.end()
+        await here.over()
+        assert here.told[0] == "Of 20 s without a pause I hear 15 s."
+
+
 class TestAsking:
     async def test_answers_are_heard_if_that_is_switched_on(self, enter: Enter) -> None:
         here = await enter(answers=True).ready()
@@ -273,6 +332,24 @@ class TestAsking:
         assert here.heard == []
         await here.say(sound("s"))
         assert here.words == ["stop"]
+
+    async def test_words_that_a_question_overtook_are_said_to_count_for_nothing(
+        self, enter: Enter
+    ) -> None:
+        here = await enter().ready()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        here.ears.asking(True)
+        await here.ready()
+        assert here.heard == []
+        assert here.told == ["I heard 'call number', but a question came between."]
+
+    async def test_what_is_no_answer_is_said_to_be_none(self, enter: Enter) -> None:
+        here = await enter(answers=True).ready()
+        here.ears.asking(True)
+        await here.say(sound("c"))
+        assert here.heard == []
+        assert here.told == ["I heard something, but no yes, no or stop."]
 
     @pytest.mark.parametrize("between", ["a question", "the robot speaks"])
     async def test_a_stop_counts_whatever_came_between(self, enter: Enter, between: str) -> None:
@@ -451,11 +528,11 @@ class TestHandsFree:
         here = await enter(hands_free=True).ready("listening")
         here.decoder.decoding.clear()
         await here.source.feed(sound("c") + sound(" "))
-        for _ in range(3 * room.MOST_WAITING):
+        for _ in range(3 * MOST_WAITING):
             await here.source.feed(sound("x", 1))
         utterance = here.ears._utterance
         assert utterance is not None
-        assert utterance.chunks.held <= 2 * RATE * room.MOST_WAITING
+        assert utterance.chunks.held <= 2 * RATE * MOST_WAITING
 
 
 class TestRecordings:

@@ -35,6 +35,7 @@ class FakeEars:
         self.state = "off" if live and not hands_free else "listening"
         self.words = ""
         self.trouble = ""
+        self.records = False
         self.sound = b""
         self.meter = FakeMeter()
         self.tell: Callable[[str], None] = lambda sentence: None

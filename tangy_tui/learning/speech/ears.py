@@ -12,77 +12,22 @@ from tangy_hw.sound.meter import Meter
 from tangy_hw.sound.sources import open_source
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
-from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Settings
+from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Evidence, Settings
 from tangy_tui.learning.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.learning.speech.recordings import Recorder
 from tangy_tui.learning.speech.understanding import answer, understand, wanted
+from tangy_tui.learning.speech.utterance import Utterance
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verifying import Reply, Say, Stop
 
-LONGEST_TALK = 6.0  # s after which push-to-talk ends by itself
 RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
-PIECE = 3_200  # bytes, 0.1 s: words are shown as they come if they come in pieces
-MOST_WAITING = 60  # s of a stream that wait for the decoder
 FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
 Heard: TypeAlias = Say | Stop | Reply
+WAITS = {"starting": "The decoder is getting ready.", "thinking": "Still thinking."}
+
 State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
 """off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
-
-
-class _Chunks(asyncio.Queue[bytes]):
-    """Chunks that wait to be heard, and how many bytes they are."""
-
-    held = 0
-
-    def _put(self, chunk: bytes) -> None:
-        self.held += len(chunk)
-        super()._put(chunk)
-
-    def _get(self) -> bytes:
-        chunk: bytes = super()._get()
-        self.held -= len(chunk)
-        return chunk
-
-
-class _Utterance:
-    """The sound of an utterance as it comes, or of a stream in which one is to be found."""
-
-    def __init__(self, *, found: bool, begun: bytes = b"") -> None:
-        """Begin; `found` says that its end is to be found, `begun` is what is there already."""
-        self.chunks = _Chunks()
-        self.over = False
-        self.dropped = False
-        """It counts for nothing."""
-        self._found = found
-        self._left = round(LONGEST_TALK * RATE) * 2
-        self.add(begun)
-
-    def add(self, chunk: bytes) -> None:
-        """Take the next chunk. Push-to-talk ends in time; of a stream the oldest is forgotten."""
-        if self.over or not chunk:
-            return
-        if self._found:
-            for place in range(0, len(chunk), PIECE):
-                self.chunks.put_nowait(chunk[place : place + PIECE])
-            while self.chunks.held > 2 * RATE * MOST_WAITING:
-                self.chunks.get_nowait()
-            return
-        self.chunks.put_nowait(chunk[: self._left])
-        self._left -= len(chunk)
-        if self._left <= 0:
-            self.end()
-
-    def end(self, *, dropped: bool = False) -> None:
-        """Take no more of it."""
-        self.dropped = self.dropped or dropped
-        if not self.over:
-            self.over = True
-            self.chunks.put_nowait(b"")
-
-    def rest(self) -> bytes:
-        """Take out what nobody has heard yet."""
-        return b"".join(self.chunks.get_nowait() for _ in range(self.chunks.qsize()))
 
 
 class Ears:
@@ -141,12 +86,16 @@ class Ears:
         self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
         self._heard: AsyncGenerator[Heard, None] | None = None
         self._recogniser: Recogniser | None = None
-        self._utterance: _Utterance | None = None  # the one that is listened for
+        self._utterance: Utterance | None = None  # the one that is listened for
         self._talks = asyncio.Event()  # it has begun, or none will
         self._free = asyncio.Event()
         self._free.set()
         self._shuts = 0  # those who have shut it, and not opened it again
         self._asking = False
+        self._renew = False  # there are other phrases to listen for
+        self._noticed: set[str] = set()
+        if recorder is not None:
+            recorder.tell = self._told
         self._ended = False  # the source has no more
         self._closed = False
         self._over = asyncio.Event()  # all that was started has ended
@@ -156,6 +105,11 @@ class Ears:
     def state(self) -> State:
         """What it is doing."""
         return "shut" if not self._free.is_set() and self._state != "over" else self._state
+
+    @property
+    def records(self) -> bool:
+        """Whether what is said is kept, once it is verified."""
+        return self._recorder is not None
 
     @property
     def trouble(self) -> str:
@@ -168,11 +122,13 @@ class Ears:
         """Push to talk: begin to listen, or end what is being said."""
         if not self.live or self.hands_free or not self._free.is_set():
             return
-        if self._utterance is not None:
+        if self._utterance is not None and not self._utterance.over:
             self._end()
+        elif self._state in WAITS:
+            self._told(f"{WAITS[self._state]} Push again in a moment.")
         elif self._state == "off":
             self.meter.begin()
-            self._utterance = _Utterance(found=False)
+            self._utterance = Utterance(found=False)
             self._talks.set()
             self._now("listening")
 
@@ -202,8 +158,10 @@ class Ears:
                 self._end(dropped=True)
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
-        """Match what is heard to these phrases from now on; they are listened for later."""
-        self._phrasebook = phrasebook
+        """Listen for these phrases, and match what is heard to them, from the next utterance on."""
+        if phrasebook is not self._phrasebook:
+            self._phrasebook, self._renew = phrasebook, True
+            self._talks.set()
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
         """Take note of what followed from commands, so that recordings get their names."""
@@ -239,12 +197,11 @@ class Ears:
         self._source.tell = self._told
         pump: asyncio.Task[None] | None = None
         try:
-            lexicon = await asyncio.to_thread(Lexicon, self._phrasebook, suggest=lambda word: "")
+            await self._listen_for(recogniser)
             if self._closed:
                 return
-            await recogniser.start(wanted(self._phrasebook, self._settings, lexicon.heard()))
-            for sentence in lexicon.notices():
-                self._told(sentence)
+            if self._recorder is not None:
+                self._told("What you say, and say yes to, is recorded.")
             if self.live:
                 pump = asyncio.create_task(self._pump())
                 spoken = self._live(recogniser)
@@ -276,12 +233,29 @@ class Ears:
                 self._over.set()
                 self._now("over")
 
+    async def _listen_for(self, recogniser: Recogniser) -> None:
+        """Have the decoder listen for the phrases as they are now."""
+        self._renew = False
+        phrasebook = self._phrasebook
+        lexicon = await asyncio.to_thread(Lexicon, phrasebook, suggest=lambda word: "")
+        if self._closed:
+            return
+        await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
+        for sentence in lexicon.notices():
+            if sentence not in self._noticed:
+                self._noticed.add(sentence)
+                self._told(sentence)
+
     async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
         pcm = b"".join([chunk async for chunk in self._source])
         for piece in await recogniser.pieces(pcm):
             self._now("thinking")
             self.sound = piece
+            if len(piece) > 2 * RATE * LONGEST:
+                self._told(f"Of {len(piece) / 2 / RATE:.0f} s without a pause I hear {LONGEST} s.")
             try:
+                if self._renew:
+                    await self._listen_for(recogniser)
                 evidence = await recogniser.decode(
                     piece, "answers" if self._asking and self.answers else "commands"
                 )
@@ -295,50 +269,59 @@ class Ears:
 
     async def _live(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
         failures = 0
-        while (utterance := await self._next()) is not None:
+        while (utterance := await self._next(recogniser)) is not None:
             try:
                 evidence = await recogniser.hear(
                     utterance.chunks,
                     "answers" if self._asking else "commands",
                     endpoint=self.hands_free,
                 )
-                failures = 0
+                failures, left = 0, recogniser.left
             except SpeechUnavailable as error:
                 failures += 1
                 if self._closed or (self.hands_free and failures >= FAILURES):
                     raise
                 self._told(f"{error} Please say that again.")
-                continue
+                evidence, left = None, b""
             finally:
                 self._utterance = None
                 self._talks.clear()
                 self._partial("")
+            if self.hands_free and not utterance.dropped:
+                self._go_on(left + utterance.rest())
+            if evidence is None:
+                continue
             self.sound = recogniser.said
-            if utterance.dropped:
-                if self._stops(evidence):  # that counts, whatever came between
-                    yield evidence
+            if not utterance.dropped or self._stops(evidence):  # that counts, whatever came between
+                yield evidence
+            elif evidence.words and self._asking:
+                self._told(f"I heard {evidence.words!r}, but a question came between.")
+
+    async def _next(self, recogniser: Recogniser) -> Utterance | None:
+        """Wait for the next utterance to listen to; None if the source is over."""
+        while True:
+            if self._renew:
+                if self._utterance is None:
+                    self._now("starting")
+                await self._listen_for(recogniser)
                 continue
             if self.hands_free:
-                self._go_on(recogniser.left + utterance.rest())
-            yield evidence
-
-    async def _next(self) -> _Utterance | None:
-        """Wait for the next utterance to listen to; None if the source is over."""
-        if not self.hands_free:
+                if self._utterance is None or self._utterance.dropped:
+                    self._utterance = None if self._ended else Utterance(found=True)
+                if self._utterance is not None:
+                    self._now("listening")
+                return self._utterance
+            if self._utterance is not None or self._ended:
+                return self._utterance
             self._now("off")
-            while self._utterance is None and not self._ended:
-                await self._talks.wait()
-        else:
-            if self._utterance is None or self._utterance.dropped:
-                self._utterance = None if self._ended else _Utterance(found=True)
-            if self._utterance is not None:
-                self._now("listening")
-        return self._utterance
+            await self._talks.wait()
+            if self._utterance is None:
+                self._talks.clear()
 
     def _go_on(self, begun: bytes) -> None:
         """Listen on to a stream from where an utterance ended: somebody may have spoken on."""
         if begun or not self._ended:
-            self._utterance = _Utterance(found=True, begun=begun)
+            self._utterance = Utterance(found=True, begun=begun)
             if self._ended:
                 self._utterance.end()
 
@@ -375,6 +358,8 @@ class Ears:
     def _understand(self, evidence: Evidence) -> Heard | None:
         if self._asking:
             said = answer(evidence, self._settings)
+            if self.answers and said is None and evidence.seconds:
+                self._told("I heard something, but no yes, no or stop.")
             return said if self.answers or isinstance(said, Stop) else None
         if not evidence.words:
             if self.live and evidence.seconds:

@@ -108,7 +108,6 @@ class Recorder:
         teacher: str,
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
-        tell: Callable[[str], None] = lambda sentence: None,
     ) -> None:
         """Record into a data folder.
 
@@ -116,7 +115,6 @@ class Recorder:
             folder: the data folder.
             teacher: whose voice it is; is not written down with the recordings.
             now: the clock that they are named by.
-            tell: is called with a sentence if nothing can be kept any more.
 
         Raises:
             TangyError: the folder of recordings is a symbolic link.
@@ -125,8 +123,9 @@ class Recorder:
         self.teacher = teacher
         self.kept = 0
         """How many recordings were kept."""
+        self.tell: Callable[[str], None] = lambda sentence: None
+        """Is called with a sentence if nothing can be kept any more."""
         self._now = now
-        self._tell = tell
         self._pcm = b""  # of the command that is not verified yet
         self._texts: frozenset[str] = frozenset()  # what it may be called in a question
         self._named: frozenset[tuple[str, str | None]] = frozenset()  # what it may mean, for whom
@@ -179,7 +178,7 @@ class Recorder:
             self.kept += 1
         except OSError as error:
             self._works = False
-            self._tell(f"Nothing more is recorded: {self.folder} ({error.strerror}).")
+            self.tell(f"Nothing more is recorded: {self.folder} ({error.strerror}).")
 
     def _write(self, pcm: bytes, folder: Path) -> None:
         """Write a file that only its owner reads, and that is there as a whole or not at all."""

@@ -36,6 +36,7 @@ STATES = {
 }
 MARKS = {"listening": "●", "speaking": "●", "off": "○", "shut": "○", "over": "○", "thinking": "○"}
 """What stands before the state: a filled dot while the microphone is open."""
+RECORDING = "◉ rec"
 HINTS = {
     "off": "then say what Tangy should do",
     "listening": "{key} ends it",
@@ -74,6 +75,10 @@ class Microphone(Protocol):
     @property
     def trouble(self) -> str:
         """What is wrong, in a sentence."""
+
+    @property
+    def records(self) -> bool:
+        """Whether what is said is kept."""
 
     @property
     def meter(self) -> Level:
@@ -171,6 +176,8 @@ class MicrophoneLine(Widget):
         if not self.is_attached:
             return ()
         row: list[Span] = [self._state()]
+        if ears.records and ears.state != "over":
+            row.append((f"  {RECORDING}", "warn"))
         if ears.live and ears.state in OPENS:
             full = round(BAR * min(1.0, max(0.0, ears.meter.level)))
             row += [("  ", "text"), ("■" * full, "curve"), ("·" * (BAR - full), "dim")]
