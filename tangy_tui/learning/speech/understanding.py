@@ -22,11 +22,11 @@ from tangy_tui.learning.words import bare, words_of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
 # sound than the grammar or any phones do. Fitted, and the limits set, by tests/bench/speech.py on
 # voices and sentences that no figure is quoted for.
-CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 19.37, 0.41, 2.62, -15.70
+CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 14.98, 0.39, 1.51, -12.98
 LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
-SURE = 0.7
-UNSURE = 0.4
+SURE = 0.6
+UNSURE = 0.35
 SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
 SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
 UNDERSTOOD = 0.35
