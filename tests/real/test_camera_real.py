@@ -208,9 +208,8 @@ class TestProcess:
         assert later is not None and later.seq > first.seq + 20
 
     async def test_one_that_hangs_as_a_whole_is_ended_and_started_again(
-        self, server: CameraServer, monkeypatch: pytest.MonkeyPatch
+        self, server: CameraServer
     ) -> None:
-        monkeypatch.setattr("tangy_hw.drivers.camera.SILENT_SECONDS", 1.0)
         server.mode = "live"
         async with Camera(find_camera(server.url)) as camera:
             await until(camera, "OK")
