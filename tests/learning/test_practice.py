@@ -127,7 +127,6 @@ class TestFolders:
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
         there = write(tmp_path / "a" / "b" / "joke.wav")
-        write(tmp_path / "rejected" / "20260101T101112-1.wav")
         write(tmp_path / ".hidden" / "joke.wav")
         (tmp_path / "again.wav").symlink_to(there)
         (tmp_path / "loop").symlink_to(tmp_path)
@@ -138,7 +137,6 @@ class TestFolders:
             "again.wav": "is a symbolic link",
             "loop": "is a symbolic link",
             "notes.txt": "is not a WAV file",
-            "rejected/20260101T101112-1.wav": "was not verified",
         }
 
     def test_without_recordings_are_refused_in_a_sentence(

@@ -23,8 +23,6 @@ NO_COMMAND = frozenset(
     )
 )
 """Names of recordings, or of folders of them, in which there is no command."""
-REJECTED = "rejected"
-"""The folder of what was heard and not verified: nobody knows what was meant, so it is left out."""
 SUFFIXES = (".wav", ".wave")
 
 TAKE = "#"  # stands for a number that counts recordings: with a zero before it, or of many digits
@@ -112,8 +110,6 @@ class Labels:
             label = NOBODY_KNOWS if why else self.of(file, top)
             if why:
                 left_out.append((file.relative_to(top), why))
-            elif REJECTED in file.relative_to(top).parts[:-1]:
-                left_out.append((file.relative_to(top), "was not verified"))
             else:
                 found.append((file.relative_to(top), label))
         if not found:
