@@ -16,6 +16,7 @@ from tangy_tui.learning.lexicon import Alike, Lexicon, distinct_word
 from tangy_tui.learning.phrases import Phrase
 from tangy_tui.learning.pronouncing import can_look_up
 from tangy_tui.learning.speech.understanding import NO, YES, stops
+from tangy_tui.learning.words import words_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
     mistakes += [*_phrases(activity, phrasebook), *_reserved(activity, phrasebook)]
     mistakes += _fillers(activity, phrasebook)
     mistakes += _sounds(activity, phrasebook)
-    warnings = [*_stages(activity), *_unused(activity, phrasebook)]
+    warnings = [*_stages(activity), *_unused(activity, phrasebook), *_near(activity, phrasebook)]
     return Checked(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
 
 
@@ -120,7 +121,7 @@ def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             word = distinct_word(phrasebook, phrase.behaviour, phrase)
             such = f", such as {word!r}" if word else ""
             yield (
-                f"{activity.source}: behaviours[{phrase.behaviour}].phrases = {phrase.shown!r}: "
+                f"{activity.source}: {_place(activity, phrase)}: "
                 f"it {why}; ask for it with another word{such}."
             )
 
@@ -154,14 +155,35 @@ def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
             )
 
 
+def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that are easily taken for others, because just one phone is different."""
+    if can_look_up():
+        for alike in Lexicon(phrasebook).nearly_alike():
+            if alike.phrase.bare != alike.other.bare:
+                yield _collision(activity, phrasebook, alike, "one sound alone tells it from")
+
+
 def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: str) -> str:
+    """Say which two phrases collide, as they are written and where, and what would help."""
     phrase, other = alike.phrase, alike.other
     word = distinct_word(phrasebook, phrase.behaviour, phrase)
     such = f", such as {word!r}" if word else ""
     return (
-        f"{activity.source}: behaviours[{phrase.behaviour}].phrases = {phrase.shown!r}: {how} "
-        f"{other.shown!r} of {other.behaviour!r}; put another word into one of them{such}."
+        f"{activity.source}: {_place(activity, phrase)}: {how} {_place(activity, other)}; "
+        f"put another word into one of them{such}."
     )
+
+
+def _place(activity: Activity, phrase: Phrase) -> str:
+    """Return where a phrase stands in the file, and how it is written there."""
+    behaviour = activity.behaviours[phrase.behaviour]
+    where = f"behaviours[{behaviour.name}]"
+    for text in behaviour.phrases:
+        if words_of(text) == phrase.words:
+            return f"{where}.phrases = {text!r}"
+    if words_of(behaviour.question) == phrase.words:
+        return f"{where}.question = {behaviour.question!r}"
+    return f"{where}.phrases, with a person = {phrase.said!r}"
 
 
 def _unused(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:

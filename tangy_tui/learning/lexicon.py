@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 
@@ -14,7 +14,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.phrases import Phrase
 from tangy_tui.learning.pronouncing import pronounce, suggest
-from tangy_tui.learning.words import clean, spoken, words_of
+from tangy_tui.learning.words import Words, clean, spoken, words_of
 
 MOST_WAYS = 64  # to say one phrase; those of most words count first
 
@@ -39,7 +39,7 @@ class Said:
 
 @dataclass(frozen=True, slots=True)
 class Alike:
-    """A phrase that sounds like another of another meaning, which came first."""
+    """A phrase that sounds (nearly) like another of another meaning, which came first."""
 
     phrase: Phrase
     other: Phrase
@@ -83,6 +83,25 @@ class Lexicon:
         return tuple(
             dict.fromkeys(p.said for p in self._phrases if self._known(p) and p.said not in out)
         )
+
+    def nearly_alike(self) -> tuple[Alike, ...]:
+        """Return the phrases of one behaviour that one phone tells from those of another.
+
+        They can be heard, and are easily mistaken; it looks at every way to say each.
+        """
+        out = {one.phrase.said for one in self.alike}
+        first: dict[Words, list[Phrase]] = defaultdict(list)
+        found: dict[tuple[str, str], Alike] = {}
+        for phrase in self._phrases:
+            if phrase.said in out or not self._known(phrase):
+                continue
+            forms = {form for way in self._ways(phrase) for form in _one_less(way.split())}
+            for other in (other for form in forms for other in first[form]):
+                if other.behaviour != phrase.behaviour:
+                    found.setdefault((phrase.said, other.said), Alike(phrase, other))
+            for form in forms:
+                first[form].append(phrase)
+        return tuple(found.values())
 
     def left_out(self) -> dict[str, str]:
         """Return the phrases that cannot be heard, only typed, each with the reason in words."""
@@ -139,6 +158,14 @@ class Lexicon:
         """Yield the ways to say a phrase, as phones without a gap between words."""
         choices = [self.words[word].phones for word in phrase.said.split()]
         return (" ".join(way) for way in islice(product(*choices), MOST_WAYS))
+
+
+def _one_less(phones: Sequence[str]) -> Iterator[Words]:
+    """Yield what two phrases share that one phone more, or another one, tells apart."""
+    for place in range(len(phones)):
+        yield (*phones[:place], "", *phones[place + 1 :])  # any phone stands here
+    for place in range(len(phones) + 1):
+        yield (*phones[:place], "", *phones[place:])  # or none
 
 
 def _differ(other: Phrase | None, phrase: Phrase) -> bool:

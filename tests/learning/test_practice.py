@@ -187,7 +187,7 @@ class TestCounting:
     async def test_an_unsure_one_is_offered_or_wrong(
         self, book: Phrasebook, tmp_path: Path
     ) -> None:
-        unsure = "it was a joke for the group over there"
+        unsure = "a joke for the group"
         practice = await heard(
             tmp_path, book, {"joke.wav": unsure, "celebrate.wav": unsure, "none.wav": unsure}
         )

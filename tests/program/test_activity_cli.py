@@ -205,11 +205,24 @@ def test_a_word_without_pronunciation_is_refused_with_the_line_to_add(tmp_path: 
     [
         (
             (("tell a joke", "raise it"), ("remove markers", "raze it")),
-            ("behaviours[remove markers].phrases = 'raze it'", "sounds like 'raise it' of 'joke'"),
+            (
+                "behaviours[remove markers].phrases = 'raze it': it sounds like ",
+                "behaviours[joke].phrases = 'raise it'; ",
+            ),
+        ),
+        (
+            (("tell a joke", "raise two"), ("remove markers", "raise too")),
+            (
+                "behaviours[remove markers].phrases = 'raise too': it sounds like ",
+                "behaviours[joke].phrases = 'raise two'; ",
+            ),
         ),
         (
             (("tell a joke", "do it now"), ("remove markers", "do it then")),
-            ("behaviours[remove markers].phrases = 'do it then'", "small words", "'do it now'"),
+            (
+                "behaviours[remove markers].phrases = 'do it then': only small words tell it from ",
+                "behaviours[joke].phrases = 'do it now'; ",
+            ),
         ),
     ],
 )
@@ -242,6 +255,34 @@ def test_a_phrase_that_stops_the_robot_or_answers_it_is_refused_with_another_wor
     assert f"behaviours[joke].phrases = '{phrase}': it {why}; " in found
     word = found.partition("another word, such as ")[2].strip("'.")
     assert not mistakes(tmp_path, with_phrases(("tell a joke", f"{word} {phrase}")))
+
+
+def test_a_phrase_that_sounds_like_one_with_a_person_says_which(tmp_path: Path) -> None:
+    (found,) = mistakes(tmp_path, with_phrases(("tell a joke", "go two user won")))
+    assert ".phrases, with a person = 'go to user one': it sounds like " in found
+    assert "behaviours[joke].phrases = 'go two user won'; " in found
+
+
+@pytest.mark.parametrize("near", ["lays it", "raises it", "aze it", "raise at"])
+def test_phrases_that_one_sound_tells_apart_are_a_warning_with_a_word_that_helps(
+    tmp_path: Path, near: str
+) -> None:
+    phrases = ("tell a joke", "raise it"), ("remove markers", near)
+    table = '[pronunciations]\naze = "EY Z"\nraises = "R EY Z IY"\nlays = "L EY Z"\n'
+    text = with_phrases(*phrases).replace("[pronunciations]\n", table, 1)
+    (found,) = [line for line in warnings(tmp_path, text) if "one sound" in line]
+    assert f"behaviours[remove markers].phrases = '{near}': one sound alone tells it" in found
+    assert "behaviours[joke].phrases = 'raise it'; " in found
+    helps = found.partition("put another word into one of them, such as ")[2].strip("'.")
+    better = text.replace(f'"{near}"', f'"{near} {helps}"')
+    assert not any("one sound" in line for line in warnings(tmp_path, better))
+
+
+def test_phrases_of_one_behaviour_or_two_sounds_apart_are_no_warning(tmp_path: Path) -> None:
+    same = with_phrases(("tell a joke", "raise it"), ("tell a joke", "lays it"))
+    assert not warnings(tmp_path, same)
+    two = with_phrases(("tell a joke", "raise it"), ("remove markers", "lace it"))
+    assert not warnings(tmp_path, two)
 
 
 def test_an_activity_with_such_phrases_is_refused_and_loads(tangy: Tangy, tmp_path: Path) -> None:
