@@ -73,12 +73,17 @@ def accept_suggested(person: Person) -> str:
     return said.phones
 
 
-def naming_lines(person: Person) -> list[str]:
-    """Say of a new name, where it cannot be heard yet, what can be done about it."""
+def naming_lines(person: Person, options: str = "") -> list[str]:
+    """Say of a new name, where it cannot be heard yet, what can be done about it.
+
+    Args:
+        person: who has the name.
+        options: which the commands need, with a space before them.
+    """
     said = how_said(person)
     if said.source not in ("suggested", ""):
         return []
-    verb = f"tangy people pronounce {person.id}"
+    verb = f"tangy people pronounce {person.id}{options}"
     if not said.phones:
         return [said.sentence, f'Say how:     {verb} "R OW Z AH"']
     return [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -48,6 +49,12 @@ def full_screen() -> bool:
 def say_notices(notices: list[str]) -> None:
     for notice in notices:
         print(f"tangy: {plain(notice)}", file=sys.stderr)
+
+
+def as_given(data: Path | None, users: int = 4) -> str:
+    """Return the options that a command to copy needs, so that it means the same data folder."""
+    folder = "" if data is None else f" --data {shlex.quote(str(data))}"
+    return folder + ("" if users == 4 else f" --users {users}")
 
 
 def print_line(line: str) -> None:

@@ -17,6 +17,7 @@ from tangy_tui.verbs.common import (
     Json,
     Seed,
     Users,
+    as_given,
     open_house,
     print_json,
 )
@@ -257,7 +258,7 @@ def people_rename(
             print_json({"id": named.id, "name": name, **how_said(named).to_json()})
         else:
             print(f"{named.id} is now called {plain(name)}.")
-            for line in naming_lines(named):
+            for line in naming_lines(named, as_given(data, users)):
                 print(plain(line))
 
 

@@ -9,7 +9,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, Users, open_house, print_json
+from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, open_house, print_json
 from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:
@@ -56,7 +56,8 @@ def people_pronounce(
         else:
             print(plain(said.sentence))
             if said.source == "suggested":
-                print(plain(f"If that is right: tangy people pronounce {found.id} --accept"))
+                accept = f"tangy people pronounce {found.id}{as_given(data, users)} --accept"
+                print(plain(f"If that is right: {accept}"))
     if hear:
         _hear(said.phones, found, sink)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -55,18 +56,31 @@ class TestNames:
         shown = tangy("people", "rename", "user3", "Xanthippus", "--data", data).stdout
         assert "user3 is now called Xanthippus." in shown
         assert "can be typed, but not yet heard" in shown
-        assert "tangy people pronounce user3 --accept" in shown
+        accept = f"tangy people pronounce user3 --data {data} --accept"
+        assert accept in shown
+        assert shown.count(f"tangy people pronounce user3 --data {data} ") == 3
         asked = ("people", "pronounce", "user3")
         suggested = json.loads(tangy(*asked, "--json", "--data", data).stdout)
         assert (suggested["source"], suggested["heard"]) == ("suggested", False)
         assert tangy(*asked, "--hear", "--data", data).returncode == 0
         assert spoken == [(suggested["pronunciation"], VoicePreference())]
-        taken = json.loads(tangy(*asked, "--accept", "--json", "--data", data).stdout)
+        assert accept in tangy(*asked, "--data", data).stdout
+        taken = json.loads(tangy(*accept.split()[1:], "--json").stdout)
         assert taken["pronunciation"] == suggested["pronunciation"]
         assert (taken["source"], taken["heard"]) == ("person", True)
         changed = tangy(*asked, "z AE1 n", "--data", data)
         assert changed.stdout == "Xanthippus is said Z AE N.\n"
         assert tangy(*asked, "--forget", "--json", "--data", data).stdout.count("suggested") == 1
+
+    def test_what_to_type_next_has_the_options_that_were_given(
+        self, tangy: Tangy, tmp_path: Path
+    ) -> None:
+        folder = tmp_path / "two words"
+        rename = ("people", "rename", "user6", "Xanthippus", "--users", "6", "--data", folder)
+        shown = tangy(*rename).stdout
+        (accept,) = [line for line in shown.splitlines() if line.endswith("--accept")]
+        _, *arguments = shlex.split(accept.partition(":")[2])
+        assert json.loads(tangy(*arguments, "--json").stdout)["source"] == "person"
 
     @pytest.mark.parametrize(
         ("arguments", "told"),
