@@ -86,8 +86,9 @@ def check_name(text: str, name: str) -> str:
     words = words_of(clean(name))
     given = phones.count(",") + 1
     if given != len(words):
+        has = "1 word" if len(words) == 1 else f"{len(words)} words"
         raise ProfileError(
-            f"{' '.join(words)!r} has {len(words)} words, and these are phones of {given}: "
+            f"{' '.join(words)!r} has {has}, and these are phones of {given}: "
             "put a comma between words."
         )
     return phones

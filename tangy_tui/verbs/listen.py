@@ -148,12 +148,15 @@ def _progress() -> Iterator[Callable[[int, int], None]]:
 
 def _forget(house: House, as_json: bool) -> None:
     from tangy_tui.learning.speech.recordings import FOLDER, forget_recordings
+    from tangy_tui.wording import counted
 
     count, left = forget_recordings(house.store)
     if as_json:
         print_json({"deleted": count, "left": left})
         return
-    print(f"{count} recordings deleted; nothing more is recorded until somebody agrees again.")
+    deleted = f"{counted(count, 'recording')} deleted"
+    print(f"{deleted}; nothing more is recorded until somebody agrees again.")
     if left:
         there = plain(str(house.store.folder / FOLDER))
-        print(f"{left} files that are none of its recordings are left in {there}.")
+        files = "1 other file is" if left == 1 else f"{left} other files are"
+        print(f"{files} left in {there}.")

@@ -103,11 +103,13 @@ def say(
 
 def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
     """Empty the cache of spoken lines, and print how many there were."""
+    from tangy_tui.wording import counted
+
     count = synthesiser.clear()
     if as_json:
         print_json({"deleted": count})
         return
-    print(f"{count} spoken {'line' if count == 1 else 'lines'} deleted.")
+    print(f"{counted(count, 'spoken line')} deleted.")
 
 
 def _list(synthesiser: Synthesiser, as_json: bool) -> None:

@@ -219,7 +219,7 @@ class TestCounting:
         practice = await heard(tmp_path, book, {"noise.wav": ""})
         document = practice.document()
         assert (document["accuracy"], document["intents"]) == (None, {})
-        assert practice_lines(practice)
+        assert practice_lines(practice)[0] == "1 recording: 0 of a command, 1 of none."
 
 
 class TestReport:

@@ -76,6 +76,8 @@ class TestPhones:
         assert check_name("r ow z ah, l iy", "Rosa Lee") == "R OW Z AH, L IY"
         with pytest.raises(ProfileError, match="has 2 words"):
             check_name("R OW Z AH", "Rosa Lee")
+        with pytest.raises(ProfileError, match="has 1 word, and these are phones of 2"):
+            check_name("R OW Z AH, L IY", "Rosa")
 
     @given(phones)
     def test_espeak_is_given_one_stress_and_every_phone(self, said: list[str]) -> None:

@@ -84,6 +84,30 @@ def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Pa
         assert not consented(store, "rosa")
 
 
+@pytest.mark.parametrize(
+    ("recordings", "others", "told"),
+    [
+        (0, 0, ["0 recordings deleted;"]),
+        (1, 1, ["1 recording deleted;", "1 other file is left in "]),
+        (2, 2, ["2 recordings deleted;", "2 other files are left in "]),
+    ],
+)
+def test_what_is_deleted_and_left_is_counted_in_words(
+    recordings: int, others: int, told: list[str], tangy: Tangy, tmp_path: Path
+) -> None:
+    folder = tmp_path / "recordings" / "joke"
+    folder.mkdir(parents=True)
+    for number in range(recordings):
+        (folder / f"20260102T120000-{number}.wav").write_bytes(b"")
+    for number in range(others):
+        (folder / f"mine-{number}.txt").write_bytes(b"")
+    done = tangy("listen", "--forget-recordings", "--data", tmp_path)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == len(told)
+    assert all(line.startswith(words) for line, words in zip(lines, told, strict=True))
+
+
 class TestCheckingAMicrophone:
     def test_a_source_that_is_none_is_refused(self, tangy: Tangy, tmp_path: Path) -> None:
         done = tangy("mic", "check", "--mic", "nowhere.wav", "--data", tmp_path / "data")

@@ -17,7 +17,8 @@ WIDTH = 80
 def practice_lines(practice: Practice) -> list[str]:
     """Put practice into lines: each intent, the totals, the times, and what was taken for what."""
     commands, others = len(practice.commands), len(practice.others)
-    lines = [f"{commands + others} recordings: {commands} of a command, {others} of none.", ""]
+    recordings = "1 recording" if commands + others == 1 else f"{commands + others} recordings"
+    lines = [f"{recordings}: {commands} of a command, {others} of none.", ""]
     if commands:
         lines += [*_table(practice), ""]
     lines += [*_totals(practice), *_times(practice), "", *_matrix(practice)]
