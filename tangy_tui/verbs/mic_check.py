@@ -14,7 +14,12 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, open_house, print_j
 if TYPE_CHECKING:
     from tangy_hw.sound.source import Source
     from tangy_tui.house import House
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.lexicon import Lexicon
+    from tangy_tui.learning.speech.calibration import Asked
     from tangy_tui.learning.speech.checking import Checked
+
+ALONE = 3.0  # s without any sound, after which a check is given up where nobody could help
 
 
 def check(
@@ -25,6 +30,9 @@ def check(
     forget: Annotated[
         bool, typer.Option("--forget", help="Listen as usual again with this microphone.")
     ] = False,
+    listed: Annotated[
+        bool, typer.Option("--list", help="Print what is to be said, and check nothing.")
+    ] = False,
     activity: ActivityName = "bingo",
     data: Data = None,
     as_json: Json = False,
@@ -32,13 +40,20 @@ def check(
     """Check a microphone in a minute, and listen with it as suits it and the room from then on.
 
     Be quiet for 3 seconds, then say what is shown: six commands, three other sentences. Nothing
-    of it is kept but the settings. A WAV is taken for what you say, in the same order.
+    of it is kept but the settings. A WAV is taken for what you say: record 3 seconds of quiet,
+    then what --list prints, in that order, with a second of quiet after each.
+
+    The exit status is 1 if too little was understood, so that nothing is stored, and 2 if the
+    microphone or the file gives no voice.
     """
     from tangy_hw.sound.sources import open_source
     from tangy_tui.learning.speech.calibration import forget as forget_check
     from tangy_tui.learning.speech.calibration import keep
 
-    with open_house(data, activity, 4) as house:
+    with open_house(data, activity, 4, write=not listed) as house:
+        if listed:
+            _list(house, as_json)
+            return
         if forget:
             dropped = forget_check(house.store, mic)
             if as_json:
@@ -53,15 +68,39 @@ def check(
             keep(house.store, mic, checked.chosen)
         if as_json:
             print_json({"source": mic, "stored": stored, **checked.document()})
-            return
-        for line in _lines(checked, mic):
-            print(plain(line))
+        else:
+            for line in _lines(checked, mic):
+                print(plain(line))
+        if not stored:
+            print(f"tangy: {checked.reason}", file=sys.stderr)
+            raise typer.Exit(1)
+
+
+def _list(house: House, as_json: bool) -> None:
+    """Print what is to be said."""
+    from tangy_tui.learning.speech.checking import numbered
+
+    _, _, asked = _asked(house)
+    if as_json:
+        print_json([{"say": one.text, "command": one.meant is not None} for one in asked])
+        return
+    for line in numbered(asked):
+        print(plain(line))
+
+
+def _asked(house: House) -> tuple[Phrasebook, Lexicon, list[Asked]]:
+    """Return what can be said, what of it can be heard, and what is to be said."""
+    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.learning.lexicon import Lexicon
+    from tangy_tui.learning.speech.checking import to_say
+
+    phrasebook = Phrasebook(house.activity, house.people)
+    lexicon = Lexicon(phrasebook, suggest=lambda word: "")
+    return phrasebook, lexicon, to_say(phrasebook, lexicon)
 
 
 async def _run(house: House, source: Source, as_json: bool) -> Checked:
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.lexicon import Lexicon
-    from tangy_tui.learning.speech.checking import MicrophoneCheck, to_say
+    from tangy_tui.learning.speech.checking import PATIENCE, MicrophoneCheck
     from tangy_tui.learning.speech.recogniser import Recogniser
 
     def on_stderr(sentence: str) -> None:
@@ -70,14 +109,20 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
     def on_stdout(sentence: str) -> None:
         print_line(plain(sentence))
 
-    phrasebook = Phrasebook(house.activity, house.people)
-    lexicon = Lexicon(phrasebook, suggest=lambda word: "")
+    phrasebook, lexicon, asked = _asked(house)
     tell = on_stderr if as_json else on_stdout
+    somebody = sys.stdin is not None and sys.stdin.isatty()
     recogniser = Recogniser()
     try:
-        asked = to_say(phrasebook, lexicon)
         return await MicrophoneCheck(
-            source, phrasebook, recogniser, asked, tell, lexicon.heard()
+            source,
+            phrasebook,
+            recogniser,
+            asked,
+            tell,
+            lexicon.heard(),
+            # who could plug in a microphone, or begin to send from a laptop, is waited for
+            patience=PATIENCE if somebody or source.name.startswith("socket") else ALONE,
         ).run()
     finally:
         await recogniser.close()
@@ -85,8 +130,8 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
 
 def _lines(checked: Checked, mic: str) -> list[str]:
     """Say what came of it."""
-    from tangy_tui.learning.speech.checking import CLEAR, FAIR
     from tangy_tui.learning.speech.evidence import USUAL
+    from tangy_tui.learning.speech.loudness import CLEAR, FAIR
 
     figures, above = checked.chosen.figures, checked.voice - checked.room
     how = "clear" if above >= CLEAR else "enough" if above >= FAIR else "too little"
@@ -104,11 +149,9 @@ def _lines(checked: Checked, mic: str) -> list[str]:
     )
     lines.append(f"{result}.")
     usual = checked.chosen.usual
-    if not checked.parted:
-        lines.append("That is not good enough: nothing was stored.")
-    elif checked.chosen.settings == USUAL:
+    if checked.parted and checked.chosen.settings == USUAL:
         lines.append(f"The usual settings suit this microphone; stored for {mic}.")
-    else:
+    elif checked.parted:
         lines.append(
             f"With the usual settings: {usual.understood} understood, {usual.offered} offered, "
             f"{usual.taken} taken for one."

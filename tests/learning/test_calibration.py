@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_hw.sound.meter import Meter
 from tangy_hw.sound.source import Chunks, Recording, Source
 from tangy_hw.sound.wav import RATE, SoundError
 from tangy_profiles.activity import Activity
@@ -59,7 +60,8 @@ class TestChoosing:
         assert chosen.figures.perfect
 
     def test_a_shy_voice_is_met_half_way(self) -> None:
-        chosen = choose(everywhere(scores([0.5, 0.4, 0.6, 0.3, 0.5, 0.4], [-6, -6, -6])))
+        shy = [SURELY - short for short in (0.3, 0.4, 0.2, 0.5, 0.3, 0.4)]
+        chosen = choose(everywhere(scores(shy, [-6, -6, -6])))
         assert chosen.usual == Figures(6, 0, 6, 3, 0)
         assert chosen.settings.shift < 0
         assert chosen.figures == Figures(6, 6, 0, 3, 0)
@@ -210,6 +212,32 @@ class Silent(Source):
         yield b""
 
 
+class Muted(Microphone):
+    """A microphone that sends silence, and is switched on when somebody is told of it."""
+
+    def __init__(self, said: list[int | None], *, mended: bool) -> None:
+        super().__init__(said)
+        self.mended = mended
+        self.now = 0.0
+        self.switched = asyncio.Event()
+
+    def told(self, sentence: str) -> None:
+        super().told(sentence)
+        if sentence.startswith("It goes on as soon as"):
+            self.switched.set()
+
+    async def _sound(self) -> Chunks:
+        self.now = 3.0
+        yield bytes(2 * 3 * RATE)
+        await self.switched.wait()
+        if not self.mended:
+            self.now = 60.0
+            await asyncio.Event().wait()
+        yield b"\7\0\0\0" * RATE * 3
+        async for chunk in super()._sound():
+            yield chunk
+
+
 class Broken(Microphone):
     """A microphone that is pulled out after some phrases."""
 
@@ -289,10 +317,53 @@ class TestChecking:
         asked: list[Asked],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
-        monkeypatch.setattr(checking, "GIVE_UP_SECONDS", 0.0)
         monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
-        with pytest.raises(SoundError, match="nothing has come"):
-            await self.check(Silent(), activity, people, asked)
+        with pytest.raises(SoundError, match=r"nothing was heard for 0 s.* plugged in"):
+            await self.check(Silent(), activity, people, asked, patience=0.0)
+
+    async def test_a_muted_microphone_is_waited_for_and_the_room_is_heard_again(
+        self,
+        activity: Activity,
+        people: tuple[Person, ...],
+        asked: list[Asked],
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> None:
+        said: list[int | None] = [*range(1, len(asked) + 1)]
+        monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
+        muted, told = Muted(said, mended=True), list[str]()
+        monkeypatch.setattr(checking, "Meter", lambda: Meter(lambda: muted.now))
+        assert (await self.check(muted, activity, people, asked, told)).parted
+        assert told.count("Please be quiet for 3 seconds.") == 2
+        assert sum(line.startswith("It goes on as soon as") for line in told) == 1
+        muted = Muted(said, mended=False)
+        with pytest.raises(SoundError, match="nothing was heard for 50 s, so nothing was changed"):
+            await self.check(muted, activity, people, asked, patience=50.0)
+
+    async def test_a_recording_is_told_what_it_should_hold(
+        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+    ) -> None:
+        told: list[str] = []
+        checked = await self.check(Recording("a.wav", b"\1\0"), activity, people, asked, told)
+        assert told[0].startswith("a.wav is taken to hold these, with a second of quiet between")
+        assert told[1 : len(asked) + 1] == [f"{n}. {a.text}" for n, a in enumerate(asked, 1)]
+        assert checked.reason == "Nothing was stored: only 1 of 6 commands was understood."
+
+    @pytest.mark.parametrize(
+        ("figures", "why"),
+        [
+            (Figures(6, 5, 0, 3, 1), ""),
+            (Figures(6, 0, 0, 3, 0), "none of 6 commands were understood"),
+            (Figures(6, 2, 2, 3, 0), "only 4 of 6 commands were understood"),
+            (Figures(6, 6, 0, 0, 0), "none of the other sentences was heard"),
+            (Figures(6, 6, 0, 3, 2), "2 of 3 other sentences were taken for a command"),
+            (Figures(6, 6, 0, 1, 1), "1 of 1 other sentences was taken for a command"),
+        ],
+    )
+    def test_why_nothing_is_stored_is_a_sentence(self, figures: Figures, why: str) -> None:
+        chosen = Chosen(USUAL, figures, figures)
+        checked = Checked(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
+        assert checked.parted is (not why)
+        assert checked.reason == (f"Nothing was stored: {why}." if why else "")
 
     async def test_a_microphone_that_breaks_says_why(
         self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
@@ -307,6 +378,7 @@ class TestChecking:
         people: tuple[Person, ...],
         asked: list[Asked],
         told: list[str] | None = None,
+        patience: float = checking.PATIENCE,
     ) -> Checked:
         def tell(sentence: str) -> None:
             if told is not None:
@@ -317,7 +389,7 @@ class TestChecking:
         book = Phrasebook(activity, people)
         hears = Hears([a.text for a in asked])
         async with asyncio.timeout(20):
-            return await MicrophoneCheck(source, book, hears, asked, tell).run()
+            return await MicrophoneCheck(source, book, hears, asked, tell, patience=patience).run()
 
 
 def test_reading_makes_no_data_folder(tmp_path: Path) -> None:

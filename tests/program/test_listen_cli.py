@@ -11,6 +11,9 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_tui.learning.speech import listening
+from tangy_tui.learning.speech.calibration import Chosen, Figures
+from tangy_tui.learning.speech.checking import Checked, MicrophoneCheck
+from tangy_tui.learning.speech.evidence import Settings
 from tangy_tui.learning.speech.recordings import consent, consented
 from tests.hw.sounds import pcm, tone, wav
 
@@ -113,6 +116,47 @@ class TestCheckingAMicrophone:
         done = tangy("mic", "check", "--mic", "nowhere.wav", "--data", tmp_path / "data")
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr == "tangy: nowhere.wav: there is no such file.\n"
+
+    def test_what_is_to_be_said_is_listed_for_a_recording(
+        self, tangy: Tangy, tmp_path: Path
+    ) -> None:
+        folder = tmp_path / "data"
+        lines = tangy("mic", "check", "--list", "--data", folder).stdout.splitlines()
+        said = json.loads(tangy("mic", "check", "--list", "--json", "--data", folder).stdout)
+        assert lines == [f"{number}. {one['say']}" for number, one in enumerate(said, 1)]
+        assert [one["command"] for one in said] == [True] * 6 + [False] * 3
+        assert not folder.exists()
+        assert "what --list prints" in " ".join(tangy("mic", "check", "--help").stdout.split())
+
+    @pytest.mark.parametrize(("understood", "status"), [(6, 0), (2, 1)])
+    def test_a_check_that_fails_stores_nothing_and_the_status_says_so(
+        self,
+        understood: int,
+        status: int,
+        tangy: Tangy,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> None:
+        figures = Figures(6, understood, 0, 3, 0)
+        chosen = Chosen(Settings(garbage=0.9), figures, figures)
+
+        async def run(check: MicrophoneCheck) -> Checked:
+            return Checked(-60.0, -30.0, (), chosen, figures.parted, ())
+
+        monkeypatch.setattr(MicrophoneCheck, "run", run)
+        (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))
+        check = ("mic", "check", "--mic", tmp_path / "a.wav", "--data", tmp_path / "data")
+        done = tangy(*check)
+        assert done.returncode == status
+        assert done.stderr == (
+            "tangy: Nothing was stored: only 2 of 6 commands were understood.\n" if status else ""
+        )
+        assert ("stored for" in done.stdout) is not bool(status)
+        told = tangy(*check, "--json")
+        assert told.returncode == status
+        assert json.loads(told.stdout)["stored"] is not bool(status)
+        with Store.open(tmp_path / "data", write=False) as store:
+            assert any(store.events("microphone checked")) is not bool(status)
 
     def test_forgetting_says_whether_there_was_anything(self, tangy: Tangy, tmp_path: Path) -> None:
         folder = tmp_path / "data"

@@ -58,10 +58,15 @@ class Figures:
     """Of the other sentences: those that were surely taken for a command, or offered as one."""
 
     @property
-    def parted(self) -> bool:
-        """Whether that is good enough to work with: at most one command in six is lost."""
+    def kept(self) -> bool:
+        """Whether at most one command in six is lost."""
         lost = self.commands - self.understood - self.offered
-        return self.commands > 0 and 6 * lost <= self.commands and 3 * self.taken <= self.others
+        return self.commands > 0 and 6 * lost <= self.commands
+
+    @property
+    def parted(self) -> bool:
+        """Whether that is good enough to work with."""
+        return self.kept and 3 * self.taken <= self.others
 
     @property
     def gain(self) -> float:

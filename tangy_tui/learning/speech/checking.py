@@ -6,12 +6,11 @@ Nothing of what is recorded here is kept; what comes of it are figures and setti
 from __future__ import annotations
 
 import asyncio
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS, Meter
+from tangy_hw.sound.meter import NO_SOUND_SECONDS, Meter
 from tangy_hw.sound.source import Source
 from tangy_hw.sound.utterances import split
 from tangy_hw.sound.wav import SoundError
@@ -28,6 +27,7 @@ from tangy_tui.learning.speech.calibration import (
 )
 from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
 from tangy_tui.learning.speech.labels import Label
+from tangy_tui.learning.speech.loudness import LOUD, advice, loudness
 from tangy_tui.learning.speech.understanding import stops, wanted
 
 COMMANDS = 6
@@ -43,12 +43,9 @@ OTHERS = 3
 QUIET_SECONDS = 3.0  # of the room alone
 WAIT_SECONDS = 6.0  # for a phrase to begin
 LONGEST_SECONDS = 6.0  # of a phrase
-GIVE_UP_SECONDS = 30.0  # when nothing at all comes
+PATIENCE = 30.0  # s without any sound, after which a check is given up
 LOOK_SECONDS = 0.5  # between two looks at the meter
-TIMES = 2  # that a phrase is asked for
-FRAME = 320  # samples, 20 ms
-LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be
-CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
+TIMES = 2  # that a phrase is asked for, or the quiet of the room
 
 Tell = Callable[[str], None]
 
@@ -89,6 +86,24 @@ class Checked:
     parted: bool
     advice: tuple[str, ...]
 
+    @property
+    def reason(self) -> str:
+        """Say in one sentence why it is not good enough to be kept; "" if it is."""
+        figures = self.chosen.figures
+        known = figures.understood + figures.offered
+        if self.parted:
+            return ""
+        if not figures.kept:
+            few = f"only {known}" if known else "none"
+            were = "was" if known == 1 else "were"
+            why = f"{few} of {figures.commands} commands {were} understood"
+        elif not figures.others:
+            why = "none of the other sentences was heard"
+        else:
+            were = "was" if figures.taken == 1 else "were"
+            why = f"{figures.taken} of {figures.others} other sentences {were} taken for a command"
+        return f"Nothing was stored: {why}."
+
     def document(self) -> dict[str, Any]:
         """Return it as one JSON document."""
         return {
@@ -102,6 +117,7 @@ class Checked:
             "figures": asdict(self.chosen.figures),
             "usual": asdict(self.chosen.usual),
             "parted": self.parted,
+            "reason": self.reason or None,
             "advice": list(self.advice),
         }
 
@@ -130,6 +146,11 @@ def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[Asked]:
     return [*chosen, *(Asked(text, None) for text in others[:OTHERS])]
 
 
+def numbered(asked: Sequence[Asked]) -> list[str]:
+    """Return what is to be said, a line each."""
+    return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
+
+
 class MicrophoneCheck:
     """One check of one source. A recording is taken for the answers, one after the other."""
 
@@ -141,6 +162,7 @@ class MicrophoneCheck:
         asked: Sequence[Asked],
         tell: Tell,
         phrases: Sequence[str] | None = None,
+        patience: float = PATIENCE,
     ) -> None:
         """Make a check.
 
@@ -151,6 +173,7 @@ class MicrophoneCheck:
             asked: what is to be said, from `to_say`.
             tell: says what to do, and what is wrong.
             phrases: those that are listened for, if not all that can be said.
+            patience: seconds without any sound, after which it is given up.
         """
         self._source = source
         self._phrasebook = phrasebook
@@ -166,6 +189,8 @@ class MicrophoneCheck:
         self._room = bytearray()
         self._quiet = asyncio.Event()
         self._wrong = ""
+        self._patience = patience
+        self._offered = False
 
     async def run(self) -> Checked:
         """Listen, and find the settings. The source is closed in the end.
@@ -187,6 +212,9 @@ class MicrophoneCheck:
         return await self._find(room, sounds)
 
     async def _recorded(self) -> tuple[float, list[bytes]]:
+        self._tell(f"{self._source.name} is taken to hold these, with a second of quiet between:")
+        for line in numbered(self._asked):
+            self._tell(line)
         pcm = b"".join([chunk async for chunk in self._source])
         found = await self._recogniser.pieces(pcm)
         if len(found) < len(self._asked):
@@ -200,10 +228,7 @@ class MicrophoneCheck:
         pump = asyncio.create_task(self._pump())
         watch = asyncio.create_task(self._watch())
         try:
-            self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
-            await self._quiet.wait()
-            await self._still_there(pump)
-            room = loudness(bytes(self._room), LOUD)
+            room = await self._room_alone(pump)
             sounds: list[bytes] = []
             if not self._ended:
                 count = len(self._asked)
@@ -217,13 +242,36 @@ class MicrophoneCheck:
                 task.cancel()
             await asyncio.wait({pump, watch})
 
+    async def _room_alone(self, pump: asyncio.Task[None]) -> float:
+        """Return how loud the room is; where nothing is heard of it, it has a second chance.
+
+        A microphone that is muted sends silence; so does one that lets only voices through.
+        """
+        for _ in range(TIMES):
+            self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
+            self._room.clear()
+            self._quiet.clear()
+            await self._quiet.wait()
+            await self._still_there(pump)
+            if self._ended or not self._silent(NO_SOUND_SECONDS):
+                break
+            while not self._ended and self._silent(NO_SOUND_SECONDS):  # noqa: ASYNC110 - by the clock
+                await asyncio.sleep(LOOK_SECONDS)
+            await self._still_there(pump)
+        return loudness(bytes(self._room), LOUD)
+
+    def _silent(self, seconds: float) -> bool:
+        return self._meter.seconds_since_sound >= seconds
+
     async def _still_there(self, pump: asyncio.Task[None]) -> None:
         """Raise what has ended the sound, if that was no ordinary end."""
         if pump.done():
             await pump
         elif self._ended:
-            seconds = f"{GIVE_UP_SECONDS:g} s"
-            raise SoundError(f"{self._source.name}: nothing has come for {seconds}.")
+            raise SoundError(
+                f"{self._source.name}: nothing was heard for {self._patience:g} s, so nothing was "
+                "changed: is the microphone plugged in? It may be muted."
+            )
 
     async def _say(self, number: int, asked: Asked) -> bytes:
         """Ask for one text, twice if nothing is heard; return its sound."""
@@ -279,8 +327,11 @@ class MicrophoneCheck:
             kind = words.partition(":")[0].rstrip("0123456789 s")
             if words and kind != self._wrong:
                 self._tell(words)
+                if not self._offered and self._silent(NO_SOUND_SECONDS):
+                    self._offered = True
+                    self._tell("It goes on as soon as something is heard; Ctrl+C ends it.")
             self._wrong = kind
-            if self._meter.seconds_since_data >= GIVE_UP_SECONDS:
+            if self._silent(self._patience):
                 self._end()
 
     async def _find(self, room: float, sounds: Sequence[bytes]) -> Checked:
@@ -317,39 +368,3 @@ class MicrophoneCheck:
 
     async def _decoded(self, pcm: bytes) -> Evidence:
         return await self._recogniser.decode(pcm) if pcm else Evidence()
-
-
-def loudness(pcm: bytes, share: float) -> float:
-    """Return how loud a sound is in dB below full scale: a share of it is less loud than that."""
-    import numpy as np
-
-    frames = np.frombuffer(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)], "<i2").reshape(-1, FRAME)
-    if not len(frames):
-        return -100.0
-    level = float(np.quantile(frames.astype(np.float64).std(axis=1), share))
-    return 20 * math.log10(max(level, 0.33) / 32_768)
-
-
-def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
-    """Say what to change, a sentence each: nothing if the sound is as it should be."""
-    said = []
-    if sum(_cut_off(pcm) for pcm in sounds) > 1:
-        said.append("Some of it was too loud: move a little away, or turn the microphone down.")
-    elif voice < 20 * math.log10(QUIET / 32_768):
-        said.append("Your voice comes in very quietly: move closer, or turn the microphone up.")
-    if voice - room < FAIR:
-        said.append("The room is nearly as loud as your voice: a headset helps most.")
-    elif voice - room < CLEAR and not perfect:
-        said.append("The room is rather loud: move closer to the microphone, or use a headset.")
-    if sum(not pcm for pcm in sounds) > 1:
-        said.append("Some phrases were not heard: speak soon after they are shown, then pause.")
-    if not said and not perfect:
-        said.append("The sound is good; say each phrase as it stands there, without a pause in it.")
-    return said
-
-
-def _cut_off(pcm: bytes) -> bool:
-    import numpy as np
-
-    samples = np.frombuffer(pcm, "<i2").astype(np.int32)
-    return int((abs(samples) >= RAILS).sum()) >= CLIPPED

@@ -1,0 +1,48 @@
+"""How loud a voice is above its room, and what to change about it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS
+
+FRAME = 320  # samples, 20 ms
+LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be
+CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
+
+
+def loudness(pcm: bytes, share: float) -> float:
+    """Return how loud a sound is in dB below full scale: a share of it is less loud than that."""
+    import numpy as np
+
+    frames = np.frombuffer(pcm[: len(pcm) // (2 * FRAME) * (2 * FRAME)], "<i2").reshape(-1, FRAME)
+    if not len(frames):
+        return -100.0
+    level = float(np.quantile(frames.astype(np.float64).std(axis=1), share))
+    return 20 * math.log10(max(level, 0.33) / 32_768)
+
+
+def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
+    """Say what to change, a sentence each: nothing if the sound is as it should be."""
+    said = []
+    if sum(_cut_off(pcm) for pcm in sounds) > 1:
+        said.append("Some of it was too loud: move a little away, or turn the microphone down.")
+    elif voice < 20 * math.log10(QUIET / 32_768):
+        said.append("Your voice comes in very quietly: move closer, or turn the microphone up.")
+    if voice - room < FAIR:
+        said.append("The room is nearly as loud as your voice: a headset helps most.")
+    elif voice - room < CLEAR and not perfect:
+        said.append("The room is rather loud: move closer to the microphone, or use a headset.")
+    if sum(not pcm for pcm in sounds) > 1:
+        said.append("Some phrases were not heard: speak soon after they are shown, then pause.")
+    if not said and not perfect:
+        said.append("The sound is good; say each phrase as it stands there, without a pause in it.")
+    return said
+
+
+def _cut_off(pcm: bytes) -> bool:
+    import numpy as np
+
+    samples = np.frombuffer(pcm, "<i2").astype(np.int32)
+    return int((abs(samples) >= RAILS).sum()) >= CLIPPED
