@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,7 +14,16 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, open_house, print_json
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Data,
+    Json,
+    Seed,
+    as_given,
+    open_house,
+    print_json,
+    say_notices,
+)
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -52,7 +62,7 @@ def listen(
     named none, noise or speech, or lies in a folder of that name.
     """
     from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.calibration import settings_for
+    from tangy_tui.learning.speech.calibration import is_checked, settings_for
 
     if bool(files) + (bench is not None) + forget_recordings != 1:
         raise TangyError("Give WAV files, or a folder of them with --bench DIR.")
@@ -61,6 +71,9 @@ def listen(
             _forget(house, as_json)
             return
         settings = settings_for(house.store, mic, mode or house.activity.listening)
+        if mic is not None and not is_checked(house.store, mic):
+            check = f"tangy mic check --mic {shlex.quote(mic)}{as_given(data)}"
+            say_notices([f"{mic} was never checked, so the usual settings are used: {check}"])
         phrasebook = Phrasebook(house.activity, house.people)
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
@@ -78,11 +91,20 @@ def _listen(
     from tangy_tui.learning.speech.listening import listen as hear
 
     heard = hear(files, phrasebook, settings)
+    say_notices([told for told in map(_cut_off, dict.fromkeys(files)) if told])
     if as_json:
         print_json(heard)
         return
     for row in heard:
         print(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
+
+
+def _cut_off(file: Path) -> str:
+    """Say of a file that ends too early how much of it is heard; "" of others."""
+    from tangy_hw.sound.wav import seconds_cut_off
+
+    missing = seconds_cut_off(file)
+    return f"{file}: ends {missing:.1f} s early; what is there was heard." if missing else ""
 
 
 def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:

@@ -56,8 +56,8 @@ def people_pronounce(
         else:
             print(plain(said.sentence))
             if said.source == "suggested":
-                accept = f"tangy people pronounce {found.id}{as_given(data, users)} --accept"
-                print(plain(f"If that is right: {accept}"))
+                verb = f"tangy people pronounce {found.id}{as_given(data, users)}"
+                print(plain(f"If that is right: {verb} --accept"))
     if hear:
         _hear(said.phones, found, sink)
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.sound.wav import RATE, SoundError, decode_wav, read_wav
+from tangy_hw.sound.wav import RATE, SoundError, decode_wav, read_wav, seconds_cut_off
 from tests.hw.sounds import pcm, tone, wav, written
 
 
@@ -47,6 +47,28 @@ class TestWav:
         made = np.frombuffer(decode_wav(content, "it"), "<i2")
         exact = np.frombuffer(pcm(tone(0.1)), "<i2")
         assert np.abs(made.astype(int) - exact).max() <= (300 if bits == 8 else 2)
+
+    @pytest.mark.parametrize(
+        ("content", "missing"),
+        [
+            (wav(pcm(tone(0.5))), 0.0),
+            (wav(pcm(tone(0.5)))[:-8_000], 0.25),
+            (wav(written(tone(0.5, 48_000), 24), bits=24, rate=48_000)[:-36_000], 0.25),
+            (wav(pcm(tone(0.5)))[:44], 0.5),
+            (wav(pcm(tone(0.5)), size=0xFFFF_FFFF), 0.0),
+            (wav(pcm(tone(0.5)), size=0x7FFF_FFE0), 0.0),
+            (wav(pcm(tone(0.5)), size=0), 0.0),
+            (wav(pcm(tone(0.5)))[:30], 0.0),
+            (b"hello", 0.0),
+            (b"", 0.0),
+        ],
+    )
+    def test_what_a_file_lacks_of_what_it_promises_is_known(
+        self, content: bytes, missing: float, tmp_path: Path
+    ) -> None:
+        (tmp_path / "a.wav").write_bytes(content)
+        assert seconds_cut_off(tmp_path / "a.wav") == pytest.approx(missing)
+        assert seconds_cut_off(tmp_path / "none.wav") == 0
 
     def test_what_16_khz_cannot_hold_is_cut_off_not_folded(self) -> None:
         made = decode_wav(wav(written(tone(0.5, 48_000, 10_000), 16), rate=48_000), "it")

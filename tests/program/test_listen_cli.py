@@ -73,6 +73,37 @@ def test_lines_say_the_tier_and_the_choices(
     ]
 
 
+def test_a_file_that_ends_early_is_heard_and_told_of(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(listening, "listen", lambda files, book, settings: [])
+    whole, cut = tmp_path / "whole.wav", tmp_path / "cut.wav"
+    whole.write_bytes(wav(pcm(tone(1.0))))
+    cut.write_bytes(wav(pcm(tone(1.0)))[:-16_000])
+    done = tangy("listen", whole, cut, cut, "--data", tmp_path / "data")
+    assert done.returncode == 0
+    assert done.stderr == f"tangy: {cut}: ends 0.5 s early; what is there was heard.\n"
+
+
+def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usual_ones(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(listening, "listen", lambda files, book, settings: [])
+    folder = tmp_path / "two words"
+    told = tangy("listen", "a.wav", "--mic", "arecord", "--data", folder).stderr
+    assert told.count("\n") == 1
+    assert "arecord was never checked, so the usual settings are used: " in told
+    assert told.endswith(f": tangy mic check --mic arecord --data '{folder}'\n")
+    assert not tangy("listen", "a.wav", "--data", folder).stderr
+    with Store.open(folder) as store:
+        body = {"source": "arecord", "settings": {"garbage": 0.9, "shift": 0.5}}
+        store.append("microphone checked", body)
+    assert not tangy("listen", "a.wav", "--mic", "arecord", "--data", folder).stderr
+    assert (
+        "socket was never" in tangy("listen", "a.wav", "--mic", "socket", "--data", folder).stderr
+    )
+
+
 def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Path) -> None:
     folder = tmp_path / "data"
     with Store.open(folder) as store:

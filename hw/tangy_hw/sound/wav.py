@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 import struct
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     Samples = NDArray[np.float64]
 
 RATE = 16_000  # samples a second
+HEADER = 65_536  # bytes in which the samples begin, mostly after 44
+UNKNOWN_SIZE = 0x7FFF_0000  # bytes of samples, or more: what recorders write who cannot know yet
 LARGEST_WAV = 100_000_000  # bytes: 17 minutes of 48 kHz stereo
 KERNEL = 16  # zero crossings of the resampling kernel to each side
 HOW_TO_RECORD = "record one with: arecord -f S16_LE -r 16000 -c 1 FILE.wav"
@@ -81,6 +84,26 @@ def decode_wav(content: bytes, name: str) -> bytes:
     if not sound:
         raise SoundError(f"{name}: holds no samples.")
     return sound
+
+
+def seconds_cut_off(path: Path) -> float:
+    """Return how much sound a WAV file lacks at its end of what it says it holds; 0 if none.
+
+    What is written as it is recorded often says nothing, or as much as can be said: that counts as
+    nothing. So does what is no WAV file.
+    """
+    name = plain(str(path))
+    try:
+        with path.open("rb") as file:
+            found = read_header(file.read(HEADER), name)
+            size = file.seek(0, os.SEEK_END)
+    except (OSError, ValueError, SoundError):
+        return 0.0
+    if found is None or found[2] >= UNKNOWN_SIZE:
+        return 0.0
+    form, start, promised = found
+    missing = max(0, start + promised - size)
+    return missing / (form.rate * form.channels * (form.bits // 8))
 
 
 def read_header(content: bytes, name: str) -> tuple[Format, int, int] | None:

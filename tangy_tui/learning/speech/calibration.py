@@ -195,6 +195,11 @@ def forget(store: Store, source: str) -> bool:
     return True
 
 
+def is_checked(store: Store, source: str) -> bool:
+    """Say whether there are settings of its own for a microphone."""
+    return _stored(store, source) is not None
+
+
 def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Settings:
     """Return how it is listened with a microphone: as its last check has it, else as usual.
 
