@@ -146,7 +146,10 @@ def _bench(folder: Path, phrasebook: Phrasebook, settings: Settings, as_json: bo
     with _progress() as tell:
         practice = asyncio.run(run(tell))
     if not practice.rows:
-        raise TangyError(plain(f"{folder}: {practice.left_out[0][0]} {practice.left_out[0][1]}."))
+        of = len(found.recordings)
+        none = "its one recording cannot" if of == 1 else f"none of its {of} recordings can"
+        why = " ".join(practice.left_out[-1])
+        raise TangyError(plain(f"{folder}: {none} be heard; {why}."))
     if as_json:
         print_json(practice.document())
         return

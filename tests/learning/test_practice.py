@@ -146,6 +146,8 @@ class TestFolders:
             Labels(book).find(tmp_path)
         with pytest.raises(TangyError, match="there is no such folder"):
             Labels(book).find(tmp_path / "none")
+        with pytest.raises(TangyError, match="is a file; give the folder in which it lies"):
+            Labels(book).find(write(tmp_path / "joke.wav"))
 
 
 class TestCounting:
@@ -208,6 +210,16 @@ class TestCounting:
             "celebrate.wav": "is not a WAV file", "joke-2.wav": "could not be decoded"
         }  # fmt: skip
 
+    async def test_what_ends_early_is_heard_and_told(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        cut = write(tmp_path / "joke-2.wav", 1)
+        cut.write_bytes(cut.read_bytes()[:-1_000])
+        practice = await heard(tmp_path, book, {"joke-1.wav": "tell a joke"})
+        assert [row.outcome for row in practice.rows] == ["right", "right"]
+        assert practice.document()["cut_off"] == ["joke-2.wav"]
+        assert practice_lines(practice)[-1] == "  joke-2.wav"
+
     async def test_a_misspelt_name_is_seen(self, book: Phrasebook, tmp_path: Path) -> None:
         practice = await heard(tmp_path, book, self.SAID)
         assert unnamed(practice.rows) == ["jke.wav"]
@@ -234,6 +246,18 @@ class TestReport:
         assert max(map(len, lines)) <= 80
         assert not any("\x1b" in line for line in lines)
         assert "  and " in lines[-1]
+
+    async def test_a_wide_matrix_goes_on_below_with_the_rows_that_have_something_there(
+        self, book: Phrasebook, activity: Activity, tmp_path: Path
+    ) -> None:
+        said = {f"{b.name}/1.wav": b.phrases[0] for b in activity.behaviours.values()}
+        said |= {f"navigate_to_user-user{n}.wav": f"go to user {n}" for n in range(1, 5)}
+        said |= {"stop.wav": "stop", "none.wav": "i would like a cup of tea"}
+        lines = practice_lines(await heard(tmp_path, book, said))
+        below = lines[lines.index("The same, further to the right:") + 1 :]
+        assert [line.split() for line in below] == [["-"], ["no", "command", "1"]]
+        first = lines[: -len(below) - 1]
+        assert sum(line[4:].startswith("no command ") for line in first) == 1
 
     async def test_every_column_of_the_matrix_is_explained(
         self, book: Phrasebook, tmp_path: Path

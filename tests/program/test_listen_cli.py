@@ -13,7 +13,8 @@ from tangy_profiles.store import Store
 from tangy_tui.learning.speech import listening
 from tangy_tui.learning.speech.calibration import Chosen, Figures
 from tangy_tui.learning.speech.checking import Checked, MicrophoneCheck
-from tangy_tui.learning.speech.evidence import Settings
+from tangy_tui.learning.speech.evidence import Settings, Wanted
+from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.recordings import consent, consented
 from tests.hw.sounds import pcm, tone, wav
 
@@ -45,6 +46,28 @@ def test_an_empty_folder_says_how_to_name_recordings(tangy: Tangy, tmp_path: Pat
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert "call_number-1.wav" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("files", "says"),
+    [
+        (["joke.wav"], "its one recording cannot be heard; joke.wav is not a WAV file."),
+        (["joke-1.wav", "joke-2.wav"], "none of its 2 recordings can be heard; "),
+    ],
+)
+def test_a_folder_of_which_nothing_can_be_heard_is_refused(
+    files: list[str], says: str, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def start(self: Recogniser, wanted: Wanted) -> None:
+        """Start nothing: there is nothing to decode."""
+
+    monkeypatch.setattr(Recogniser, "start", start)
+    for name in files:
+        (tmp_path / name).write_text("no sound")
+    (tmp_path / "notes.txt").write_text("x")
+    done = tangy("listen", "--bench", tmp_path, "--data", tmp_path / "data")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert says in done.stderr
 
 
 def test_lines_say_the_tier_and_the_choices(

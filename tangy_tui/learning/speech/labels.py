@@ -102,7 +102,11 @@ class Labels:
         """
         shown = plain(str(folder))
         if not folder.is_dir():
-            raise TangyError(f"{shown}: there is no such folder.")
+            is_file = folder.exists()
+            raise TangyError(
+                f"{shown}: is a file; give the folder in which it lies." if is_file
+                else f"{shown}: there is no such folder."
+            )  # fmt: skip
         top = folder.absolute()
         found: list[tuple[Path, Label]] = []
         left_out: list[tuple[Path, str]] = []

@@ -12,7 +12,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, Protocol
 
-from tangy_hw.sound.wav import SoundError, read_wav
+from tangy_hw.sound.wav import SoundError, read_wav, seconds_cut_off
 from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Settings, Wanted
@@ -70,12 +70,16 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Practice:
-    """All recordings of a folder, heard with the same settings; `cpu` in s, where it is known."""
+    """All recordings of a folder, heard with the same settings; `cpu` in s, where it is known.
+
+    `cut_off` are those that end before they say they do: what there is of them was heard.
+    """
 
     settings: Settings
     rows: tuple[Row, ...]
     left_out: tuple[tuple[str, str], ...]
     cpu: float | None
+    cut_off: tuple[str, ...] = ()
 
     @property
     def commands(self) -> list[Row]:
@@ -138,6 +142,7 @@ class Practice:
             "cpu_seconds": None if self.cpu is None else round(self.cpu, 2),
             "confusion": {said: dict(counts) for said, counts in self.confusion().items()},
             "left_out": [{"file": file, "why": why} for file, why in self.left_out],
+            "cut_off": list(self.cut_off),
             "rows": [row.to_json() for row in self.rows],
         }
 
@@ -168,6 +173,7 @@ async def practise(
     began = cpu_seconds(recogniser.pid)
     rows: list[Row] = []
     left_out = [(os.fspath(file), why) for file, why in found.left_out]
+    cut_off: list[str] = []
     for done, (file, label) in enumerate(found.recordings, 1):
         try:
             pcm = read_wav(found.folder / file)
@@ -176,6 +182,8 @@ async def practise(
             said = understand(evidence, phrasebook, settings)
             latency = perf_counter() - start
             rows.append(judged(file, label, said, len(pcm) / 2 / RATE, latency))
+            if seconds_cut_off(found.folder / file):
+                cut_off.append(os.fspath(file))
         except SoundError as error:
             left_out.append((os.fspath(file), _reason(error, found.folder / file)))
         except SpeechUnavailable:
@@ -183,7 +191,7 @@ async def practise(
         tell(done, len(found.recordings))
     ended = cpu_seconds(recogniser.pid)
     cpu = None if began is None or ended is None or ended < began else ended - began
-    return Practice(settings, tuple(rows), tuple(left_out), cpu)
+    return Practice(settings, tuple(rows), tuple(left_out), cpu, tuple(cut_off))
 
 
 def judged(file: Path, label: Label, said: Say | Stop, seconds: float, latency: float) -> Row:

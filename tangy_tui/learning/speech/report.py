@@ -73,10 +73,15 @@ def _matrix(practice: Practice) -> Iterator[str]:
         key[NOTHING] = "-"
     wide = 1 + max(2, *(len(str(n)) for row in confusion.values() for n in row.values()))
     yield "Said (rows), and what it was taken for first, sure or not (columns):"
-    for start in range(0, len(columns), (WIDTH - NAME) // wide):
-        some = columns[start : start + (WIDTH - NAME) // wide]
+    fit = (WIDTH - NAME) // wide
+    for start in range(0, len(columns), fit):
+        some = columns[start : start + fit]
+        if start:
+            yield "The same, further to the right:"
         yield f"{'':{NAME}}" + "".join(f"{key[name]:>{wide}}" for name in some)
         for said, counts in confusion.items():
+            if start and not any(counts[name] for name in some):
+                continue
             cells = "".join(f"{counts[name] or '.':>{wide}}" for name in some)
             yield f"{key.get(said, ''):>3} {_named(said, NAME - 4)}{cells}"
     for name in columns:
@@ -96,6 +101,10 @@ def _left_out(practice: Practice) -> Iterator[str]:
         yield ""
         yield "These names are no intent, so they count as no command:"
         yield from _some(nameless)
+    if practice.cut_off:
+        yield ""
+        yield "These end before they say they do; what is there was heard:"
+        yield from _some(practice.cut_off)
     if practice.left_out:
         yield ""
         yield "Left out:"
