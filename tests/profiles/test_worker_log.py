@@ -1,0 +1,45 @@
+"""A worker's log keeps what was said last, and never grows beyond its bounds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.worker_log import KEPT, MOST, open_log
+
+LINE = b"something was said\n"
+
+
+@pytest.mark.parametrize("size", [0, len(LINE), MOST // len(LINE) * len(LINE)])
+def test_a_log_that_is_not_too_long_is_appended_to(size: int, tmp_path: Path) -> None:
+    path = tmp_path / "worker.log"
+    path.write_bytes(LINE * (size // len(LINE)))
+    with open_log(path) as log:
+        log.write(b"more\n")
+    assert path.read_bytes() == LINE * (size // len(LINE)) + b"more\n"
+
+
+def test_a_log_that_is_too_long_keeps_its_last_whole_lines(tmp_path: Path) -> None:
+    path = tmp_path / "worker.log"
+    path.write_bytes(b"old\n" + LINE * (2 * MOST // len(LINE)))
+    with path.open("ab") as other, open_log(path) as log:  # another program has it open
+        assert KEPT - len(LINE) <= path.stat().st_size <= KEPT
+        log.write(b"more\n")
+        log.flush()
+        other.write(b"theirs\n")
+    kept = path.read_bytes()
+    assert kept.endswith(LINE + b"more\ntheirs\n")
+    assert set(kept.splitlines(keepends=True)) == {LINE, b"more\n", b"theirs\n"}
+
+
+def test_one_line_without_an_end_is_cut_as_well(tmp_path: Path) -> None:
+    path = tmp_path / "worker.log"
+    path.write_bytes(b"x" * (3 * MOST))
+    with open_log(path):
+        assert path.stat().st_size <= KEPT
+
+
+def test_where_it_cannot_be_written_the_reason_is_given(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="No such file"):
+        open_log(tmp_path / "none" / "worker.log")
