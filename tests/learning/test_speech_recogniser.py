@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from tangy_hw.sound.wav import RATE
+from tangy_profiles.worker_log import KEPT, MOST
 from tangy_tui.learning.speech import recogniser as room
 from tangy_tui.learning.speech.evidence import LONGEST, Evidence, Wanted
 from tangy_tui.learning.speech.recogniser import END_SECONDS, Recogniser, SpeechUnavailable
@@ -274,6 +275,18 @@ class TestDeath:
         heard.say(*CHUNKS, b"")
         assert (await heard.hear()).words == "call number"
         assert heard.told == []
+
+
+async def test_what_workers_have_said_is_kept_up_to_a_bound(begin: Begin, tmp_path: Path) -> None:
+    log = tmp_path / "speech.log"
+    log.write_bytes(b"an old line\n" * (MOST // 6))
+    begin()
+    recogniser = Recogniser(log=log)
+    try:
+        await recogniser.start(WANTED)
+        assert 0 < log.stat().st_size <= KEPT
+    finally:
+        await recogniser.close()
 
 
 class TestClosing:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.worker_log import open_log
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.learning.speech.worker")
@@ -230,7 +231,7 @@ class Recogniser:
         log: int | IO[bytes] = asyncio.subprocess.DEVNULL
         try:
             if self._log is not None:
-                log = self._log.open("ab")
+                log = open_log(self._log)
             self._process = await asyncio.create_subprocess_exec(
                 *WORKER,
                 stdin=asyncio.subprocess.PIPE,
