@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data
+from tangy_tui.verbs.common import Data, as_given
 
 if TYPE_CHECKING:
     from tangy_hw.sound.forwarding import Forwarder
@@ -68,8 +69,10 @@ def forward(data: Path | None, socket: Path | None) -> None:
     from tangy_tui.house import data_folder
 
     if sys.stdin is not None and sys.stdin.isatty():
+        there = as_given(data) + ("" if socket is None else f" --socket {shlex.quote(str(socket))}")
         raise TangyError(
-            f"mic: no sound comes in. Linux: `{LINUX}`. macOS: `{MACOS}`. See `tangy mic --help`."
+            f"mic: no sound comes in. Linux: `{LINUX}{there}`. macOS: `{MACOS}{there}`. "
+            "See `tangy mic --help`."
         )
     source = open_standard_input("mic", 0, convert=False)
     forwarder = Forwarder(source, socket or data_folder(data) / SOCKET_NAME, tell=_say)

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import io
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.verbs.mic import forward
 
 
 @pytest.mark.parametrize(
@@ -22,3 +28,27 @@ def test_help_has_a_command_to_copy_for_each_system(
     done = tangy("mic", "--help")
     assert done.returncode == 0
     assert command in (line.strip(" \\") for line in done.stdout.splitlines())
+
+
+class Terminal(io.StringIO):
+    """Standard input that nobody has sent anything into."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(
+    ("data", "socket", "options"),
+    [
+        (None, None, ""),
+        (Path("two words"), None, " --data 'two words'"),
+        (Path("mine"), Path("my.sock"), " --data mine --socket my.sock"),
+    ],
+)
+def test_a_terminal_is_told_what_to_type_on_the_laptop(
+    data: Path | None, socket: Path | None, options: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "stdin", Terminal())
+    with pytest.raises(TangyError, match="no sound comes in") as caught:
+        forward(data, socket)
+    assert str(caught.value).count(f"| ssh ROBOT tangy mic{options}`") == 2
