@@ -22,6 +22,8 @@ from tangy_tui.verbs import (
     demonstrations,
     drill,
     experiment,
+    faces,
+    faces_enrol,
     learn,
     listen,
     log,
@@ -96,6 +98,8 @@ app.add_typer(mic.app, name="mic")
 app.add_typer(experiment.app, name="experiment")
 app.add_typer(activity.app, name="activity")
 app.add_typer(cards.app, name="cards")
+faces.app.command("enrol")(faces_enrol.faces_enrol)
+app.add_typer(faces.app, name="faces")
 app.add_typer(log.app, name="log")
 
 

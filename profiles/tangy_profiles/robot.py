@@ -64,8 +64,19 @@ class Device:
 
 
 @dataclass(frozen=True)
+class FaceModels:
+    """The two ONNX files by which faces are found and told apart, where a facility has them."""
+
+    finder: Path
+    recogniser: Path
+
+
+@dataclass(frozen=True)
 class Robot:
-    """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices."""
+    """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices.
+
+    `faces` are its files for faces; without them it uses what comes with OpenCV.
+    """
 
     name: str
     title: str
@@ -73,6 +84,7 @@ class Robot:
     limbs: Mapping[str, Limb]
     postures: Mapping[str, Mapping[str, tuple[float, ...]]]
     devices: Mapping[str, Device]
+    faces: FaceModels | None = None
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -99,7 +111,8 @@ def load_robot(name: str = "tangy") -> Robot:
     shipped = {path.stem: path for path in folder.glob("*.toml")}
     if name not in shipped and not name.endswith(".toml"):
         raise ProfileError(f"There is no robot {name!r}: {nearest(name, shipped)}")
-    top = read_toml(shipped.get(name) or Path(name))
+    path = shipped.get(name) or Path(name)
+    top = read_toml(path)
     limbs: dict[str, Limb] = {}
     for entry in top.tables("limbs"):
         name_of_limb = entry.text("name")
@@ -131,9 +144,20 @@ def load_robot(name: str = "tangy") -> Robot:
         MappingProxyType(limbs),
         MappingProxyType(postures),
         MappingProxyType(_devices(top)),
+        _face_models(top, path.parent),
     )
     top.close()
     return robot
+
+
+def _face_models(top: Table, folder: Path) -> FaceModels | None:
+    """Read the names of the files for faces, which may be relative to the robot's file."""
+    if "faces" not in top:
+        return None
+    entry = top.table("faces")
+    models = FaceModels(folder / entry.text("finder"), folder / entry.text("recogniser"))
+    entry.close()
+    return models
 
 
 def _devices(top: Table) -> dict[str, Device]:

@@ -1,0 +1,109 @@
+"""Whose face it is, among those who are enrolled; nobody's is an answer.
+
+How alike two pictures of one person are, and two of different people, is taken from the pictures
+that were enrolled, each against the others. On the scale of `likeness`, 0 is like somebody else
+and 1 like oneself, by the means of both; nothing else sets it, and no stranger is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tangy_hw.perception.faces.describing import Vector
+
+ENOUGH = 0.4
+"""The likeness from which on a face is taken for somebody's."""
+AHEAD = 0.1
+"""So much more alike must it be than to anybody else."""
+BEST = 2  # so many pictures of a person count, those that are most alike
+LEAST = 3
+"""Fewer pictures of a person say nothing of how much they vary."""
+ALONE = 0.1  # share of one's own pictures that would be strangers, where nobody else is enrolled
+LEAST_GAP = 0.02  # between oneself and others: pictures may be the very same
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """Whose face it is: None is unknown. `nearest` is who is most alike, `likenesses` are all."""
+
+    person: str | None
+    nearest: str | None
+    likeness: float
+    likenesses: Mapping[str, float] = field(default_factory=dict)
+
+
+class Gallery:
+    """The faces that are known: for each person rows of features of length 1, of one kind."""
+
+    def __init__(self, faces: Mapping[str, Any]) -> None:
+        """Compute from the enrolment alone how alike a face must be."""
+        import numpy as np
+
+        self.people = tuple(sorted(faces))
+        rows = [np.asarray(faces[person], np.float32) for person in self.people]
+        ends = np.cumsum([0, *(len(row) for row in rows)])
+        self._spans = list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
+        self._all = np.concatenate(rows) if rows else np.zeros((0, 1), np.float32)
+        self.stranger, self.self = self._scale()
+        """The mean similarity (a cosine) to another person, and to oneself."""
+
+    @property
+    def threshold(self) -> float:
+        """The similarity (a cosine) from which on a face is taken for somebody's."""
+        return self.stranger + ENOUGH * (self.self - self.stranger)
+
+    def compare(self, vector: Vector) -> Match:
+        """Say whose face it is; unknown where it is not clearly anybody's."""
+        if not self.people:
+            return Match(None, None, 0.0)
+        similar = self._all @ vector
+        likenesses = {
+            person: (_most(similar[a:b]) - self.stranger) / (self.self - self.stranger)
+            for person, (a, b) in zip(self.people, self._spans, strict=True)
+        }
+        return decide(likenesses)
+
+    def _scale(self) -> tuple[float, float]:
+        """Compare each enrolled picture with the others of its person, and of the others."""
+        import numpy as np
+
+        similar = self._all @ self._all.T
+        own: list[float] = []
+        others: list[float] = []
+        for a, b in self._spans:
+            for row in range(a, b):
+                rest = np.delete(similar[row, a:b], row - a)
+                if len(rest):
+                    own.append(_most(rest))
+                apart = [_most(similar[row, c:d]) for c, d in self._spans if c != a and d > c]
+                if apart:
+                    others.append(max(apart))
+        if not own:
+            return 0.0, 1.0
+        mean = float(np.mean(own))
+        if others:
+            stranger = float(np.mean(others))
+        else:  # as far below as sets the threshold where only one in ten of one's own is refused
+            stranger = mean - (mean - float(np.quantile(own, ALONE))) / (1 - ENOUGH)
+        return min(stranger, mean - LEAST_GAP), mean
+
+
+def decide(likenesses: Mapping[str, float]) -> Match:
+    """Say who it is by the likeness to everybody who is enrolled."""
+    ranked = sorted(likenesses, key=lambda person: -likenesses[person])
+    if not ranked:
+        return Match(None, None, 0.0)
+    first = likenesses[ranked[0]]
+    ahead = len(ranked) < 2 or first - likenesses[ranked[1]] >= AHEAD
+    sure = first >= ENOUGH and ahead
+    return Match(ranked[0] if sure else None, ranked[0], first, dict(likenesses))
+
+
+def _most(similar: Any) -> float:
+    """Return the mean of the best few."""
+    import numpy as np
+
+    return float(np.sort(similar)[-BEST:].mean())

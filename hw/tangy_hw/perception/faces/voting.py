@@ -1,0 +1,46 @@
+"""Whose face it is, by several frames: each has a vote, and unknown is one of the answers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tangy_hw.perception.faces.gallery import Match
+
+FRAMES = 5
+"""So many frames with a face that is seen well are voted over."""
+SHARE = 0.6  # of the votes somebody needs
+
+
+@dataclass(frozen=True, slots=True)
+class Vote:
+    """The outcome of a vote: None is unknown. `votes` are theirs, of `frames`."""
+
+    person: str | None
+    votes: int
+    frames: int
+    likeness: float
+
+
+def vote(matches: Iterable[Match]) -> Vote:
+    """Count votes: somebody needs three in five, and nobody is chosen by fewer than two frames.
+
+    `likeness` is the mean to whoever is chosen, or to the nearest.
+    """
+    cast = list(matches)
+    counts = Counter(match.person for match in cast if match.person is not None)
+    chosen: str | None = None
+    votes = 0
+    if counts:
+        (first, votes), *others = counts.most_common(2)
+        ahead = not others or others[0][1] < votes
+        if ahead and votes >= 2 and votes >= SHARE * len(cast):
+            chosen = first
+        else:
+            votes = 0
+    nearest = Counter(match.nearest for match in cast if match.nearest is not None)
+    about = chosen if chosen is not None else (nearest.most_common(1)[0][0] if nearest else None)
+    likenesses = [match.likenesses.get(about, 0.0) for match in cast] if about is not None else []
+    mean = sum(likenesses) / len(likenesses) if likenesses else 0.0
+    return Vote(chosen, votes, len(cast), mean)

@@ -1,0 +1,280 @@
+"""`tangy faces`: whose face it is, among those who agreed that Tangy knows theirs."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import MOST_PEOPLE, Person
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, Json, Seed, open_house, print_json
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_source import CameraSource
+    from tangy_hw.perception.faces.gallery import Gallery, Match
+    from tangy_hw.perception.faces.reader import Face, FaceReader
+    from tangy_hw.perception.pictures import Picture
+    from tangy_tui.house import House
+
+app = typer.Typer(
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    help="Know people by their faces, with their consent.",
+)
+
+SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video"
+Robot = Annotated[
+    str, typer.Option("--robot", help="A robot, or its TOML, which may name files for faces.")
+]
+GUEST = "guest"
+"""Somebody whose face is known and who does not play is guest1, guest2 and so on."""
+
+
+@app.command("who")
+def faces_who(
+    files: Annotated[list[Path] | None, typer.Argument(help="Pictures with faces.")] = None,
+    source: Annotated[
+        str | None, typer.Option("--from", metavar="CAMERA", help=f"Look here instead: {SOURCES}.")
+    ] = None,
+    together: Annotated[
+        bool, typer.Option("--together", help="All are frames of one person: let them vote.")
+    ] = False,
+    seconds: Annotated[float, typer.Option(min=0.5, help="Look so long at most.")] = 10.0,
+    robot: Robot = "tangy",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Say whose faces are in pictures, or who is before a camera; unknown is an answer.
+
+    `likeness` is 0 for a face like somebody else's and 1 for one's own, as the enrolled pictures
+    have it: from 0.4 on it is somebody's, if nobody else is nearly as like. Nothing is kept.
+    """
+    from tangy_hw.drivers.camera_source import find_camera
+    from tangy_hw.perception.pictures import read_picture
+
+    if bool(files) == (source is not None):
+        raise TangyError("Give pictures with faces, or a camera with --from.")
+    found = None if source is None else find_camera(source, each=True)
+    with knowing(data, robot) as (house, reader, gallery):
+        names = names_of(house)
+        if not gallery.people:
+            print("tangy: Nobody's face is known yet: tangy faces enrol NAME.", file=sys.stderr)
+        if found is not None:
+            answer = asyncio.run(_watch(found, reader, gallery, seconds))
+            rows = [{"file": found.name, **answer}]
+        else:
+            seen = [(path, reader.read(read_picture(path))) for path in files or []]
+            if together:
+                rows = [_voted([faces for _, faces in seen], gallery)]
+                rows[0] = {"file": str(seen[0][0]), "files": [str(p) for p, _ in seen], **rows[0]}
+            else:
+                rows = [{"file": str(path), **_row(faces, gallery)} for path, faces in seen]
+        for row in rows:
+            row["name"] = names.get(row["person"] or "")
+        if as_json:
+            print_json(rows)
+            return
+        for row in rows:
+            print(plain(f"{row['file']}: {_told(row, names)}"))
+
+
+@app.command("list")
+def faces_list(
+    robot: Robot = "tangy", seed: Seed = None, data: Data = None, as_json: Json = False
+) -> None:
+    """List whose faces are known, and who agreed to it how."""
+    from tangy_hw.perception.faces.keeping import CONSENT, consented, kept_faces, read_face
+
+    with open_house(data, "bingo", MOST_PEOPLE, write=False) as house:
+        names, agreed = names_of(house), consented(house.store)
+        how = {
+            event.person: event
+            for event in house.store.events(CONSENT)
+            if event.body.get("yes") is True
+        }
+        rows: list[dict[str, Any]] = []
+        for person, kind in kept_faces(house.store):
+            if person in agreed:
+                pictures = read_face(house.store, person, kind)
+                rows.append(
+                    {
+                        "id": person,
+                        "name": names.get(person, person),
+                        "pictures": 0 if pictures is None else len(pictures),
+                        "kind": kind,
+                        "agreed": how[person].at,
+                        "how": how[person].body.get("how", ""),
+                    }
+                )
+        if as_json:
+            print_json(rows)
+            return
+        if not rows:
+            print("Nobody's face is known: tangy faces enrol NAME --from CAMERA or a folder.")
+        for row in rows:
+            day = row["agreed"][:10]
+            print(
+                plain(
+                    f"{row['id']}  {row['name']}: {row['pictures']} pictures; "
+                    f"agreed on {day} ({row['how']})."
+                )
+            )
+
+
+@app.command("forget")
+def faces_forget(
+    person: Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")],
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Forget a person's face, and that they agreed; the rest of what is known of them stays."""
+    from tangy_hw.perception.faces.keeping import forget_face
+
+    with open_house(data, "bingo", MOST_PEOPLE) as house:
+        known = find_anybody(house, person)
+        forgotten = forget_face(house.store, known.id)
+        if as_json:
+            print_json({"id": known.id, "name": known.name, "forgotten": forgotten})
+        elif forgotten:
+            print(plain(f"The face of {known.name} is forgotten."))
+        else:
+            print(plain(f"Nothing was kept of the face of {known.name}."))
+
+
+@contextmanager
+def knowing(
+    data: Path | None, robot: str, *, write: bool = False
+) -> Iterator[tuple[House, FaceReader, Gallery]]:
+    """Open the house, the reader of faces that the robot has, and the faces that are known."""
+    from tangy_hw.perception.faces.gallery import Gallery
+    from tangy_hw.perception.faces.keeping import read_faces
+    from tangy_hw.perception.faces.reader import open_reader
+    from tangy_profiles.robot import load_robot
+
+    reader = open_reader(load_robot(robot).faces)
+    with open_house(data, "bingo", MOST_PEOPLE, write=write) as house:
+        yield house, reader, Gallery(read_faces(house.store, reader.kind))
+
+
+def names_of(house: House) -> dict[str, str]:
+    """Return the names of all who may be known by their faces, by id."""
+    return house.store.names() | house.names
+
+
+def find_anybody(house: House, wanted: str) -> Person:
+    """Return somebody who plays, or a guest whose face is known, by id or name.
+
+    Raises:
+        TangyError: nobody, or more than one, is called that.
+    """
+    guests = [Person(id, name) for id, name in house.store.names().items() if id.startswith(GUEST)]
+    found = [guest for guest in guests if guest.id == wanted] or [
+        guest for guest in guests if guest.name.casefold() == wanted.casefold()
+    ]
+    if len(found) == 1 and not any(p.name.casefold() == wanted.casefold() for p in house.people):
+        return found[0]
+    return house.find_person(wanted)
+
+
+def _row(faces: list[Face], gallery: Gallery) -> dict[str, Any]:
+    """Say of a picture whose faces are in it; the first that can be told stands for it."""
+    matches = [None if face.vector is None else gallery.compare(face.vector) for face in faces]
+    told = [_face_row(face, match) for face, match in zip(faces, matches, strict=True)]
+    chief = next((row for row in told if not row["problem"]), told[0] if told else None)
+    if chief is None:
+        from tangy_hw.perception.faces.reader import NO_FACE
+
+        chief = _face_row(None, None) | {"problem": NO_FACE}
+    return {**chief, "threshold": _enough(), "faces": told}
+
+
+def _face_row(face: Face | None, match: Match | None) -> dict[str, Any]:
+    return {
+        "person": match.person if match else None,
+        "likeness": round(match.likeness, 4) if match else None,
+        "nearest": match.nearest if match else None,
+        "likenesses": {p: round(v, 4) for p, v in match.likenesses.items()} if match else {},
+        "problem": face.problem if face else "",
+        "box": [round(value) for value in face.box] if face else None,
+        "quality": face.quality.document() if face and face.quality else None,
+    }
+
+
+def _enough() -> float:
+    from tangy_hw.perception.faces.gallery import ENOUGH
+
+    return ENOUGH
+
+
+def _voted(pictures: list[list[Face]], gallery: Gallery) -> dict[str, Any]:
+    """Let the frames vote that show one face well."""
+    from tangy_hw.perception.faces.enrolling import one_face
+    from tangy_hw.perception.faces.voting import vote
+
+    matches = []
+    problem = ""
+    for faces in pictures:
+        why, vector = one_face(faces)
+        if vector is None:
+            problem = why
+        else:
+            matches.append(gallery.compare(vector))
+    counted = vote(matches)
+    return {
+        "person": counted.person,
+        "likeness": round(counted.likeness, 4) if matches else None,
+        "votes": counted.votes,
+        "frames": counted.frames,
+        "of": len(pictures),
+        "threshold": _enough(),
+        "problem": "" if matches else problem,
+    }
+
+
+async def _watch(
+    source: CameraSource, reader: FaceReader, gallery: Gallery, seconds: float
+) -> dict[str, Any]:
+    """Look at a camera until enough frames with a face could vote, or time is over."""
+    from tangy_hw.drivers.camera import Camera
+    from tangy_hw.perception.faces.enrolling import one_face
+    from tangy_hw.perception.faces.voting import FRAMES
+
+    pictures: list[list[Face]] = []
+    well = 0
+    ends = time.monotonic() + seconds
+    async with Camera(source) as camera:
+        while well < FRAMES and (left := ends - time.monotonic()) > 0:
+            frame = await camera.frame(wait=left)
+            if frame is None:
+                break
+            image: Picture = frame.image()
+            faces = await asyncio.to_thread(reader.read, image)
+            pictures.append(faces)
+            well += one_face(faces)[1] is not None
+        why = camera.sight.why
+    if not pictures:
+        raise TangyError(plain(f"{source.name}: no picture came{f' ({why})' if why else ''}."))
+    return _voted(pictures, gallery)
+
+
+def _told(row: dict[str, Any], names: dict[str, str]) -> str:
+    """Say in words whose face it is."""
+    if row["problem"]:
+        return f"cannot tell: {row['problem']}"
+    likeness = "" if row["likeness"] is None else f", likeness {row['likeness']:.2f}"
+    if row.get("frames") is not None:
+        likeness += f", {row['votes']} of {row['frames']} frames"
+    told = "unknown" if row["person"] is None else f"{row['name']} ({row['person']})"
+    others = [face for face in row.get("faces", ())[1:] if face["person"]]
+    more = "".join(f"; also {names.get(face['person'], face['person'])}" for face in others)
+    return f"{told}{likeness}{more}"

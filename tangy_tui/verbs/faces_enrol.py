@@ -1,0 +1,209 @@
+"""`tangy faces enrol`: let Tangy know a person's face, once that person has agreed."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Data, Json, Seed, print_json
+from tangy_tui.verbs.faces import GUEST, SOURCES, Robot, find_anybody, knowing
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_source import CameraSource
+    from tangy_hw.perception.faces.enrolling import Enrolment
+    from tangy_hw.perception.faces.gallery import Gallery
+    from tangy_tui.house import House
+
+EVERY = 0.4  # seconds between two pictures of a camera: the head has moved
+Tell = Callable[[str], None]
+
+
+def faces_enrol(
+    name: Annotated[str, typer.Argument(help="Who it is: an id, a name, or a new name.")],
+    source: Annotated[
+        str,
+        typer.Option(
+            "--from", metavar="CAMERA|DIR", help=f"{SOURCES}, or a folder of pictures of them."
+        ),
+    ],
+    count: Annotated[
+        int, typer.Option(min=3, max=40, help="So many pictures of a camera or video.")
+    ] = 15,
+    seconds: Annotated[float, typer.Option(min=1, help="Look so long at most.")] = 60.0,
+    consent: Annotated[
+        str | None,
+        typer.Option(metavar="HOW", help="They have agreed: how, and who asked them."),
+    ] = None,
+    add: Annotated[
+        bool, typer.Option("--add", help="Add to the pictures that were enrolled before.")
+    ] = False,
+    robot: Robot = "tangy",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Know a person's face from a camera, or from a folder of pictures of them.
+
+    They are asked first, here on the terminal; or --consent says how they agreed, which goes into
+    the log. Only features are kept, no pictures; `tangy faces forget` deletes them.
+    """
+    from tangy_hw.drivers.camera_source import find_camera
+    from tangy_hw.perception.faces.enrolling import ADVISED, Enrolment
+    from tangy_hw.perception.faces.gallery import LEAST
+    from tangy_hw.perception.faces.keeping import keep_face, read_face
+
+    found = find_camera(source, each=True)
+    tell: Tell = (lambda _: None) if as_json else (lambda line: print(plain(line), flush=True))
+    with knowing(data, robot, write=True) as (house, reader, gallery):
+        person, new = _find(house, name)
+        if not _agreed(house, person, new, consent):
+            raise TangyError(plain(f"{person.name} has not agreed: nothing is kept."))
+        if new:
+            house.store.rename(person.id, person.name)
+            tell(f"{person.name} does not play, and is known as {person.id}.")
+        enrolment = Enrolment(reader)
+        if add:
+            enrolment.take(read_face(house.store, person.id, reader.kind))
+        if found.kind == "folder":
+            rows = _from_pictures(Path(source), enrolment, tell)
+        else:
+            rows = asyncio.run(_from_camera(found, enrolment, count, seconds, tell))
+        for row in enrolment.drop_odd():
+            rows[row]["problem"] = "it does not look like the person in the others"
+            tell(f"{rows[row]['file']}: {rows[row]['problem']}")
+        taken = len(enrolment)
+        if taken < LEAST:
+            raise TangyError(
+                plain(
+                    f"{source}: only {taken} of {len(rows)} pictures show a face well enough; "
+                    f"{LEAST} are needed, and {ADVISED} are better{_chief_reason(rows)}."
+                )
+            )
+        keep_face(house.store, person.id, reader.kind, enrolment.vectors())
+        like = _like_another(enrolment, gallery, person)
+        if as_json:
+            told = {"id": person.id, "name": person.name, "pictures": taken, "kind": reader.kind}
+            print_json({**told, "looks_like": like, "from": rows})
+            return
+        few = f"; with {ADVISED} it is surer" if taken < ADVISED else ""
+        tell(f"{person.name} is known by {taken} pictures of {len(rows)}{few}.")
+        if like is not None:
+            tell(f"They look like those of {house.store.names().get(like, like)} ({like}).")
+
+
+def _find(house: House, wanted: str) -> tuple[Person, bool]:
+    """Find who is meant, or make a guest of somebody who is new; say whether they are."""
+    from tangy_hw.perception.faces.keeping import CONSENT
+
+    called = wanted.strip()
+    players = [p for p in house.people if called.casefold() in (p.id, p.name.casefold())]
+    names = house.store.names()
+    guests = [i for i in names if i.startswith(GUEST)]
+    if players or called in guests or called.casefold() in {names[i].casefold() for i in guests}:
+        return find_anybody(house, called), False
+    ids = {*names, *(event.person or "" for event in house.store.events(CONSENT))}
+    numbers = [int(i.removeprefix(GUEST)) for i in ids if re.fullmatch(rf"{GUEST}\d{{1,9}}", i)]
+    return Person(f"{GUEST}{max(numbers, default=0) + 1}", called), True
+
+
+def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
+    """Ask the person, unless they have agreed before, or somebody says how they did."""
+    from tangy_hw.perception.faces.keeping import consent, consented
+
+    store = house.store
+    if how is not None:
+        if not how.strip():
+            raise TangyError('--consent: say how they agreed, as in "in writing, asked by staff".')
+        name = re.escape(person.name)  # names stay out of the log, where nothing is deleted
+        consent(store, person.id, True, re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200])
+        return True
+    if person.id in consented(store):
+        return True
+    if not sys.stdin.isatty():
+        raise TangyError(
+            plain(
+                f"{person.name} has not agreed yet: ask on a terminal, or say how they agreed "
+                f"with --consent; nothing is kept before."
+            )
+        )
+    folder = plain(str(store.folder))
+    question = (
+        f"{person.name}, may Tangy know your face? It keeps measurements of it, no pictures, on "
+        f"this machine, in {folder}; `tangy faces forget` deletes them at any time."
+    )
+    yes = typer.confirm(plain(question), default=False, err=True)
+    consent(store, person.id, yes, "asked on the terminal")
+    return yes
+
+
+def _from_pictures(folder: Path, enrolment: Enrolment, tell: Tell) -> list[dict[str, Any]]:
+    from tangy_hw.drivers.camera_source import pictures_in
+    from tangy_hw.perception.pictures import PictureError, read_picture
+
+    rows = []
+    for path in pictures_in(folder):
+        try:
+            problem = enrolment.offer(read_picture(path))
+        except PictureError as error:
+            problem = str(error).removeprefix(f"{plain(str(path))}: ").removesuffix(".")
+        if problem:
+            tell(f"{path.name}: {problem}")
+        rows.append({"file": path.name, "problem": problem})
+    return rows
+
+
+async def _from_camera(
+    source: CameraSource, enrolment: Enrolment, count: int, seconds: float, tell: Tell
+) -> list[dict[str, Any]]:
+    from tangy_hw.drivers.camera import Camera
+
+    rows: list[dict[str, Any]] = []
+    before = len(enrolment)
+    said = ""
+    ends = time.monotonic() + seconds
+    last = -EVERY
+    async with Camera(source) as camera:
+        while len(enrolment) - before < count and (left := ends - time.monotonic()) > 0:
+            frame = await camera.frame(wait=left)
+            if frame is None:
+                break
+            if source.live and frame.stamp - last < EVERY:
+                continue
+            last = frame.stamp
+            problem = await asyncio.to_thread(enrolment.offer, frame.image())
+            rows.append({"file": f"frame {frame.seq}", "problem": problem})
+            told = problem or f"{len(enrolment) - before} of {count}"
+            if told != said:
+                said = told
+                tell(told)
+        why = camera.sight.why
+    if not rows:
+        raise TangyError(plain(f"{source.name}: no picture came{f' ({why})' if why else ''}."))
+    return rows
+
+
+def _chief_reason(rows: list[dict[str, Any]]) -> str:
+    """Say what was mostly wrong with the pictures."""
+    reasons = [re.sub(r"\(.*?\) ?", "", row["problem"]) for row in rows if row["problem"]]
+    if not reasons:
+        return ""
+    return f" (mostly: {max(set(reasons), key=reasons.count)})"
+
+
+def _like_another(enrolment: Enrolment, gallery: Gallery, person: Person) -> str | None:
+    """Return who else the pictures look like, of those who are known already."""
+    seen = [gallery.compare(vector).person for vector in enrolment.vectors()]
+    others = [one for one in seen if one is not None and one != person.id]
+    if 2 * len(others) <= len(seen):
+        return None
+    return max(set(others), key=others.count)
