@@ -100,7 +100,7 @@ def _asked(house: House) -> tuple[Phrasebook, Lexicon, list[Asked]]:
 
 
 async def _run(house: House, source: Source, as_json: bool) -> Checked:
-    from tangy_tui.learning.speech.checking import PATIENCE, MicrophoneCheck
+    from tangy_tui.learning.speech.checking import MicrophoneCheck
     from tangy_tui.learning.speech.recogniser import Recogniser
 
     def on_stderr(sentence: str) -> None:
@@ -111,7 +111,6 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
 
     phrasebook, lexicon, asked = _asked(house)
     tell = on_stderr if as_json else on_stdout
-    somebody = sys.stdin is not None and sys.stdin.isatty()
     recogniser = Recogniser()
     try:
         return await MicrophoneCheck(
@@ -121,11 +120,18 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
             asked,
             tell,
             lexicon.heard(),
-            # who could plug in a microphone, or begin to send from a laptop, is waited for
-            patience=PATIENCE if somebody or source.name.startswith("socket") else ALONE,
+            patience=_patience(source.name),
         ).run()
     finally:
         await recogniser.close()
+
+
+def _patience(mic: str) -> float:
+    """Return how many seconds somebody has to plug in a microphone, or to begin to send."""
+    from tangy_tui.learning.speech.checking import PATIENCE
+
+    from_elsewhere = mic.partition(":")[0] == "socket"
+    return PATIENCE if sys.stderr.isatty() or from_elsewhere else ALONE
 
 
 def _lines(checked: Checked, mic: str) -> list[str]:

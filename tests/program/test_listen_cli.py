@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_hw.sound.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
 from tangy_tui.learning.speech import listening
 from tangy_tui.learning.speech.calibration import Chosen, Figures
-from tangy_tui.learning.speech.checking import Checked, MicrophoneCheck
+from tangy_tui.learning.speech.checking import PATIENCE, Checked, MicrophoneCheck
 from tangy_tui.learning.speech.evidence import Settings, Wanted
 from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.recordings import consent, consented
+from tangy_tui.verbs import mic_check
+from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -181,6 +185,23 @@ class TestCheckingAMicrophone:
         assert [one["command"] for one in said] == [True] * 6 + [False] * 3
         assert not folder.exists()
         assert "what --list prints" in " ".join(tangy("mic", "check", "--help").stdout.split())
+
+    @pytest.mark.parametrize(
+        ("mic", "terminal", "seconds"),
+        [
+            ("arecord", True, PATIENCE),
+            ("-", True, PATIENCE),
+            ("socket", False, PATIENCE),
+            ("socket:/tmp/mine", False, PATIENCE),
+            ("arecord", False, ALONE),
+        ],
+    )
+    def test_silence_is_waited_out_only_where_somebody_could_end_it(
+        self, mic: str, terminal: bool, seconds: float, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+        assert mic_check._patience(mic) == seconds
+        assert NO_SOUND_SECONDS < ALONE < PATIENCE, "it is said before it is given up"
 
     @pytest.mark.parametrize(("understood", "status"), [(6, 0), (2, 1)])
     def test_a_check_that_fails_stores_nothing_and_the_status_says_so(
