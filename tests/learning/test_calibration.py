@@ -233,7 +233,8 @@ class Muted(Microphone):
         if not self.mended:
             self.now = 60.0
             await asyncio.Event().wait()
-        yield b"\7\0\0\0" * RATE * 3
+        for _ in range(12):
+            yield b"\7\0\0\0" * (RATE // 8)
         async for chunk in super()._sound():
             yield chunk
 
@@ -332,7 +333,9 @@ class TestChecking:
         monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
         muted, told = Muted(said, mended=True), list[str]()
         monkeypatch.setattr(checking, "Meter", lambda: Meter(lambda: muted.now))
-        assert (await self.check(muted, activity, people, asked, told)).parted
+        checked = await self.check(muted, activity, people, asked, told)
+        assert checked.parted
+        assert -85 < checked.room < -75
         assert told.count("Please be quiet for 3 seconds.") == 2
         assert sum(line.startswith("It goes on as soon as") for line in told) == 1
         muted = Muted(said, mended=False)
