@@ -40,6 +40,7 @@ UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases 
 SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
 
 LINKS = frozenset(("of", "to"))
+LINK_ENDS = frozenset((link,) for link in LINKS)
 REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
 
 
@@ -100,6 +101,8 @@ class Phrasebook:
         """
         heard = clean(text)
         words = words_of(heard)
+        if words not in self._phrases and self._breaks_off(words):
+            return None
         if (exact := self._exact(words)) is not None:
             return self._command(exact, 1.0, heard, words)
         if self._refuses(words) or self._stranger(words) is not None:
@@ -171,6 +174,19 @@ class Phrasebook:
 
     def _refuses(self, words: Words) -> bool:
         return any(word in REFUSALS and word not in self._weights for word in words)
+
+    def _breaks_off(self, words: Words) -> bool:
+        """Whether a person's number stood here, misheard: "go to seat you", "go to user to"."""
+        said = bare(words)
+        if said[-1:] == words[-1:] and said[-1:] not in LINK_ENDS:
+            return False
+        seat = any(said[-len(noun) :] == noun for noun in self.table.seat_nouns)
+        named = self._bare.get(" ".join(said))
+        if seat and (named is None or named.user is None):
+            return True
+        phrase = self._bare.get(" ".join(said[:-1]))
+        goes = phrase is not None and phrase.behaviour in self._to_people
+        return goes and said[-1:] in LINK_ENDS
 
     def _stranger(self, words: Words) -> str | None:
         """Find a number that is nobody's, or one unknown word in the place of a person."""

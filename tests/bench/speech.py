@@ -7,7 +7,8 @@ the real decoder, as whole utterances.
 
 `--fit` prints the weights and shows the limits of `understanding`, from the voices of TUNED and
 every second sentence. Without it, the voices of QUOTED (other speakers) and the other sentences are
-counted. `--paper` counts the paper's mode instead. A synthetic voice is not a person: take the
+counted. `--paper` counts the paper's mode instead, and `--answers` spoken answers: what is taken
+for yes or no, of answers and of all that is none. A synthetic voice is not a person: take the
 differences seriously, not the last per cent.
 """
 
@@ -25,6 +26,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -38,10 +40,10 @@ from tangy_profiles.room import load_room
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech import understanding
 from tangy_tui.learning.speech.decoding import Decoder, make_decoder
-from tangy_tui.learning.speech.evidence import Evidence, Settings
+from tangy_tui.learning.speech.evidence import Evidence, Expecting, Settings
 from tangy_tui.learning.speech.listening import tier_of
 from tangy_tui.learning.speech.recogniser import Recogniser
-from tangy_tui.learning.verifying import Say
+from tangy_tui.learning.verifying import Reply, Say
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 
 Samples: TypeAlias = NDArray[np.float64]
@@ -203,10 +205,10 @@ def _prepare(settings: Settings) -> None:
     _decoder = make_decoder(understanding.wanted(BOOK, settings))
 
 
-def _decode(sound: tuple[str, str] | bytes) -> Evidence:
+def _decode(sound: tuple[str, str] | bytes, expecting: Expecting = "commands") -> Evidence:
     assert _decoder is not None
     pcm = sound if isinstance(sound, bytes) else heard(Path(sound[0]), sound[1])
-    return _decoder.decode(pcm, "commands")
+    return _decoder.decode(pcm, expecting)
 
 
 def texts(half: int) -> list[tuple[str, str]]:
@@ -220,10 +222,17 @@ def texts(half: int) -> list[tuple[str, str]]:
 
 
 def gather(
-    voices: Sequence[str], half: int, seed: int, folder: Path, settings: Settings
+    voices: Sequence[str],
+    half: int,
+    seed: int,
+    folder: Path,
+    settings: Settings,
+    expecting: Expecting = "commands",
 ) -> list[tuple[Job, Evidence]]:
     """Have everything said, and decode it."""
     said = texts(half)
+    if expecting == "answers":
+        said += [("answer", text) for text in (*understanding.YES, *understanding.NO)]
     for voice in voices:
         say(voice, [text for _, text in said], folder)
     jobs: list[Job] = [
@@ -240,7 +249,9 @@ def gather(
         sounds.append(sound)
     with ProcessPoolExecutor(initializer=_prepare, initargs=(settings,)) as pool:
         found = []
-        for number, evidence in enumerate(pool.map(_decode, sounds, chunksize=8), 1):
+        for number, evidence in enumerate(
+            pool.map(partial(_decode, expecting=expecting), sounds, chunksize=8), 1
+        ):
             found.append(evidence)
             if sys.stderr.isatty():
                 print(f"\r{number} of {len(sounds)}", end="", file=sys.stderr)
@@ -317,6 +328,26 @@ def judge(kind: str, text: str, evidence: Evidence, settings: Settings) -> str:
     return "offered" if any(meant) else "misled"
 
 
+def answers(decoded: Sequence[tuple[Job, Evidence]], settings: Settings) -> None:
+    """Print how many answers are taken as they were meant, and what else is taken for one."""
+    counts: dict[tuple[str, str], Counter[str]] = {}
+    for (kind, _, text, condition), evidence in decoded:
+        taken = understanding.answer(evidence, settings)
+        outcome = "none"
+        if isinstance(taken, Reply):
+            meant = kind == "answer" and taken.yes == (text in understanding.YES)
+            outcome = "right" if meant else "yes" if taken.yes else "no"
+        counts.setdefault((condition, kind), Counter())[outcome] += 1
+    print("per cent             n    right   wrongly yes   wrongly no")
+    for (condition, kind), count in counts.items():
+        shares = [100 * count[outcome] / count.total() for outcome in ("right", "yes", "no")]
+        name = condition if condition == "clean" else f"{condition} dB"
+        print(
+            f"{name:6} {kind:8} {count.total():6d}    {shares[0]:5.1f}         {shares[1]:5.1f}"
+            f"        {shares[2]:5.1f}"
+        )
+
+
 async def latency(folder: Path, voices: Sequence[str], settings: Settings) -> None:
     """Print how long after the end of an utterance its evidence is there.
 
@@ -350,6 +381,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description="Measure speech identification.")
     options.add_argument("--fit", action="store_true", help="print weights, on the tuned voices")
     options.add_argument("--paper", action="store_true", help="the paper's n-gram and keywords")
+    options.add_argument("--answers", action="store_true", help="spoken answers, not commands")
     options.add_argument("--voices", nargs="*", help="voices of flite or festival")
     options.add_argument("--keep", type=Path, help="a folder for the voices and what was decoded")
     chosen = options.parse_args()
@@ -360,6 +392,15 @@ def main() -> None:
         folder.mkdir(parents=True, exist_ok=True)
         begun = time.process_time()
         half, seed = (0, 11) if chosen.fit else (1, 12)
+        if chosen.answers:
+            decoded = gather(voices, half, seed, folder, settings, "answers")
+            for limit in (-0.3, -0.6, -0.9, -1.2, -1.5) if chosen.fit else ():
+                understanding.LEAST_ANSWER = limit
+                print(f"LEAST_ANSWER = {limit}")
+                answers(decoded, settings)
+            if not chosen.fit:
+                answers(decoded, settings)
+            return
         decoded = gather(voices, half, seed, folder, settings)
         if chosen.keep:
             kept = [[*job, asdict(evidence)] for job, evidence in decoded]

@@ -129,6 +129,11 @@ class TestUnderstanding:
         if stranger is not None:
             assert BOOK.understand(text) is None
 
+    @pytest.mark.parametrize("text", ["go to seat you", "go to user to", "drive to player to you"])
+    def test_where_a_name_should_follow_nobody_is_gone_to(self, text: str) -> None:
+        assert BOOK.understand(text) is None
+        assert any("go to" in near or "drive to" in near for near in BOOK.suggestions(text))
+
     def test_strangers_are_known_in_the_words_of_any_activity(
         self, lanterns: Activity, people: tuple[Person, ...]
     ) -> None:
