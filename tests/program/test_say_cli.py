@@ -129,7 +129,7 @@ def test_spoken_lines_are_forgotten_and_counted(tangy: Tangy, tmp_path: Path) ->
     assert tangy("say", "--forget").stdout == "0 spoken lines deleted.\n"
     assert not (tmp_path / "cache").exists()
     for text in ("one", "two", "three"):
-        tangy("say", text, "--sink", "null")
+        tangy("say", text, "--out", tmp_path / "out.wav")
     assert lines_kept(tmp_path / "cache") == 3
     assert json.loads(tangy("say", "--forget", "--json").stdout) == {"deleted": 3}
     assert lines_kept(tmp_path / "cache") == 0
@@ -148,7 +148,7 @@ def test_a_new_name_forgets_what_was_spoken_with_the_old_one(
 
     assert rename("Rosa") == 0
     assert not (tmp_path / "cache").exists()
-    tangy("say", "Rosa, it is your turn", "--sink", "null")
+    tangy("say", "Rosa, it is your turn", "--out", tmp_path / "out.wav")
     assert rename("Rosa") == 0
     assert lines_kept(tmp_path / "cache") == 1, "it is the same name"
     with monkeypatch.context() as patch:
