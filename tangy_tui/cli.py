@@ -31,6 +31,7 @@ from tangy_tui.verbs import (
     mic,
     mic_check,
     people,
+    people_forget,
     people_speech,
     play,
     read_card,
@@ -91,6 +92,7 @@ for verb in VERBS:
     app.command()(verb)
 people.app.command("pronounce")(people_speech.people_pronounce)
 people.app.command("voice")(people_speech.people_voice)
+people.app.command("forget")(people_forget.people_forget)
 app.add_typer(demonstrations.app, name="demonstrations")
 app.add_typer(people.app, name="people")
 mic.app.command("check")(mic_check.check)

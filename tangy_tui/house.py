@@ -155,6 +155,21 @@ class House:
         self.store.prefer_voice(person.id, preference)
         self.read_people()
 
+    def forget(self, person: Person) -> None:
+        """Forget a person's name, how it is said, voice, face, and that they agreed to that.
+
+        What they did stays in the log, under an id that says nobody's name.
+
+        Raises:
+            TangyError: some of it cannot be deleted.
+        """
+        from tangy_hw.perception.faces.keeping import forget_face
+
+        self.store.forget(person.id)
+        self.read_people()
+        _forget_spoken()
+        forget_face(self.store, person.id)
+
     @property
     def names(self) -> dict[str, str]:
         """The names of those who take part, by id."""

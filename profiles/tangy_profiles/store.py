@@ -19,7 +19,7 @@ from threading import RLock
 from typing import Any, NamedTuple, Self
 
 from tangy_profiles.errors import StoreError, TangyError
-from tangy_profiles.log_file import FILE, LogFile
+from tangy_profiles.log_file import FILE, NAMING, LogFile
 from tangy_profiles.phones import read_name_phones
 from tangy_profiles.reading import plain
 from tangy_profiles.voice import VoicePreference
@@ -257,6 +257,25 @@ class Store:
             self._write("INSERT OR IGNORE INTO speech (person) VALUES (?)", (person,))
             self._write(f"UPDATE speech SET {what} = ? WHERE person = ?", (value, person))  # noqa: S608
             self.append("speech noted", {"what": what}, person=person)
+
+    def forget(self, person: str) -> bool:
+        """Delete a person's name, how it is said, and how they like to be spoken to.
+
+        What they did stays in the log, under their id. Logged as "forgotten".
+
+        Returns:
+            Whether there was anything to forget.
+        """
+        with self.transaction():
+            there = any(
+                self._rows(f"SELECT 1 FROM {table} WHERE person = ?", person)  # noqa: S608
+                for table in NAMING
+            )
+            if there:
+                for table in NAMING:
+                    self._write(f"DELETE FROM {table} WHERE person = ?", (person,))  # noqa: S608
+                self.append("forgotten", {}, person=person)
+        return there
 
     def check(self) -> list[str]:
         """Read the whole log and return what is wrong with it, a sentence each ([]: nothing)."""

@@ -82,3 +82,20 @@ def test_a_face_is_forgotten(tangy: Tangy, album: Path, data: Path) -> None:
     assert [path.name for path in (data / "faces").iterdir()] == ["hoglbp1-guest1.face"]
     again = tangy("faces", "enrol", "Rosa", "--from", album / "0", "--data", data)
     assert again.returncode == 2 and "has not agreed" in again.stderr
+
+
+@pytest.mark.parametrize("who", ["Rosa", "guest1"])
+def test_of_somebody_who_is_forgotten_nothing_is_left(tangy: Tangy, data: Path, who: str) -> None:
+    name, id = ("Rosa", "user2") if who == "Rosa" else ("Ben", "guest1")
+    with Store.open(data) as store:
+        store.pronounce(id, "R OW Z AH")
+        kept = next((data / "faces").glob(f"*-{id}.face")).read_bytes().partition(b"\n")[2]
+    (data / "faces" / f".hoglbp1-{id}.face").write_bytes(kept)  # as if writing it had been cut off
+    told = json.loads(tangy("people", "forget", who, "--json", "--data", data).stdout)
+    assert (told["id"], told["name_left_in_events"]) == (id, 0)
+    left = b"".join(path.read_bytes() for path in data.rglob("*") if path.is_file())
+    assert name.encode() not in left and b"R OW Z AH" not in left
+    assert kept[:64] not in left
+    assert len(list((data / "faces").iterdir())) == 1
+    assert id not in tangy("faces", "list", "--data", data).stdout
+    assert "cannot" not in tangy("people", "list", "--data", data).stderr
