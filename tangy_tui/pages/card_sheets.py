@@ -13,31 +13,34 @@ from tangy_profiles.card_picture import CAPITALS, font_file, white_modules
 if TYPE_CHECKING:
     from fpdf import FPDF
 
-PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9)}
-"""Width and height in mm of a sheet that lies on its side: two cards beside each other."""
+PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a5": (148.0, 210.0)}
+"""Width and height in mm of a sheet: two cards beside each other, or one on A5, which is cut."""
 CUT = 4.0  # mm, the length of a cut mark
 POINTS = 72 / 25.4  # to the mm
 LONG_AGO = datetime(2000, 1, 1, tzinfo=UTC)  # the same cards give the same file on every day
 
 
 def card_sheets(activity: Activity, cards: Sequence[int], seed: int, paper: str) -> bytes:
-    """Make a PDF of cards, two to a sheet with cut marks, and of the call sheet."""
+    """Make a PDF of cards, two to a sheet with cut marks (A5: one), and of the call sheet."""
     from fpdf import FPDF
 
-    pdf = FPDF(orientation="landscape", unit="mm", format=paper)
+    width, height = PAPERS[paper]
+    beside = 2 if width > height else 1
+    size = min(width, height), max(width, height)
+    pdf = FPDF("landscape" if beside == 2 else "portrait", unit="mm", format=size)
     pdf.set_creation_date(LONG_AGO)
     pdf.set_title(f"{activity.title}: cards {cards[0]} to {cards[-1]}, deck {seed}")
     pdf.set_auto_page_break(False)
     pdf.set_margin(0)
     pdf.add_font("cards", fname=font_file())
     face = Face(activity.deck)
-    width, height = PAPERS[paper]
-    scale = min(width / 2 / WIDTH, height / HEIGHT)
+    scale = min(width / beside / WIDTH, height / HEIGHT)
     for place, card in enumerate(cards):
-        if place % 2 == 0:
+        if place % beside == 0:
             pdf.add_page()
-            _cut_marks(pdf, width, height, scale)
-        left = width / 2 - (WIDTH * scale if place % 2 == 0 else 0)
+            if beside == 2:
+                _cut_marks(pdf, width, height, scale)
+        left = width / 2 - WIDTH * scale * (beside / 2 - place % beside)
         pen = _Pen(pdf, left, (height - HEIGHT * scale) / 2, scale)
         for box in (*TAGS, *face.lines()):
             pen.fill(box)
@@ -45,7 +48,7 @@ def card_sheets(activity: Activity, cards: Sequence[int], seed: int, paper: str)
             pen.fill(box, white=True)
         for words in face.words(card, seed, activity.title):
             pen.write(words.text, words.x, words.y, words.high)
-    _call_sheet(pdf, activity, seed, height, width)
+    _call_sheet(pdf, activity, seed, *size)
     return bytes(pdf.output())
 
 

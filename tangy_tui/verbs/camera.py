@@ -11,14 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, print_json
+from tangy_tui.verbs.cards import DeckSeed
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
     from tangy_hw.drivers.camera_source import CameraSource
     from tangy_hw.drivers.camera_state import Sight
+    from tangy_hw.drivers.capturing import Reader
 
 SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video, a picture or a folder of them"
 STATES = {
@@ -138,24 +141,34 @@ def capture(
         float | None,
         typer.Option(min=0.0, help="Seconds between two: 1, or 0 (all) of a file or folder."),
     ] = None,
+    cards: Annotated[
+        bool, typer.Option("--cards", help="Read the card in each picture, as read-card does.")
+    ] = False,
+    deck_seed: DeckSeed = USUAL_SEED,
+    activity: ActivityName = "bingo",
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
 ) -> None:
     """Record a camera's pictures with what was seen, to be labelled; Ctrl-C ends it.
 
-    Beside each picture is a JSON file with the camera's state and an empty "label". Pictures show
-    people: record them with their consent only, and delete them when they are no longer needed.
+    Beside each picture is a JSON file with the camera's state, what was "seen" (with --cards) and
+    an empty "label": write true there if it was seen rightly, or what is really in the picture.
+    Then `tangy read-card --bench DIR` counts. Pictures show people: record them with their consent
+    only, and delete them when they are no longer needed.
     """
     from tangy_hw.drivers.camera_source import find_camera
 
     found = find_camera(source)
+    reader = _card_reader(activity, deck_seed) if cards else None
     between = (1.0 if found.live else 0.0) if every is None else every
     if not found.live and between == 0:
         found = find_camera(source, each=True)
     kept: list[dict[str, Any]] = []
     with suppress(KeyboardInterrupt):
-        asyncio.run(_capture(kept, found, folder, count, seconds, between, tell=not as_json))
+        asyncio.run(
+            _capture(kept, found, folder, count, seconds, between, reader, tell=not as_json)
+        )
     if as_json:
         print_json(kept)
     elif kept:
@@ -173,6 +186,7 @@ async def _capture(
     count: int | None,
     seconds: float | None,
     every: float,
+    reader: Reader | None,
     *,
     tell: bool,
 ) -> None:
@@ -180,7 +194,29 @@ async def _capture(
     from tangy_hw.drivers.capturing import capture as record
 
     async with Camera(source) as camera:
-        async for known in record(camera, folder, count=count, seconds=seconds, every=every):
+        async for known in record(
+            camera, folder, count=count, seconds=seconds, every=every, reader=reader
+        ):
             kept.append(known)
             if tell:
-                print(f"{known['file']}  {STATES[known['state']]}", flush=True)
+                print(f"{known['file']}  {STATES[known['state']]}{_card(known)}", flush=True)
+
+
+def _card_reader(activity: str, deck_seed: int) -> Reader:
+    """Return what says of a picture which card is in it, as `tangy read-card --json` does."""
+    from tangy_hw.perception.cards.reader import CardReader
+    from tangy_profiles.activity import load_activity
+
+    reader = CardReader(load_activity(activity).deck, deck_seed)
+    return lambda picture: reader.document(reader.read(picture))
+
+
+def _card(known: dict[str, Any]) -> str:
+    """Say in words which card was seen."""
+    seen = known["seen"]
+    if seen is None:
+        return ""
+    if seen["card"] is None:
+        return ", no card"
+    hidden = f", {len(seen['hidden'])} not to be told" if seen["hidden"] else ""
+    return f", card {seen['card']}: {len(seen['marked'])} marked{hidden}"

@@ -30,12 +30,19 @@ DeckSeed = Annotated[
 def cards_print(
     count: Count = 40,
     first: First = 1,
-    pdf: Annotated[Path | None, typer.Option(help="Write this PDF, two cards to a sheet.")] = None,
+    pdf: Annotated[
+        Path | None, typer.Option(help="Write this PDF of cards and the call sheet.")
+    ] = None,
     png: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write a picture of each card, cards.json.")
     ] = None,
     dpi: Annotated[float, typer.Option(min=40, max=600, help="Dots per inch of pictures.")] = 150,
-    paper: Annotated[str, typer.Option(help="What the PDF is printed on: a4 or letter.")] = "a4",
+    paper: Annotated[
+        str,
+        typer.Option(
+            help="What the PDF is printed on: a4 or letter (two cards to a sheet), or a5."
+        ),
+    ] = "a4",
     deck_seed: DeckSeed = USUAL_SEED,
     activity: ActivityName = "bingo",
     as_json: Json = False,

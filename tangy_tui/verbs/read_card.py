@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +16,8 @@ from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Json, print_json
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from tangy_hw.perception.cards.reader import CardReader, CardReading
     from tangy_profiles.activity import Activity
 
@@ -27,8 +31,13 @@ def read_card(
         typer.Option(help="What was called, as in 5,17,62: say how the person is doing."),
     ] = None,
     together: Annotated[
-        bool, typer.Option("--together", help="All are frames of one card: make one reading.")
+        bool,
+        typer.Option("--together", help="All are pictures of one card: make one reading of them."),
     ] = False,
+    draw: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write each picture there with what was read on it."),
+    ] = None,
     bench: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Count how well labelled pictures in DIR are read."),
@@ -43,7 +52,8 @@ def read_card(
     """Read Tangy's printed cards in pictures.
 
     A cell that cannot be told is hidden, and never a guess. With --called the answer is how the
-    person is doing; hidden cells matter only where they could change it.
+    person is doing; hidden cells matter only where they could change it. What a hand hides in one
+    picture another may show: give several of the same card with --together.
 
     With --bench the truth is in DIR/labels.json, in the form in which --json prints: make it with
     `tangy read-card DIR/*.jpg --json > DIR/labels.json` and correct what is wrong in it. Or it is
@@ -51,7 +61,6 @@ def read_card(
     """
     from tangy_hw.perception.cards.labelled import count_labelled, labelled
     from tangy_hw.perception.cards.reader import CardReader
-    from tangy_hw.perception.pictures import read_picture
     from tangy_profiles.activity import load_activity
 
     if bool(files) == (bench is not None):
@@ -75,20 +84,79 @@ def read_card(
         else:
             print("\n".join(counted.lines()))
         return
-    readings = [(str(path), read(read_picture(path))) for path in files or []]
-    if together:
-        readings = [(readings[0][0], reader.fuse([reading for _, reading in readings]))]
+    readings, refused = _readings(files or [], read, reader, draw)
+    if together and readings:
+        one = reader.fuse([reading for _, reading in readings])
+        readings = [(" + ".join(name for name, _ in readings), one)]
+        if as_json:
+            readings = [(str((files or [Path()])[0]), one)]
     listed = [_row(name, reading, reader, loaded, numbers) for name, reading in readings]
-    if together:
-        listed[0]["files"] = [str(path) for path in files or []]
-    if as_json:
+    if as_json and listed:
         print_json(listed)
-        return
-    for row, (_, reading) in zip(listed, readings, strict=True):
-        print(plain(f"{row['file']}: {_told(row)}"))
-        if reading.card is not None:
-            for line in _drawn(reading, reader):
-                print(f"  {line}")
+    elif listed:
+        for row, (_, reading) in zip(listed, readings, strict=True):
+            print(plain(f"{row['file']}: {_told(row, reading)}"))
+            if reading.card is not None:
+                print("\n".join(f"  {line}" for line in _drawn(reading, reader)))
+        _explain([reading for _, reading in readings])
+    if refused:
+        raise typer.Exit(2)
+
+
+def _readings(
+    files: list[Path],
+    read: Callable[[NDArray[Any]], CardReading],
+    reader: CardReader,
+    draw: Path | None,
+) -> tuple[list[tuple[str, CardReading]], int]:
+    """Read pictures; of those that cannot be opened say why, and count them."""
+    from tangy_hw.perception.pictures import PictureError, read_picture
+
+    readings: list[tuple[str, CardReading]] = []
+    refused = 0
+    for path in files:
+        try:
+            picture = read_picture(path)
+        except PictureError as error:
+            print(f"tangy: {error}", file=sys.stderr)
+            refused += 1
+            continue
+        reading = read(picture)
+        readings.append((str(path), reading))
+        if draw is not None:
+            _draw(picture, reading, reader, path, draw)
+    return readings, refused
+
+
+def _draw(
+    picture: NDArray[Any], reading: CardReading, reader: CardReader, path: Path, folder: Path
+) -> None:
+    """Write a picture with what was read on it."""
+    import cv2
+
+    from tangy_hw.perception.cards.drawing import draw_reading
+
+    there = folder / f"{path.stem}-read.png"
+    drawn = cv2.imencode(".png", draw_reading(picture, reading, reader.deck))[1].tobytes()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        there.write_bytes(drawn)
+    except OSError as error:
+        raise TangyError(plain(f"{there}: cannot be written ({error.strerror}).")) from None
+
+
+def _explain(readings: list[CardReading]) -> None:
+    """Say what the drawings mean, and how several pictures of a card become one reading."""
+    signs = []
+    if any(reading.card is not None and reading.marked for reading in readings):
+        signs.append("[ ] is marked")
+    if any(reading.card is not None and reading.hidden for reading in readings):
+        signs.append("? cannot be told")
+    if signs:
+        print(f"{', '.join(signs)}.")
+    cards = [reading.card for reading in readings if reading.card is not None]
+    if len(set(cards)) < len(cards) and any(reading.hidden for reading in readings):
+        print("Several pictures of one card tell more together: add --together.")
 
 
 def _called(text: str, activity: Activity) -> set[int]:
@@ -124,10 +192,10 @@ def _row(
     return row
 
 
-def _told(row: dict[str, Any]) -> str:
+def _told(row: dict[str, Any], reading: CardReading) -> str:
     """Say in words what was read."""
     if row["card"] is None:
-        told = str(row["problem"])
+        told = reading.problem
     else:
         told = f"card {row['card']}, {len(row['marked'])} marked"
         if row["hidden"]:
@@ -137,22 +205,25 @@ def _told(row: dict[str, Any]) -> str:
 
 
 def _drawn(reading: CardReading, reader: CardReader) -> list[str]:
-    """Draw a card in letters: [12] is marked, ? cannot be told."""
+    """Draw a card in letters: [12] is marked, 12? cannot be told."""
     from tangy_profiles.card_face import numbers_of
 
     deck = reader.deck
     numbers = numbers_of(deck, reading.card or 1, reader.deck_seed)
-    lines = []
+    columns = len(deck.columns)
+    wide = max(len(str(number)) for number in deck.numbers)
+    rule = "+".join("-" * (wide + 4) for _ in range(columns))
+    lines = [" ".join(column.letter.center(wide + 4) for column in deck.columns), f"+{rule}+"]
+    lines[0] = f" {lines[0]}"
     for row in range(deck.rows):
         cells = []
-        for column in range(len(deck.columns)):
-            cell = row * len(deck.columns) + column
-            number = f"{numbers[cell]:>2}"
+        for cell in range(row * columns, (row + 1) * columns):
+            number = "free"[:wide] if deck.free >> cell & 1 else f"{numbers[cell]:>{wide}}"
             if reading.hidden >> cell & 1:
-                cells.append(f" {number}?")
+                cells.append(f"  {number}? ")
             elif reading.marked >> cell & 1:
-                cells.append(f"[{number}]")
+                cells.append(f" [{number}] ")
             else:
-                cells.append(f" {number} ")
-        lines.append(" ".join(cells))
+                cells.append(f"  {number}  ")
+        lines += [f"|{'|'.join(cells)}|", f"+{rule}+"]
     return lines

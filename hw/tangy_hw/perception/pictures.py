@@ -12,20 +12,13 @@ from tangy_profiles.reading import plain
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from PIL.Image import Image
 
     Picture = NDArray[np.uint8]
 
 SMALLEST = 60  # pixels to a side
 LARGEST = 50_000_000  # pixels
-ENDINGS = {
-    "PNG": (".png",),
-    "JPEG": (".jpg", ".jpeg", ".jpe", ".jfif"),
-    "MPO": (".jpg", ".jpeg", ".mpo"),  # as some telephones write them
-    "WEBP": (".webp",),
-    "BMP": (".bmp", ".dib"),
-    "TIFF": (".tif", ".tiff"),
-    "PPM": (".ppm", ".pnm"),
-}
+KINDS = ("PNG", "JPEG", "MPO", "WEBP", "BMP", "TIFF", "PPM")  # MPO: some telephones write it
 
 
 class PictureError(TangyError):
@@ -35,9 +28,11 @@ class PictureError(TangyError):
 def read_picture(path: Path) -> Picture:
     """Read a picture file as colour (blue, green, red), turned the way it was taken.
 
+    A grey picture has three colours that are the same; white is behind transparent parts; what
+    the file is named does not matter.
+
     Raises:
-        PictureError: it is missing, no picture, broken off, named as another kind, too small or
-            too large, grey, or has transparent parts.
+        PictureError: it is missing, no picture, broken off, too small or too large.
     """
     import numpy as np
     from PIL import Image, ImageOps, UnidentifiedImageError
@@ -49,9 +44,9 @@ def read_picture(path: Path) -> Picture:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of its size, which is asked about here
             with Image.open(path) as file:
-                _check(file.format or "", file.size, file.mode, "transparency" in file.info, path)
+                _check(file.format or "", file.size, name)
                 file.load()
-                turned = ImageOps.exif_transpose(file).convert("RGB")
+                turned = _coloured(ImageOps.exif_transpose(file))
     except (UnidentifiedImageError, Image.DecompressionBombError) as error:
         if isinstance(error, Image.DecompressionBombError):
             raise PictureError(_too_large(name)) from None
@@ -71,18 +66,26 @@ def _too_large(name: str) -> str:
     return f"{name}: has more than {LARGEST // 1_000_000} million pixels; make it smaller first."
 
 
-def _check(kind: str, size: tuple[int, int], mode: str, transparent: bool, path: Path) -> None:
-    """Refuse what is no usual colour picture before its pixels are unpacked."""
-    name = plain(str(path))
-    if kind not in ENDINGS:
+def _check(kind: str, size: tuple[int, int], name: str) -> None:
+    """Refuse what is of no use before its pixels are unpacked."""
+    if kind not in KINDS:
         raise PictureError(f"{name}: is not a picture (PNG, JPEG, WebP, BMP or TIFF).")
-    if path.suffix.lower() not in ENDINGS[kind]:
-        raise PictureError(f"{name}: is {kind} inside; name it {ENDINGS[kind][0]}.")
     if min(size) < SMALLEST:
         raise PictureError(f"{name}: is only {size[0]} x {size[1]} pixels: too small to see in.")
     if size[0] * size[1] > LARGEST:
         raise PictureError(_too_large(name))
-    if "A" in mode or "a" in mode or transparent:
-        raise PictureError(f"{name}: has transparent parts; save it without them.")
-    if mode in ("1", "L", "I", "F") or mode.startswith("I;"):
-        raise PictureError(f"{name}: is grey; colours are needed to see it as Tangy does.")
+
+
+def _coloured(picture: Image) -> Image:
+    """Return a picture of any mode in red, green and blue."""
+    import numpy as np
+    from PIL import Image
+
+    if picture.mode[0] in "IF":  # 16 bits to a pixel, or more
+        values = np.nan_to_num(np.asarray(picture, dtype=float))
+        values = values / 257 if values.max() > 255 else values
+        return Image.fromarray(np.clip(values, 0, 255).astype(np.uint8)).convert("RGB")
+    if picture.mode.lower()[-1] == "a" or "transparency" in picture.info:
+        clear = picture.convert("RGBA")
+        return Image.alpha_composite(Image.new("RGBA", clear.size, "white"), clear).convert("RGB")
+    return picture.convert("RGB")

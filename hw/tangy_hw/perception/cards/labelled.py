@@ -35,6 +35,7 @@ class Counted:
     """How many pictures of a labelled folder were read as they are."""
 
     pictures: int = 0
+    with_card: int = 0
     read: int = 0
     whole: int = 0
     wrong_cards: int = 0
@@ -48,12 +49,20 @@ class Counted:
         return dict(vars(self))
 
     def lines(self) -> list[str]:
-        """Say it in a few lines."""
-        told = [
-            f"{self.pictures} pictures: {self.read} cards read, {self.whole} of them whole.",
-            f"Wrong cards: {self.wrong_cards}. Wrong cells: {self.wrong_cells}. "
-            f"Not told, though in sight: {self.not_told} of {self.seen_cells} cells.",
+        """Say it as a table, and which pictures were read wrongly."""
+        rows = [
+            ("cards read", self.read, self.with_card),
+            ("read with all cells in sight", self.whole, self.with_card),
+            ("wrong cards", self.wrong_cards, self.pictures),
+            ("cells read wrongly", self.wrong_cells, self.seen_cells),
+            ("cells in sight, but not told", self.not_told, self.seen_cells),
         ]
+        told = [f"{self.pictures} pictures, {self.with_card} of them with a card"]
+        told += [
+            f"  {what:<30}{many:>7} of {of:>7}{many / max(1, of):>9.1%}" for what, many, of in rows
+        ]
+        if self.mistakes:
+            told.append("Read wrongly:")
         return told + [plain(f"  {m['file']}: {m['what']}") for m in self.mistakes]
 
 
@@ -139,6 +148,7 @@ def count_labelled(labels: list[Label], read: Callable[[NDArray[Any]], CardReadi
     for label in labels:
         reading = read(read_picture(label.path))
         counted.pictures += 1
+        counted.with_card += label.card is not None
         if reading.card is not None and reading.card != label.card:
             counted.wrong_cards += 1
             right = "none" if label.card is None else f"card {label.card}"

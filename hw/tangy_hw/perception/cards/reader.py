@@ -199,5 +199,4 @@ class CardReader:
             "hidden": places(reading.hidden),
             "confidence": round(reading.confidence, 4),
             "cells": [cells[row * columns : (row + 1) * columns] for row in range(self.deck.rows)],
-            "problem": reading.problem or None,
         }
