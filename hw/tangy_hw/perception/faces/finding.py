@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -20,15 +21,17 @@ Box = tuple[float, float, float, float]
 
 LARGEST, SMALLEST = 720, 240  # pixels that the longer side is brought down to, the shorter up
 MOST_ENLARGED = 4.0
-LEAST_FACE = 28  # pixels across, of the picture as it is searched
+GLANCE = 480  # pixels of the longer side when faces that are near are looked for, at first
+LEAST_FACE = 22, 24  # pixels across, of the picture as it is searched, and at a glance
 FRONT = ("haarcascade_frontalface_alt2", "haarcascade_frontalface_default")
 SIDE = "haarcascade_profileface"
 EYES = (  # of the left and the right half of a face, as it is seen
     ("haarcascade_righteye_2splits", "haarcascade_eye"),
     ("haarcascade_lefteye_2splits", "haarcascade_eye"),
 )
-FACE = 200  # pixels that a face is brought to when its eyes are looked for
-ROOM = ((20, 40, 110, 120), (90, 40, 180, 120))  # where they can be: left, top, right, bottom
+FACE = 120  # pixels that a face is brought to when its eyes are looked for
+ROOM = ((12, 24, 66, 72), (54, 24, 108, 72))  # where they can be: left, top, right, bottom
+EYE = 20, 46  # pixels across, of all that the cascades take for an eye
 APART = (0.28, 0.52)  # of the face's width
 STEEPEST = 0.5  # rise of the line between them
 
@@ -53,8 +56,13 @@ def find_faces(grey: Grey) -> list[Found]:
     Raises:
         FaceError: this OpenCV comes without cascades.
     """
-    boxes = _boxes(grey)
-    return [Found(box, find_eyes(grey, box)) for box in boxes]
+    first: list[Found] = []
+    for boxes in _searches(grey):
+        found = [Found(box, find_eyes(grey, box)) for box in sorted(boxes, key=_smaller)]
+        if any(face.eyes is not None for face in found):
+            return found
+        first = first or found
+    return first
 
 
 def find_eyes(grey: Grey, box: Box) -> tuple[Point, Point] | None:
@@ -70,7 +78,7 @@ def find_eyes(grey: Grey, box: Box) -> tuple[Point, Point] | None:
             (x + w / 2 + x0, y + h / 2 + y0)
             for name in names
             for x, y, w, h in _cascade(name).detectMultiScale(
-                part, 1.08, 2, minSize=(28, 28), maxSize=(75, 75)
+                part, 1.08, 2, minSize=(EYE[0], EYE[0]), maxSize=(EYE[1], EYE[1])
             )
         ]
         if not seen:
@@ -85,34 +93,49 @@ def find_eyes(grey: Grey, box: Box) -> tuple[Point, Point] | None:
     return (left + ax * scale, middle + ay * scale), (left + bx * scale, middle + by * scale)
 
 
-def _boxes(grey: Grey) -> list[Box]:
+def _searches(grey: Grey) -> Iterator[list[Box]]:
+    """Search a picture in one way after the other: what is quick and mostly enough comes first."""
+    import cv2
+
+    if max(grey.shape) > 1.25 * GLANCE:
+        yield _detect(FRONT[0], *_sized(grey, GLANCE), coarse=True)
+    closely = _detect(FRONT[0], *_sized(grey, LARGEST))
+    yield closely
+    if closely:
+        return
+    small, scale = _sized(grey, GLANCE)
+    yield _detect(FRONT[1], small, scale)
+    flat = cv2.createCLAHE(3.0, (6, 6)).apply(small)  # of faces in shade
+    yield _detect(FRONT[0], flat, scale)
+    yield _detect(SIDE, flat, scale)
+    mirrored = _detect(SIDE, flat[:, ::-1].copy(), scale)
+    yield [(grey.shape[1] - x - w, y, w, h) for x, y, w, h in mirrored]
+
+
+def _sized(grey: Grey, largest: int) -> tuple[Any, float]:
+    """Bring a picture down to so many pixels of its longer side, or a small one up."""
     import cv2
 
     height, width = grey.shape
-    scale = min(LARGEST / max(height, width), 1.0)
+    scale = min(largest / max(height, width), 1.0)
     if scale == 1.0:
         scale = max(1.0, min(MOST_ENLARGED, SMALLEST / min(height, width)))
-    small = grey
-    if scale != 1.0:
-        how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
-        size = max(1, round(width * scale)), max(1, round(height * scale))
-        small = cv2.resize(grey, size, interpolation=how)  # type: ignore[assignment]
-    for name in FRONT:
-        if boxes := _detect(name, small):
-            break
-    else:
-        flat: Any = cv2.createCLAHE(3.0, (6, 6)).apply(small)  # of faces in shade
-        boxes = _detect(FRONT[0], flat) or _detect(SIDE, flat)
-        if not boxes:
-            mirrored = _detect(SIDE, flat[:, ::-1].copy())
-            boxes = [(small.shape[1] - x - w, y, w, h) for x, y, w, h in mirrored]
-    boxes.sort(key=lambda box: -box[2])
-    return [(x / scale, y / scale, w / scale, h / scale) for x, y, w, h in boxes]
+    if scale == 1.0:
+        return grey, scale
+    how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
+    size = max(1, round(width * scale)), max(1, round(height * scale))
+    return cv2.resize(grey, size, interpolation=how), scale
 
 
-def _detect(name: str, grey: Any) -> list[Box]:
-    found = _cascade(name).detectMultiScale(grey, 1.1, 3, minSize=(LEAST_FACE, LEAST_FACE))
-    return [(float(x), float(y), float(w), float(h)) for x, y, w, h in found]
+def _detect(name: str, grey: Any, scale: float, *, coarse: bool = False) -> list[Box]:
+    step, times, least = (1.2, 2, LEAST_FACE[1]) if coarse else (1.1, 3, LEAST_FACE[0])
+    found = _cascade(name).detectMultiScale(grey, step, times, minSize=(least, least))
+    return [(x / scale, y / scale, w / scale, h / scale) for x, y, w, h in found]
+
+
+def _smaller(box: Box) -> float:
+    """Order boxes, the largest first."""
+    return -box[2]
 
 
 def _cut(grey: Grey, x: float, y: float, side: float) -> Any:

@@ -1,8 +1,9 @@
 """Whose face it is, among those who are enrolled; nobody's is an answer.
 
-How alike two pictures of one person are, and two of different people, is taken from the pictures
-that were enrolled, each against the others. On the scale of `likeness`, 0 is like somebody else
-and 1 like oneself, by the means of both; nothing else sets it, and no stranger is needed.
+How alike pictures of one person are, and those of different people, is taken from the pictures
+that were enrolled, each against the others. From that comes how alike a face must be; nothing else
+sets it, and no stranger is needed. On the scale of `likeness` 0 is as like as the others are to one
+another, and from 0.4 on it is somebody.
 """
 
 from __future__ import annotations
@@ -15,14 +16,15 @@ if TYPE_CHECKING:
     from tangy_hw.perception.faces.describing import Vector
 
 ENOUGH = 0.4
-"""The likeness from which on a face is taken for somebody's."""
+"""The likeness from which on a face is taken for somebody's: so much of the way to oneself."""
+SPREAD = 2.0  # deviations that others are stayed away from, where they are nearer than that
 AHEAD = 0.1
 """So much more alike must it be than to anybody else."""
 BEST = 2  # so many pictures of a person count, those that are most alike
 LEAST = 3
 """Fewer pictures of a person say nothing of how much they vary."""
-ALONE = 0.1  # share of one's own pictures that would be strangers, where nobody else is enrolled
-LEAST_GAP = 0.02  # between oneself and others: pictures may be the very same
+ALONE = 0.1  # share of one's own pictures that would be unknown, where nobody else is enrolled
+LEAST_GAP = 0.01  # between others and the threshold: pictures may be the very same
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,21 +49,17 @@ class Gallery:
         ends = np.cumsum([0, *(len(row) for row in rows)])
         self._spans = list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
         self._all = np.concatenate(rows) if rows else np.zeros((0, 1), np.float32)
-        self.stranger, self.self = self._scale()
-        """The mean similarity (a cosine) to another person, and to oneself."""
-
-    @property
-    def threshold(self) -> float:
-        """The similarity (a cosine) from which on a face is taken for somebody's."""
-        return self.stranger + ENOUGH * (self.self - self.stranger)
+        self.stranger, self.threshold = self._scale()
+        """The mean similarity (a cosine) to another person, and that which is enough."""
 
     def compare(self, vector: Vector) -> Match:
         """Say whose face it is; unknown where it is not clearly anybody's."""
         if not self.people:
             return Match(None, None, 0.0)
         similar = self._all @ vector
+        unit = (self.threshold - self.stranger) / ENOUGH
         likenesses = {
-            person: (_most(similar[a:b]) - self.stranger) / (self.self - self.stranger)
+            person: (_most(similar[a:b]) - self.stranger) / unit
             for person, (a, b) in zip(self.people, self._spans, strict=True)
         }
         return decide(likenesses)
@@ -83,12 +81,15 @@ class Gallery:
                     others.append(max(apart))
         if not own:
             return 0.0, 1.0
-        mean = float(np.mean(own))
+        oneself = float(np.median(own))
         if others:
             stranger = float(np.mean(others))
-        else:  # as far below as sets the threshold where only one in ten of one's own is refused
-            stranger = mean - (mean - float(np.quantile(own, ALONE))) / (1 - ENOUGH)
-        return min(stranger, mean - LEAST_GAP), mean
+            enough = stranger + ENOUGH * (oneself - stranger)
+            enough = max(enough, stranger + SPREAD * float(np.std(others)))
+        else:
+            enough = float(np.quantile(own, ALONE))
+            stranger = oneself - (oneself - enough) / (1 - ENOUGH)
+        return min(stranger, enough - LEAST_GAP), enough
 
 
 def decide(likenesses: Mapping[str, float]) -> Match:

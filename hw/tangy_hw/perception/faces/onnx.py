@@ -19,7 +19,7 @@ SURE = 0.7  # that it is a face
 LARGEST, SMALLEST = 1280, 240  # pixels that the longer side is brought down to, the shorter up
 MOST_ENLARGED = 4.0
 LARGEST_FILE = 500_000_000  # bytes; those of OpenCV's have 0.2 and 39 million
-LIMITS = Limits(evenness=0.15, symmetry=0.0)
+LIMITS = Limits(contrast=12, evenness=0.15, symmetry=0.0)
 """These see turned faces and shadows through better than the usual reader."""
 
 

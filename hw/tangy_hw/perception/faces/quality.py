@@ -20,9 +20,9 @@ class Limits:
     sharpness: float = 0.12
     darkest: float = 30  # of 255
     brightest: float = 235
-    contrast: float = 14  # of 255: the spread of its brightness
-    evenness: float = 0.3  # of 1: the darker half by the lighter
-    symmetry: float = 0.6
+    contrast: float = 17  # of 255: the spread of its brightness
+    evenness: float = 0.55  # of 1: the darker half by the lighter
+    symmetry: float = 0.75
 
 
 USUAL = Limits()
