@@ -17,6 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
+from tangy_tui.learning.speech.beside import Beside
 from tangy_tui.learning.speech.cleaning import cleaned, surrounded
 from tangy_tui.learning.speech.evidence import RATE, Evidence, Expecting, Wanted
 from tangy_tui.learning.speech.language import (
@@ -97,6 +98,7 @@ class TwoDecoders:
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
         self._open = False
+        self._beside = Beside(self._by_grammar)
 
     def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
         """Decode a whole utterance."""
@@ -105,12 +107,17 @@ class TwoDecoders:
         if seconds < SHORTEST or not self._said[expecting]:
             return Evidence(seconds=seconds)
         pcm = cleaned(surrounded(pcm))
+        self._beside.ask((pcm, expecting))
         words, score, _ = _best_path(self._words, pcm, expecting)
-        phrase, garbage, _ = _best_path(self._grammar, pcm, expecting)
+        phrase, garbage = self._beside.answer()
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
         return Evidence(words, phrase, margin, 1.0, seconds)
+
+    def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
+        phrase, score, _ = _best_path(self._grammar, *asked)
+        return phrase, score
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""

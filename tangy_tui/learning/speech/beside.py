@@ -1,0 +1,79 @@
+"""Work that a second processor does meanwhile: a copy of this process that only answers.
+
+pocketsphinx holds the interpreter's lock, so a thread would not do.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Generic, TypeVar
+
+Asked = TypeVar("Asked")
+Answer = TypeVar("Answer")
+
+
+class Beside(Generic[Asked, Answer]):
+    """A function whose answers are worked out in a process beside this one.
+
+    Where there is no second processor, or that process cannot be made or has died, the answer is
+    worked out here: it only takes longer. The copy ends when this process does, however that ends.
+    """
+
+    def __init__(self, work: Callable[[Asked], Answer]) -> None:
+        """Make the copy, of a function that keeps nothing from one call to the next."""
+        self._work = work
+        self._there: Connection | None = None
+        self._asked: list[Asked] = []
+        if len(_processors()) > 1 and "fork" in multiprocessing.get_all_start_methods():
+            self._fork()
+
+    def ask(self, asked: Asked) -> None:
+        """Have it worked out; `answer` gives what comes of it."""
+        self._asked = [asked]
+        if self._there is not None:
+            try:
+                self._there.send(asked)
+            except OSError:
+                self._there = None
+
+    def answer(self) -> Answer:
+        """Wait for the answer to what was asked last."""
+        if self._there is not None:
+            try:
+                answer: Answer = self._there.recv()
+            except (EOFError, OSError):
+                self._there = None
+            else:
+                return answer
+        return self._work(self._asked.pop())
+
+    def _fork(self) -> None:
+        context = multiprocessing.get_context("fork")
+        here, there = context.Pipe()
+        try:
+            context.Process(target=self._serve, args=(here, there), daemon=True).start()
+        except OSError:
+            here.close()
+        else:
+            self._there = here
+        there.close()
+
+    def _serve(self, here: Connection, there: Connection) -> None:
+        """Answer until nobody asks any more."""
+        own = there.fileno()
+        here.close()
+        os.closerange(3, own)  # what others wait to see closed
+        os.closerange(own + 1, os.sysconf("SC_OPEN_MAX"))
+        try:
+            while True:
+                there.send(self._work(there.recv()))
+        except (EOFError, OSError, KeyboardInterrupt):
+            os._exit(0)
+
+
+def _processors() -> range:
+    usable = getattr(os, "sched_getaffinity", None)
+    return range(len(usable(0)) if usable is not None else os.cpu_count() or 1)

@@ -1,0 +1,79 @@
+"""A copy of the process that works beside it: the same answers, and nothing left of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from tangy_tui.learning.speech import beside as room
+from tangy_tui.learning.speech.beside import Beside
+
+
+def _who(asked: int) -> tuple[int, int]:
+    return asked * 2, os.getpid()
+
+
+@pytest.fixture(autouse=True)
+def two_processors(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(room, "_processors", lambda: range(2))
+    yield
+
+
+def test_another_process_answers_one_question_after_the_other() -> None:
+    beside = Beside(_who)
+    answered = []
+    for number in range(3):
+        beside.ask(number)
+        answered.append(beside.answer())
+    assert [double for double, _ in answered] == [0, 2, 4]
+    pids = {pid for _, pid in answered}
+    assert len(pids) == 1 and os.getpid() not in pids
+
+
+def test_with_one_processor_the_answer_is_worked_out_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(room, "_processors", lambda: range(1))
+    beside = Beside(_who)
+    beside.ask(4)
+    assert beside.answer() == (8, os.getpid())
+
+
+@pytest.mark.parametrize("asked_before", [True, False])
+def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
+    beside = Beside(_who)
+    beside.ask(1)
+    _, pid = beside.answer()
+    if asked_before:
+        os.kill(pid, signal.SIGSTOP)  # so that it has not answered when it dies
+        beside.ask(21)
+        os.kill(pid, signal.SIGKILL)
+    else:
+        os.kill(pid, signal.SIGKILL)
+        beside.ask(21)
+    assert beside.answer() == (42, os.getpid())
+    beside.ask(5)
+    assert beside.answer() == (10, os.getpid())
+
+
+ENDS = """
+import os, signal, sys
+from tangy_tui.learning.speech import beside
+beside._processors = lambda: range(2)
+one = beside.Beside(lambda asked: os.getpid())
+one.ask(0)
+print(one.answer(), flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_it_ends_with_the_process_however_that_ends() -> None:
+    # Both hold the pipe that is read here: it closes when the last of them has ended.
+    ended = subprocess.run(
+        [sys.executable, "-c", ENDS], stdout=subprocess.PIPE, timeout=60, check=False
+    )
+    assert ended.returncode == -signal.SIGKILL
+    assert int(ended.stdout) > 0
