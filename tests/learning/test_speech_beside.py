@@ -72,7 +72,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 def test_it_ends_with_the_process_however_that_ends() -> None:
     # Both hold the pipe that is read here: it closes when the last of them has ended.
-    ended = subprocess.run(
+    ended = subprocess.run(  # noqa: S603 - this interpreter and our own text
         [sys.executable, "-c", ENDS], stdout=subprocess.PIPE, timeout=60, check=False
     )
     assert ended.returncode == -signal.SIGKILL
