@@ -70,10 +70,9 @@ def forward(data: Path | None, socket: Path | None) -> None:
 
     if sys.stdin is not None and sys.stdin.isatty():
         there = as_given(data) + ("" if socket is None else f" --socket {shlex.quote(str(socket))}")
-        raise TangyError(
-            f"mic: no sound comes in. Linux: `{LINUX}{there}`. macOS: `{MACOS}{there}`. "
-            "See `tangy mic --help`."
-        )
+        for system, command in (("Linux", LINUX), ("macOS", MACOS)):
+            print(f"{system}: {plain(command + there)}", file=sys.stderr)
+        raise TangyError("mic: no sound comes in: pipe it, as above. See `tangy mic --help`.")
     source = open_standard_input("mic", 0, convert=False)
     forwarder = Forwarder(source, socket or data_folder(data) / SOCKET_NAME, tell=_say)
     try:
