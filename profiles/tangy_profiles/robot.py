@@ -13,6 +13,10 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import Table, nearest, read_toml
 
 
+LOOKS_AT = ("cards",)
+"""What the profile can say that a camera looks at."""
+
+
 @dataclass(frozen=True)
 class Limb:
     """A chain of joints that is posed together: joint names and limits in degrees."""
@@ -55,12 +59,17 @@ class Device:
     """A device of the robot: its data is stale after so many s; `facts` are what it measures.
 
     Of each fact the profile says in words of the staff what it is, and which values it can have.
+    `source` is where the pictures of a camera come from, "" where that is said elsewhere or it is
+    no camera: 0 or /dev/video0, http://..., rtsp://..., or a file or folder, which may be relative
+    to the robot's file. `looks_at` is what is to be read in them, one of `LOOKS_AT` or "".
     """
 
     name: str
     label: str
     stale_after: float
     facts: Mapping[str, Measure]
+    source: str = ""
+    looks_at: str = ""
 
 
 @dataclass(frozen=True)
@@ -75,7 +84,8 @@ class FaceModels:
 class Robot:
     """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices.
 
-    `faces` are its files for faces; without them it uses what comes with OpenCV.
+    `faces` are its files for faces; without them it uses what comes with OpenCV. `file` is where
+    all this was read.
     """
 
     name: str
@@ -85,6 +95,7 @@ class Robot:
     postures: Mapping[str, Mapping[str, tuple[float, ...]]]
     devices: Mapping[str, Device]
     faces: FaceModels | None = None
+    file: Path = Path()
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -145,6 +156,7 @@ def load_robot(name: str = "tangy") -> Robot:
         MappingProxyType(postures),
         MappingProxyType(_devices(top)),
         _face_models(top, path.parent),
+        path,
     )
     top.close()
     return robot
@@ -172,6 +184,8 @@ def _devices(top: Table) -> dict[str, Device]:
             entry.text("label"),
             entry.number("stale_after", 0.05, 60),
             MappingProxyType({fact: _measure(facts, fact) for fact in facts}),
+            entry.text("source", ""),
+            entry.choice("looks_at", LOOKS_AT, ""),
         )
         facts.close()
         entry.close()

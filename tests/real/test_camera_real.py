@@ -108,6 +108,17 @@ class TestFiles:
             with pytest.raises(CameraError, match=word):
                 await camera.frame(wait=PATIENCE)
 
+    async def test_a_picture_can_be_asked_for_in_a_size(self, tmp_path: Path) -> None:
+        path = film(tmp_path / "a.avi", "MJPG")
+        async with Camera(find_camera(str(path), each=True)) as camera:
+            small = await camera.frame(fit=(40, 90))
+            whole = await camera.frame()
+        assert small is not None and whole is not None
+        assert (small.width, small.height, len(small.pixels)) == (40, 30, 40 * 30 * 3)
+        like = cv2.resize(PICTURES[0], (40, 30), interpolation=cv2.INTER_AREA)
+        assert float(np.mean(cv2.absdiff(small.image(), like))) < 12
+        assert (whole.width, whole.height, whole.seq) == (160, 120, small.seq + 1)
+
     async def test_a_playlist_reads_nothing_else(self, tmp_path: Path) -> None:
         path = tmp_path / "list.m3u8"
         path.write_text("#EXTM3U\n#EXTINF:10,\nhttp://127.0.0.1:9/x.ts\n#EXT-X-ENDLIST\n")

@@ -22,6 +22,7 @@ from tangy_hw.drivers.camera_look import Look
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL, Limits, Sight, State, Watch
 from tangy_profiles.health import Reading
+from tangy_profiles.worker_log import open_log
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
@@ -94,7 +95,7 @@ class Camera:
         self._shown: State = "OPENING"
         self._process: asyncio.subprocess.Process | None = None
         self._tasks: list[asyncio.Task[None]] = []
-        self._asked: dict[int, tuple[int, asyncio.Future[Frame | None]]] = {}
+        self._asked: dict[int, tuple[dict[str, Any], asyncio.Future[Frame | None]]] = {}
         self._requests = 0
         self._next = 0  # the number of the next picture
         self._last = -1  # of the last one that was given
@@ -149,12 +150,19 @@ class Camera:
         await self._end()
         self._answer_all()
 
-    async def frame(self, *, after: int | None = None, wait: float | None = None) -> Frame | None:
+    async def frame(
+        self,
+        *,
+        after: int | None = None,
+        wait: float | None = None,
+        fit: tuple[int, int] | None = None,
+    ) -> Frame | None:
         """Return the newest picture, of a higher number than the last that was given.
 
         Args:
             after: of a higher number than this instead.
             wait: at most so many s.
+            fit: made as large as fits into so many columns and rows of pixels.
 
         Returns:
             None if there was none in that time, or there will be none any more.
@@ -166,8 +174,11 @@ class Camera:
             self._requests += 1
             id = self._requests
             asked: asyncio.Future[Frame | None] = asyncio.get_running_loop().create_future()
-            self._asked[id] = self._last if after is None else after, asked
-            self._send({"frame": id, "after": self._asked[id][0]})
+            request: dict[str, Any] = {"frame": id, "after": self._last if after is None else after}
+            if fit is not None:
+                request["fit"] = fit
+            self._asked[id] = request, asked
+            self._send(request)
             try:
                 async with asyncio.timeout(wait):
                     frame = await asked
@@ -232,8 +243,8 @@ class Camera:
                 start_new_session=True,
             )
         self._send({"source": self.source.to_json(), "first": self._next})
-        for id, (after, _) in self._asked.items():
-            self._send({"frame": id, "after": after})
+        for request, _ in self._asked.values():
+            self._send(request)
 
     @contextlib.contextmanager
     def _log_file(self) -> Any:
@@ -242,7 +253,7 @@ class Camera:
             return
         file: IO[bytes] | None = None
         with contextlib.suppress(OSError):
-            file = self._log.open("ab")
+            file = open_log(self._log)
         try:
             yield file if file is not None else asyncio.subprocess.DEVNULL
         finally:
@@ -284,7 +295,7 @@ class Camera:
                 self._tell()
             case {"frame": id, "seq": seq, "stamp": stamp, "width": width, "height": height}:
                 self._next = max(self._next, seq + 1)
-                _, asked = self._asked.get(id, (0, None))
+                _, asked = self._asked.get(id, (None, None))
                 if asked is not None and not asked.done():
                     asked.set_result(Frame(seq, stamp, width, height, pixels, self.sight))
             case {"lost": str(why)}:

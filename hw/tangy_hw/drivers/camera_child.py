@@ -10,6 +10,7 @@ Run as `python -m tangy_hw.drivers.camera_child`, spoken to by JSON, one object 
     {"lost": "it stopped sending"}               it cannot be read, and is opened anew until it can
     {"over": "", "sound": true}                  no picture will come any more; sound: it was read
     {"frame": 3, "after": 16}                    asks for the newest picture, of a number above 16
+    {"frame": 4, "after": 16, "fit": [80, 45]}   as large as fits into so many columns and rows
     {"frame": 3, "seq": 18, "stamp": 9.1, "width": 1280, "height": 720, "bytes": 2764800}
                                                  is followed by that many bytes, BGR
 
@@ -22,6 +23,7 @@ import json
 import os
 import sys
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from threading import Condition, Lock, Thread
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -46,7 +48,8 @@ class Child:
         self._writing = Lock()
         self._changed = Condition()
         self._newest: tuple[int, float, Image] | None = None
-        self._asked: dict[int, int] = {}  # request -> the number above which it asks
+        # request -> the number above which it asks, and into what the picture is to fit
+        self._asked: dict[int, tuple[int, Sequence[int] | None]] = {}
         self._taken = True  # whether somebody has had the newest picture
         self._over = False
         self._busy = ("", time.monotonic())
@@ -76,7 +79,7 @@ class Child:
         match request:
             case {"frame": int(id), "after": int(after)}:
                 with self._changed:
-                    self._asked[id] = after
+                    self._asked[id] = after, request.get("fit")
                 self._answer()
 
     def _answer(self) -> None:
@@ -85,12 +88,13 @@ class Child:
             newest = self._newest
             if newest is None:
                 return
-            met = [id for id, after in self._asked.items() if newest[0] > after]
+            met = {id: fit for id, (after, fit) in self._asked.items() if newest[0] > after}
             for id in met:
                 del self._asked[id]
-        seq, stamp, image = newest
-        height, width = image.shape[:2]
-        for id in met:
+        seq, stamp, whole = newest
+        for id, fit in met.items():
+            image = whole if fit is None else fitted(whole, *fit)
+            height, width = image.shape[:2]
             self.write(
                 {"frame": id, "seq": seq, "stamp": stamp, "width": width, "height": height,
                  "bytes": image.nbytes},
@@ -163,6 +167,18 @@ class Child:
 
     def _do(self, what: str) -> None:
         self._busy = (what, time.monotonic())
+
+
+def fitted(image: Image, columns: int, rows: int) -> Image:
+    """Return a picture as large as fits, in its own proportions."""
+    import cv2
+
+    height, width = image.shape[:2]
+    by = min(columns / width, rows / height)
+    size = max(1, round(width * by)), max(1, round(height * by))
+    how = cv2.INTER_AREA if by < 1 else cv2.INTER_NEAREST
+    made: Image = cv2.resize(image, size, interpolation=how).astype("uint8", copy=False)
+    return made
 
 
 def main() -> None:
