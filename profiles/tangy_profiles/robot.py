@@ -12,7 +12,6 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import Table, nearest, read_toml
 
-
 LOOKS_AT = ("cards",)
 """What the profile can say that a camera looks at."""
 

@@ -73,8 +73,8 @@ def test_a_posture_that_the_body_has_not_is_refused_with_the_nearest(activity: A
         ("low = [-60,", "low = [175,", ("limbs[left_arm].low", "`high`")),
         ("right_arm = [140,", "right_arm = [190,", ("postures.wave.right_arm", "shoulder pitch")),
         ("[postures.rest]", "[postures.rest]\ntail = [1]", ("postures.rest.tail", "not a key")),
-        ('looks_at = "cards"', 'looks_at = "card"', ("devices[camera].looks_at", "'cards'")),
-        ('looks_at = "cards"', "source = 0", ("devices[camera].source", "text in quotes")),
+        ('looks_at = "cards"\n#', 'looks_at = "card"\n#', ("devices[camera].looks_at", "'cards'")),
+        ('looks_at = "cards"\n#', "source = 0\n#", ("devices[camera].source", "text in quotes")),
     ],
 )
 def test_a_mistake_in_a_body_is_one_line(
