@@ -15,6 +15,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.reading import plain
+from tangy_profiles.state import FRONT
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import GUEST, SOURCES, Robot, find_anybody, knowing
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.camera_source import CameraSource
     from tangy_hw.perception.faces.enrolling import Enrolment
     from tangy_hw.perception.faces.gallery import Gallery
+    from tangy_profiles.store import Store
     from tangy_tui.house import House
 
 EVERY = 0.4  # seconds between two pictures of a camera: the head has moved
@@ -69,7 +71,6 @@ def faces_enrol(
         if not _agreed(house, person, new, consent):
             raise TangyError(plain(f"{person.name} has not agreed: nothing is kept."))
         if new:
-            house.store.rename(person.id, person.name)
             tell(f"{person.name} does not play, and is known as {person.id}.")
         enrolment = Enrolment(reader)
         if add:
@@ -106,6 +107,8 @@ def _find(house: House, wanted: str) -> tuple[Person, bool]:
     from tangy_hw.perception.faces.keeping import CONSENT
 
     called = wanted.strip()
+    if called.casefold() == FRONT:
+        raise TangyError(plain(f"{called!r} is a place: choose another name."))
     players = [p for p in house.people if called.casefold() in (p.id, p.name.casefold())]
     names = house.store.names()
     guests = [i for i in names if i.startswith(GUEST)]
@@ -125,7 +128,7 @@ def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
         if not how.strip():
             raise TangyError('--consent: say how they agreed, as in "in writing, asked by staff".')
         name = re.escape(person.name)  # names stay out of the log, where nothing is deleted
-        consent(store, person.id, True, re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200])
+        _note(store, person, new, re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200])
         return True
     if person.id in consented(store):
         return True
@@ -136,14 +139,25 @@ def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
                 f"with --consent; nothing is kept before."
             )
         )
-    folder = plain(str(store.folder))
     question = (
         f"{person.name}, may Tangy know your face? It keeps measurements of it, no pictures, on "
-        f"this machine, in {folder}; `tangy faces forget` deletes them at any time."
+        f"this machine, in {store.folder}; `tangy faces forget` deletes them at any time."
     )
-    yes = typer.confirm(plain(question), default=False, err=True)
-    consent(store, person.id, yes, "asked on the terminal")
-    return yes
+    if typer.confirm(plain(question), default=False, err=True):
+        _note(store, person, new, "asked on the terminal")
+        return True
+    consent(store, person.id, False, "asked on the terminal")
+    return False
+
+
+def _note(store: Store, person: Person, new: bool, how: str) -> None:
+    """Note that a person agreed, and the name of a guest who is new: both, or neither."""
+    from tangy_hw.perception.faces.keeping import consent
+
+    with store.transaction():
+        if new:
+            store.rename(person.id, person.name)
+        consent(store, person.id, True, how)
 
 
 def _from_pictures(folder: Path, enrolment: Enrolment, tell: Tell) -> list[dict[str, Any]]:

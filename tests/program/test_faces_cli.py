@@ -7,6 +7,7 @@ import stat
 from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
+from typing import Any
 
 import cv2
 import pytest
@@ -99,3 +100,143 @@ def test_of_somebody_who_is_forgotten_nothing_is_left(tangy: Tangy, data: Path, 
     assert len(list((data / "faces").iterdir())) == 1
     assert id not in tangy("faces", "list", "--data", data).stdout
     assert "cannot" not in tangy("people", "list", "--data", data).stderr
+
+
+def test_what_is_no_picture_is_said_in_one_sentence(tangy: Tangy, data: Path) -> None:
+    dot, torn, text = data / "dot.png", data / "torn.png", data / "text.png"
+    cv2.imwrite(str(dot), drawn_face(0)[:1, :1])
+    cv2.imwrite(str(torn), drawn_face(0))
+    torn.write_bytes(torn.read_bytes()[:2000])
+    text.write_text("no picture")
+    for path in (dot, torn, text, data / "none.png", data):
+        done = tangy("faces", "who", path, "--json", "--data", data)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert path.name in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_grey_pictures_will_do(tangy: Tangy, data: Path) -> None:
+    cv2.imwrite(str(data / "grey.jpg"), cv2.cvtColor(drawn_face(0, 9), cv2.COLOR_BGR2GRAY))
+    (row,) = json.loads(tangy("faces", "who", data / "grey.jpg", "--json", "--data", data).stdout)
+    assert row["name"] == "Rosa"
+
+
+def test_a_picture_without_a_face_is_told(tangy: Tangy, data: Path) -> None:
+    cv2.imwrite(str(data / "wall.png"), drawn_face(0)[:60, :100] * 0 + 120)
+    done = tangy("faces", "who", data / "wall.png", "--data", data)
+    assert done.returncode == 0 and "no face is seen" in done.stdout
+    (row,) = json.loads(tangy("faces", "who", data / "wall.png", "--json", "--data", data).stdout)
+    assert (row["person"], row["likeness"], row["faces"]) == (None, None, [])
+
+
+def test_bad_pictures_of_a_folder_are_named_with_the_reason(
+    tangy: Tangy, album: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "mixed"
+    folder.mkdir()
+    for picture in range(4):
+        cv2.imwrite(str(folder / f"{picture}.png"), drawn_face(0, picture))
+    (folder / "4.png").write_text("no picture")
+    cv2.imwrite(str(folder / "5.png"), drawn_face(0, 5, light=0.1))
+    cv2.imwrite(str(folder / "6.png"), drawn_face(0, 3))
+    how = ("--consent", "asked", "--data", tmp_path / "d")
+    done = tangy("faces", "enrol", "user1", "--from", folder, "--json", *how)
+    told = {row["file"]: row["problem"] for row in json.loads(done.stdout)["from"]}
+    assert [told[f"{picture}.png"] for picture in range(4)] == [""] * 4
+    assert "is not a picture" in told["4.png"] and told["5.png"]
+    assert "what another one shows" in told["6.png"]
+    said = tangy("faces", "enrol", "user1", "--from", folder, *how).stdout
+    assert "4.png: is not a picture" in said and "known by 4 pictures of 7" in said
+    (folder / "1.png").unlink()
+    (folder / "2.png").unlink()
+    done = tangy("faces", "enrol", "user1", "--from", folder, *how)
+    assert done.returncode == 2 and "only 2 of 5" in done.stderr
+    (row,) = json.loads(tangy("faces", "list", "--json", "--data", tmp_path / "d").stdout)
+    assert row["pictures"] == 4  # those of before
+
+
+def test_more_pictures_are_added(tangy: Tangy, album: Path, data: Path, tmp_path: Path) -> None:
+    cv2.imwrite(str(tmp_path / "more.png"), drawn_face(0, 50))
+    done = tangy("faces", "enrol", "Rosa", "--from", tmp_path / "more.png", "--add", "--data", data)
+    assert "known by 6 pictures" in done.stdout
+
+
+def test_somebody_who_looks_like_another_is_told(tangy: Tangy, album: Path, data: Path) -> None:
+    done = tangy("faces", "enrol", "Eve", "--from", album / "0", "--consent", "x", "--data", data)
+    assert "look like those of Rosa (user2)" in done.stdout
+
+
+def test_a_video_enrols_and_its_frames_vote(tangy: Tangy, data: Path, tmp_path: Path) -> None:
+    video = tmp_path / "video.avi"
+    code = cv2.VideoWriter.fourcc(*"MJPG")
+    writer = cv2.VideoWriter(str(video), code, 10, (200, 200))
+    for picture in range(6):
+        writer.write(drawn_face(4, 20 + picture))
+    writer.release()
+    found = ("--from", video, "--json", "--data", data)
+    (row,) = json.loads(tangy("faces", "who", *found).stdout)
+    assert (row["person"], row["frames"]) == (None, 5)
+    done = tangy("faces", "enrol", "Zoe", *found, "--consent", "asked")
+    assert json.loads(done.stdout)["pictures"] == 6, done.stderr
+    (row,) = json.loads(tangy("faces", "who", *found).stdout)
+    assert (row["name"], row["votes"], row["frames"]) == ("Zoe", 5, 5)
+
+
+def test_pictures_of_one_person_vote(tangy: Tangy, album: Path, data: Path) -> None:
+    pictures = [album / "0" / "1.png", album / "0" / "2.png", album / "new-0.png"]
+    (row,) = json.loads(
+        tangy("faces", "who", *pictures, "--together", "--json", "--data", data).stdout
+    )
+    assert (row["name"], row["votes"], len(row["files"])) == ("Rosa", 3, 3)
+
+
+def test_a_broken_face_is_one_sentence_and_can_be_forgotten(tangy: Tangy, data: Path) -> None:
+    path = data / "faces" / "hoglbp1-user2.face"
+    path.write_bytes(path.read_bytes()[:-7])
+    for asked in (("list",), ("who", data / "x.png")):
+        done = tangy("faces", *asked, "--data", data)
+        assert done.returncode == 2 and "is broken" in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert tangy("faces", "forget", "user2", "--data", data).returncode == 0
+    assert tangy("faces", "list", "--data", data).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("who",), "Give pictures"),
+        (("who", "x.png", "--from", "0"), "Give pictures"),
+        (("who", "--from", "none.avi"), "no such file"),
+        (("who", "x.png", "--robot", "none"), "There is no robot"),
+        (("enrol", "user1", "--from", "none"), "no such file"),
+        (("enrol", "user1", "--from", ".", "--consent", ""), "no pictures"),
+        (("enrol", " ", "--from", "x.png", "--consent", "x"), "no such file"),
+        (("forget", "nobody"), "There is nobody called"),
+    ],
+)
+def test_mistakes_are_said_in_one_sentence(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: Any, says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = tangy("faces", *arguments, "--data", tmp_path / "d")
+    assert done.returncode == 2 and says in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_a_name_that_cannot_be_one_leaves_nothing(
+    tangy: Tangy, album: Path, tmp_path: Path
+) -> None:
+    for name in (" ", "x" * 50, "a\x1bb", "front"):
+        done = tangy(
+            "faces",
+            "enrol",
+            name,
+            "--from",
+            album / "0",
+            "--consent",
+            "x",
+            "--data",
+            tmp_path / "d",
+        )
+        assert done.returncode == 2 and done.stderr.count("\n") == 1, name
+        assert not (tmp_path / "d" / "faces").exists()
+    with Store.open(tmp_path / "d", write=False) as store:
+        assert store.names() == {} and list(store.events()) == []

@@ -130,7 +130,10 @@ def _sized(grey: Grey, largest: int) -> tuple[Any, float]:
 def _detect(name: str, grey: Any, scale: float, *, coarse: bool = False) -> list[Box]:
     step, times, least = (1.2, 2, LEAST_FACE[1]) if coarse else (1.1, 3, LEAST_FACE[0])
     found = _cascade(name).detectMultiScale(grey, step, times, minSize=(least, least))
-    return [(x / scale, y / scale, w / scale, h / scale) for x, y, w, h in found]
+    boxes: list[Box] = []
+    for x, y, w, h in found:
+        boxes.append((float(x) / scale, float(y) / scale, float(w) / scale, float(h) / scale))
+    return boxes
 
 
 def _smaller(box: Box) -> float:

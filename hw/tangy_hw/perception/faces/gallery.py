@@ -87,7 +87,7 @@ class Gallery:
             enough = stranger + ENOUGH * (oneself - stranger)
             enough = max(enough, stranger + SPREAD * float(np.std(others)))
         else:
-            enough = float(np.quantile(own, ALONE))
+            enough = min(float(np.quantile(own, ALONE)), oneself - LEAST_GAP)
             stranger = oneself - (oneself - enough) / (1 - ENOUGH)
         return min(stranger, enough - LEAST_GAP), enough
 

@@ -17,7 +17,7 @@ class Limits:
     """What a face must have."""
 
     size: float = 24  # pixels across
-    sharpness: float = 0.12
+    sharpness: float = 0.2
     darkest: float = 30  # of 255
     brightest: float = 235
     contrast: float = 17  # of 255: the spread of its brightness
@@ -47,10 +47,10 @@ class Quality:
             return "the face is too dark: more light from the front"
         if self.brightness > limits.brightest:
             return "the face is too bright: less light on it"
-        if self.contrast < limits.contrast:
-            return "the face has hardly any contrast: more light from the front"
         if self.sharpness < limits.sharpness:
             return "the face is blurred: hold still, or clean the lens"
+        if self.contrast < limits.contrast:
+            return "the face has hardly any contrast: more light from the front"
         if self.evenness < limits.evenness:
             return "one side of the face is in the dark: more light from the front"
         if self.symmetry < limits.symmetry:
