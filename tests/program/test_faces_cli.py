@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import shutil
 import stat
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +12,7 @@ from subprocess import CompletedProcess
 from typing import Any
 
 import cv2
+import numpy as np
 import pytest
 
 from tangy_profiles.store import Store
@@ -31,17 +34,25 @@ def album(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture
-def data(tmp_path: Path, album: Path, tangy: Tangy) -> Path:
-    """A data folder in which Rosa, who plays, and Ben, who does not, are known."""
-    folder = tmp_path / "mine"
+@pytest.fixture(scope="session")
+def _known(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from tangy_hw.perception.faces.keeping import consent, keep_face
+    from tangy_hw.perception.faces.reader import HaarReader
+
+    folder, reader = tmp_path_factory.mktemp("known") / "data", HaarReader()
     with Store.open(folder) as store:
-        store.rename("user2", "Rosa")
-    for name, pictures in (("Rosa", album / "0"), ("Ben", album / "1")):
-        how = f"in writing; {name} was asked by staff"
-        done = tangy("faces", "enrol", name, "--from", pictures, "--consent", how, "--data", folder)
-        assert done.returncode == 0, done.stderr
+        for number, (person, name) in enumerate((("user2", "Rosa"), ("guest1", "Ben"))):
+            store.rename(person, name)
+            consent(store, person, True, f"in writing; {person} was asked by staff")
+            seen = [reader.read(drawn_face(number, picture))[0].vector for picture in range(5)]
+            keep_face(store, person, reader.kind, np.array(seen))
     return folder
+
+
+@pytest.fixture
+def data(_known: Path, tmp_path: Path) -> Path:
+    """A data folder in which Rosa, who plays, and Ben, who does not, are known."""
+    return Path(shutil.copytree(_known, tmp_path / "mine"))
 
 
 def test_the_enrolled_are_known_and_others_are_not(tangy: Tangy, album: Path, data: Path) -> None:
@@ -58,6 +69,37 @@ def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Pa
     assert done.returncode == 2 and "has not agreed" in done.stderr
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "d" / "faces").exists()
+
+
+@pytest.mark.parametrize(("answer", "kept"), [("y\n", True), ("n\n", False), ("\n", False)])
+def test_the_person_is_asked_on_a_terminal(
+    tangy: Tangy,
+    album: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    answer: str,
+    kept: bool,
+) -> None:
+    class Keyboard(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr(io, "StringIO", Keyboard)
+    asked = ("faces", "enrol", "user1", "--from", album / "0", "--data", tmp_path / "d")
+    done = tangy(*asked, stdin=answer)
+    assert "User 1, may Tangy know your face?" in done.stderr
+    assert (done.returncode == 0) == kept == (tmp_path / "d" / "faces").exists()
+    if kept:
+        assert "may Tangy" not in tangy(*asked).stderr  # it was asked before
+
+
+def test_how_they_agreed_is_logged_with_no_name(tangy: Tangy, album: Path, tmp_path: Path) -> None:
+    how = "Bob said yes; bob was asked by staff"
+    asked = ("--from", album / "0", "--consent", how, "--data", tmp_path / "d")
+    assert tangy("faces", "enrol", "Bob", *asked).returncode == 0
+    (row,) = json.loads(tangy("faces", "list", "--json", "--data", tmp_path / "d").stdout)
+    assert (row["id"], row["name"]) == ("guest1", "Bob")
+    assert row["how"] == "guest1 said yes; guest1 was asked by staff"
 
 
 def test_what_is_kept_is_for_its_owner_alone(data: Path) -> None:
