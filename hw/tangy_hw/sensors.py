@@ -1,0 +1,285 @@
+"""The cameras of a robot, kept open: what each says of itself, what it sees, the last card read.
+
+Which there are and where their pictures come from stands in the robot's profile; a source that is
+named on the command line goes before it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from tangy_hw.drivers.camera import Camera, Frame
+from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camera
+from tangy_hw.drivers.camera_state import Sight
+from tangy_profiles.card_face import USUAL_SEED, numbers_of
+from tangy_profiles.cards import Deck
+from tangy_profiles.health import Health
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.robot import Device, Robot
+
+if TYPE_CHECKING:
+    from tangy_hw.perception.cards.reader import CardReader
+
+READ_SECONDS = 0.5  # between two readings of a card: it may cost a tenth of a processor
+FRAME_SECONDS = 1.0  # for which a picture is waited for at most
+CARDS = "cards"
+
+Sources = Mapping[str, CameraSource]
+"""Where the pictures of a robot's cameras come from, by the name of the device."""
+
+
+def camera_sources(robot: Robot, given: Sequence[str] = ()) -> Sources:
+    """Find the sources of a robot's cameras; a file or folder begins again when it is over.
+
+    Args:
+        given: as on the command line, DEVICE=SOURCE; they go before the robot's profile.
+
+    Raises:
+        CameraError: there is no such device, or a source is none.
+    """
+    named: dict[str, str] = {}
+    for text in given:
+        name, equals, source = text.partition("=")
+        if not (equals and name and source):
+            raise CameraError(plain(f"--camera {text}: write DEVICE=SOURCE, as in camera=0."))
+        if name not in robot.devices:
+            wrong = f"{robot.title} has no device {name!r}; {nearest(name, robot.devices)}"
+            raise CameraError(plain(f"--camera {text}: {wrong}"))
+        if name in named:
+            raise CameraError(plain(f"--camera {text}: {name} was given a source already."))
+        named[name] = source
+    found: dict[str, CameraSource] = {}
+    for device in robot.devices.values():
+        if device.name in named:
+            found[device.name] = find_camera(named[device.name], loop=True)
+        elif device.source:
+            found[device.name] = _of_profile(robot, device)
+    return MappingProxyType(found)
+
+
+def _of_profile(robot: Robot, device: Device) -> CameraSource:
+    source = device.source
+    if "://" not in source and not source.isdecimal():
+        source = str(robot.file.parent / source)
+    try:
+        return find_camera(source, loop=True)
+    except CameraError as error:
+        where = f"{robot.file.name}: devices[{device.name}].source"
+        raise CameraError(plain(f"{where} = {device.source!r}: {error}")) from None
+
+
+@dataclass(frozen=True, slots=True)
+class SeenCard:
+    """A card as it was read: its number, its numbers row by row, and masks of their cells.
+
+    `stamp` is of the monotonic clock, in s.
+    """
+
+    card: int
+    numbers: tuple[int, ...]
+    marked: int
+    hidden: int
+    free: int
+    columns: int
+    stamp: float
+
+
+@dataclass(frozen=True, slots=True)
+class CardSight:
+    """What a camera that looks at cards has read of late.
+
+    `last` is the last card that could be read. `problem` says why there is none in the newest
+    picture, "" if there is one; that was looked at at `stamp` (monotonic, s), None: none was yet.
+    """
+
+    last: SeenCard | None = None
+    problem: str = ""
+    stamp: float | None = None
+
+
+class Sensors:
+    """The cameras of one robot. They are open within `async with`, and as long as anybody is in it.
+
+    `health` is what the diagnosis is told. Cards are read only within `reading_cards`.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        sources: Sources,
+        deck: Deck | None = None,
+        *,
+        deck_seed: int = USUAL_SEED,
+        log: Path | None = None,
+    ) -> None:
+        """Prepare them.
+
+        Args:
+            robot: whose cameras they are.
+            sources: where their pictures come from.
+            deck: whose cards are read, if any are.
+            deck_seed: which numbers they have.
+            log: where messages of the drivers go; nowhere if not given.
+        """
+        self.robot = robot
+        self._cameras = {
+            name: Camera(source, device=name, log=log) for name, source in sources.items()
+        }
+        looking = (n for n in self._cameras if robot.devices[n].looks_at == CARDS)
+        self.card_device = next(looking, "") if deck is not None else ""
+        """The device that looks at cards, "" if none does."""
+        self._deck = deck
+        self._deck_seed = deck_seed
+        self._cards = CardSight()
+        self._users = 0
+        self._open = asyncio.Lock()
+        self._readers = 0
+        self._wanted = asyncio.Event()
+        self._task: asyncio.Task[None] | None = None
+
+    async def __aenter__(self) -> Sensors:
+        async with self._open:
+            self._users += 1
+            if self._users == 1:
+                await self._start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        async with self._open:
+            self._users = max(0, self._users - 1)
+            if self._users == 0:
+                await self._end()
+
+    async def close(self) -> None:
+        """End everything, whoever may still be in it."""
+        async with self._open:
+            self._users = 0
+            await self._end()
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The devices that are cameras with a source, in the order of the profile."""
+        return tuple(self._cameras)
+
+    def source(self, device: str) -> str:
+        """Return where the pictures of a camera come from, as it was named."""
+        return self._cameras[device].name
+
+    def sight(self, device: str) -> Sight:
+        """Return the state of a camera and the evidence for it."""
+        return self._cameras[device].sight
+
+    def health(self) -> Health:
+        """Return the newest reading of each camera."""
+        return tuple(camera.reading() for camera in self._cameras.values())
+
+    async def settled(self, seconds: float) -> None:
+        """Wait until each camera has given its first picture, or cannot; at most so many s."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(seconds):
+                while any(c.sight.state == "OPENING" for c in self._cameras.values()):  # noqa: ASYNC110
+                    await asyncio.sleep(0.05)
+
+    async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
+        """Return a camera's newest picture, as large as fits into so many columns and rows.
+
+        Args:
+            device: which camera.
+            fit: in pixels.
+            after: of a higher number than this, if it comes within a second.
+        """
+        with suppress(CameraError):  # its state says so
+            return await self._cameras[device].frame(after=after, wait=FRAME_SECONDS, fit=fit)
+        return None
+
+    @contextmanager
+    def reading_cards(self) -> Iterator[None]:
+        """Read cards as long as somebody is in it."""
+        self._readers += 1
+        self._wanted.set()
+        try:
+            yield
+        finally:
+            self._readers -= 1
+            if not self._readers:
+                self._wanted.clear()
+
+    @property
+    def cards(self) -> CardSight:
+        """What was read of cards of late."""
+        return self._cards
+
+    async def _start(self) -> None:
+        self._cards = CardSight()
+        for camera in self._cameras.values():
+            await camera.start()
+        if self.card_device:
+            self._task = asyncio.create_task(self._read())
+
+    async def _end(self) -> None:
+        """End everything; it may be done again where it was broken off."""
+        task, self._task = self._task, None
+        if task is not None:
+            task.cancel()
+            await asyncio.wait([task])
+        await asyncio.gather(*(camera.close() for camera in self._cameras.values()))
+
+    async def _read(self) -> None:
+        """Read the card in the newest picture, again and again, on a thread."""
+        camera, seq = self._cameras[self.card_device], -1
+        loop = asyncio.get_running_loop()
+        reader: CardReader | None = None
+        with ThreadPoolExecutor(1, "cards") as thread:  # leaving waits for the reading in work
+            while not camera.over:
+                await self._wanted.wait()
+                began = loop.time()
+                with suppress(CameraError):
+                    frame = await camera.frame(after=seq, wait=FRAME_SECONDS)
+                    if frame is not None:
+                        seq = frame.seq
+                        if reader is None:
+                            reader = await loop.run_in_executor(thread, self._reader)
+                        self._cards = await loop.run_in_executor(thread, self._look, reader, frame)
+                await asyncio.sleep(max(0.0, began + READ_SECONDS - loop.time()))
+
+    def _reader(self) -> CardReader:
+        import cv2
+
+        from tangy_hw.perception.cards.reader import CardReader
+
+        cv2.setNumThreads(1)
+        with suppress(AttributeError):
+            cv2.utils.logging.setLogLevel(0)  # its messages would go to the terminal
+        assert self._deck is not None  # noqa: S101 - or there would be no device that looks
+        return CardReader(self._deck, self._deck_seed)
+
+    def _look(self, reader: CardReader, frame: Frame) -> CardSight:
+        """Read the card in a picture; called on the thread."""
+        reading = reader.read(frame.image())
+        if reading.card is None:
+            return CardSight(self._cards.last, reading.problem, frame.stamp)
+        deck = reader.deck
+        numbers = numbers_of(deck, reading.card, self._deck_seed)
+        seen = SeenCard(
+            reading.card,
+            numbers,
+            reading.marked,
+            reading.hidden,
+            deck.free,
+            len(deck.columns),
+            frame.stamp,
+        )
+        return CardSight(seen, "", frame.stamp)
+
+
+def ago(stamp: float) -> float:
+    """Return how many s ago something was, of the monotonic clock."""
+    return max(0.0, time.monotonic() - stamp)
