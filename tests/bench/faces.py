@@ -28,7 +28,7 @@ from tangy_hw.perception.faces.gallery import Gallery, Match
 from tangy_hw.perception.faces.reader import HaarReader
 from tangy_hw.perception.faces.voting import vote
 
-ENROLLED, PICTURES, LEAST = 4, 10, 15
+LEAST = 15
 VOTES = 3
 SEED = 500_000
 COLUMNS = ("seen", "right at 1%", "right", "confused", "strangers", "all", "vote", "strangers")
@@ -43,6 +43,8 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=50)
     parser.add_argument("--half", type=int, choices=(1, 2))
     parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--enrol", type=int, default=4, help="so many people")
+    parser.add_argument("--pictures", type=int, default=10, help="so many of each of them")
     asked = parser.parse_args()
     cv2.setNumThreads(1)
     people = chosen(asked.folder, asked.half)
@@ -54,7 +56,13 @@ def main() -> None:
     for width in asked.widths:
         for probe in asked.probes or [width]:
             rows = [
-                draw(read[width][0], read[probe][0], np.random.default_rng((asked.seed, number)))
+                draw(
+                    read[width][0],
+                    read[probe][0],
+                    np.random.default_rng((asked.seed, number)),
+                    asked.enrol,
+                    asked.pictures,
+                )
                 for number in range(asked.draws)
             ]
             mean: Any = np.nanmean(np.array(rows), axis=0)
@@ -78,16 +86,20 @@ def chosen(folder: Path, half: int | None) -> dict[str, list[Path]]:
 
 
 def draw(
-    enrol: dict[str, list[Any]], probe: dict[str, list[Any]], rng: np.random.Generator
+    enrol: dict[str, list[Any]],
+    probe: dict[str, list[Any]],
+    rng: np.random.Generator,
+    people: int,
+    pictures: int,
 ) -> list[float]:
     """Enrol some people with some pictures, and ask about everything else."""
     able = [n for n, rows in enrol.items() if sum(v is not None for v in rows) >= LEAST]
-    known = [str(name) for name in rng.permutation(able)[:ENROLLED]]
+    known = [str(name) for name in rng.permutation(able)[:people]]
     kept: dict[str, Any] = {}
     used: dict[str, set[int]] = {}
     for name in known:
         there = [number for number, v in enumerate(enrol[name]) if v is not None]
-        used[name] = {int(number) for number in rng.permutation(there)[:PICTURES]}
+        used[name] = {int(number) for number in rng.permutation(there)[:pictures]}
         kept[name] = np.array([enrol[name][number] for number in sorted(used[name])])
     gallery = Gallery(kept)
     own: list[tuple[str, Match | None]] = []
