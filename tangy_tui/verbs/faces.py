@@ -63,7 +63,9 @@ def faces_who(
 
     if bool(files) == (source is not None):
         raise TangyError("Give pictures with faces, or a camera with --from.")
-    found = None if source is None else find_camera(source, each=True)
+    found = None if source is None else find_camera(source)
+    if source is not None and found is not None and not found.live:
+        found = find_camera(source, each=True)
     with knowing(data, robot) as (house, reader, gallery):
         names = names_of(house)
         if not gallery.people:

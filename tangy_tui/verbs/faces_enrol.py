@@ -64,7 +64,9 @@ def faces_enrol(
     from tangy_hw.perception.faces.gallery import LEAST
     from tangy_hw.perception.faces.keeping import keep_face, read_face
 
-    found = find_camera(source, each=True)
+    found = find_camera(source)
+    if not found.live:
+        found = find_camera(source, each=True)
     tell: Tell = (lambda _: None) if as_json else (lambda line: print(plain(line), flush=True))
     with knowing(data, robot, write=True) as (house, reader, gallery):
         person, new = _find(house, name)

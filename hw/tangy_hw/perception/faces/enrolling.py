@@ -17,7 +17,7 @@ ADVISED = 10
 MOST = 40
 """More than these say nothing new."""
 SECOND = 0.6  # of the size of the first: a second face that may be the one that is meant
-SAME = 0.97  # similarity (a cosine) from which on two pictures are as good as one
+SAME = 0.95  # similarity (a cosine) from which on two pictures are as good as one
 ODD = 5.0  # mean deviations below the median: not the person that the others show
 LEAST_ODD = 0.08
 
