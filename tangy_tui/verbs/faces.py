@@ -81,18 +81,17 @@ def faces_who(
             else:
                 rows = [{"file": str(path), **_row(faces, gallery)} for path, faces in seen]
         for row in rows:
-            row["name"] = names.get(row["person"] or "")
+            for told in (row, *row.get("faces", ())):
+                told["name"] = names.get(told["person"] or "")
         if as_json:
             print_json(rows)
             return
         for row in rows:
-            print(plain(f"{row['file']}: {_told(row, names)}"))
+            print(plain(f"{row['file']}: {_told(row)}"))
 
 
 @app.command("list")
-def faces_list(
-    robot: Robot = "tangy", seed: Seed = None, data: Data = None, as_json: Json = False
-) -> None:
+def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
     """List whose faces are known, and who agreed to it how."""
     from tangy_hw.perception.faces.keeping import CONSENT, consented, kept_faces, read_face
 
@@ -269,7 +268,7 @@ async def _watch(
     return _voted(pictures, gallery)
 
 
-def _told(row: dict[str, Any], names: dict[str, str]) -> str:
+def _told(row: dict[str, Any]) -> str:
     """Say in words whose face it is."""
     if row["problem"]:
         return f"cannot tell: {row['problem']}"
@@ -277,6 +276,6 @@ def _told(row: dict[str, Any], names: dict[str, str]) -> str:
     if row.get("frames") is not None:
         likeness += f", {row['votes']} of {row['frames']} frames"
     told = "unknown" if row["person"] is None else f"{row['name']} ({row['person']})"
-    others = [face for face in row.get("faces", ())[1:] if face["person"]]
-    more = "".join(f"; also {names.get(face['person'], face['person'])}" for face in others)
+    others = [f for f in row.get("faces", ()) if f["person"] and f["box"] != row["box"]]
+    more = "".join(f"; also {face['name']} ({face['person']})" for face in others)
     return f"{told}{likeness}{more}"

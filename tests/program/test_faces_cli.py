@@ -71,6 +71,15 @@ def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Pa
     assert not (tmp_path / "d" / "faces").exists()
 
 
+def test_several_faces_in_a_picture_are_each_told(tangy: Tangy, data: Path) -> None:
+    side_by_side = np.hstack([drawn_face(1, 30), drawn_face(0, 30)])
+    cv2.imwrite(str(data / "two.png"), side_by_side)
+    (row,) = json.loads(tangy("faces", "who", data / "two.png", "--json", "--data", data).stdout)
+    assert sorted(face["name"] for face in row["faces"]) == ["Ben", "Rosa"]
+    told = tangy("faces", "who", data / "two.png", "--data", data).stdout
+    assert "Rosa (user2)" in told and "Ben (guest1)" in told and "also" in told
+
+
 @pytest.mark.parametrize(("answer", "kept"), [("y\n", True), ("n\n", False), ("\n", False)])
 def test_the_person_is_asked_on_a_terminal(
     tangy: Tangy,
