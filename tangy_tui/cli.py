@@ -37,6 +37,7 @@ from tangy_tui.verbs import (
     read_card,
     requests,
     say,
+    sensors,
     teach,
 )
 from tangy_tui.verbs.common import Ascii, Data, full_screen, open_house
@@ -85,6 +86,7 @@ VERBS: tuple[Callable[..., None], ...] = (
     camera.camera,
     camera.capture,
     requests.requests,
+    sensors.sensors,
     read_card.read_card,
     machine.doctor,
 )

@@ -7,7 +7,6 @@ named on the command line goes before it.
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -28,6 +27,7 @@ from tangy_profiles.robot import Device, Robot
 if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader
 
+LOG = "camera.log"  # in the data folder: what drivers have to say
 READ_SECONDS = 0.5  # between two readings of a card: it may cost a tenth of a processor
 FRAME_SECONDS = 1.0  # for which a picture is waited for at most
 CARDS = "cards"
@@ -280,6 +280,18 @@ class Sensors:
         return CardSight(seen, "", frame.stamp)
 
 
-def ago(stamp: float) -> float:
-    """Return how many s ago something was, of the monotonic clock."""
-    return max(0.0, time.monotonic() - stamp)
+def sensors_of(
+    robot: Robot,
+    deck: Deck,
+    folder: Path,
+    given: Sequence[str] = (),
+    *,
+    deck_seed: int = USUAL_SEED,
+) -> Sensors:
+    """Make the cameras of a robot, those of its profile and those given (see `camera_sources`).
+
+    Raises:
+        CameraError: one of them is none.
+    """
+    sources = camera_sources(robot, given)
+    return Sensors(robot, sources, deck, deck_seed=deck_seed, log=folder / LOG)

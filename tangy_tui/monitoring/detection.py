@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading
-from tangy_profiles.robot import Robot
+from tangy_profiles.robot import Device, Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.effects import Effects, Mismatch
@@ -47,15 +47,8 @@ class Detector:
             self._refusals.pop(person, None)
 
     def state(self, reading: Reading) -> str:
-        """Return the state of a device: what it says of itself, or STALE if it says too little.
-
-        A measurement that is no number is an error.
-        """
-        device = self._robot.devices.get(reading.device)
-        if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
-            return ERROR
-        fresh = device is None or reading.age <= device.stale_after  # no age is in no range
-        return reading.state if fresh else STALE
+        """Return the state of a device of the robot, as `state_of` does."""
+        return state_of(self._robot.devices.get(reading.device), reading)
 
     def watch(self, health: Health) -> Evidence:
         """Return the evidence that the devices give; the same object for the same readings.
@@ -128,6 +121,17 @@ class Detector:
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
+
+
+def state_of(device: Device | None, reading: Reading) -> str:
+    """Return the state of a device: what it says of itself, or STALE if it says too little.
+
+    A measurement that is no number is an error.
+    """
+    if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
+        return ERROR
+    fresh = device is None or reading.age <= device.stale_after  # no age is in no range
+    return reading.state if fresh else STALE
 
 
 def symptoms(evidence: Evidence) -> set[str]:

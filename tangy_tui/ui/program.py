@@ -21,6 +21,7 @@ from tangy_tui.ui.sounding import SoundingApp
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
+    from tangy_hw.sensors import Sensors
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
 
@@ -43,12 +44,23 @@ Start = Callable[["Program"], Coroutine[Any, Any, None]]
 class Program(SoundingApp):
     """Tangy's screens, put together around one house."""
 
-    def __init__(self, house: House, start: Start | None = None, **settings: Any) -> None:
-        """Make the program; without a start it waits at home. It may have ears and a voice."""
+    def __init__(
+        self,
+        house: House,
+        start: Start | None = None,
+        *,
+        sensors: Sensors | None = None,
+        **settings: Any,
+    ) -> None:
+        """Make the program; without a start it waits at home. It may have ears and a voice.
+
+        Without `sensors` its cameras are those of the robot's profile.
+        """
         pictures = house.store.folder
         super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
         self.house = house
         self._start = start
+        self._sensors = sensors
         self._busy = False
         self._opening = False
 
@@ -104,6 +116,8 @@ class Program(SoundingApp):
                 self._open(self._show_policy())
             case "people":
                 self.people()
+            case "sensors":
+                self._open(self.sensors())
             case "demo":
                 self._open(self._demo_aside())
 
@@ -158,6 +172,35 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.people import PeopleScreen
 
         self.push_screen(PeopleScreen(self.house))
+
+    async def sensors(self) -> None:
+        """Open the screen of devices and cameras, and wait until it is left."""
+        from tangy_tui.ui.screens.sensors import SensorsScreen
+
+        try:
+            screen = SensorsScreen(self.house, self.cameras())
+        except TangyError as error:
+            await self._tell(str(error), title="Not possible")
+            return
+        await self.push_screen_wait(screen)
+
+    def cameras(self) -> Sensors:
+        """Return the cameras of the robot; they are opened by whoever uses them.
+
+        Raises:
+            TangyError: the robot's profile names a source that is none.
+        """
+        if self._sensors is None:
+            from tangy_hw.sensors import sensors_of
+
+            house = self.house
+            self._sensors = sensors_of(house.robot, house.activity.deck, house.store.folder)
+        return self._sensors
+
+    async def on_unmount(self) -> None:
+        """End the cameras with the program, whatever it was doing."""
+        if self._sensors is not None:
+            await self._sensors.close()
 
     def action_learn(self) -> None:
         """Learn from all finished demonstrations."""

@@ -12,6 +12,7 @@ from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
+    from tangy_hw.sensors import Sensors
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.speech.ears import Ears
 
@@ -86,6 +87,16 @@ def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_on
     return _run(house, lambda program: program.drill(rounds, seed, who), ascii_only)
 
 
+def run_sensors(house: House, sensors: Sensors, *, ascii_only: bool) -> int:
+    """Open the screen of devices and cameras, and end with it; return the exit status."""
+
+    async def start(program: Program) -> None:
+        await program.sensors()
+        program.leave()
+
+    return _run(house, start, ascii_only, sensors=sensors)
+
+
 def run_demo(house: House, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
     """Tell the whole story in the program; return the exit status."""
 
@@ -103,7 +114,8 @@ def _run(
     ears: Ears | None = None,
     *,
     voice: bool = False,
+    sensors: Sensors | None = None,
 ) -> int:
     outlive_terminal()
     kind = terminal_kind(ascii=True if ascii_only else None)
-    return run_app(Program(house, start, kind=kind, ears=ears, voice=voice))
+    return run_app(Program(house, start, kind=kind, ears=ears, voice=voice, sensors=sensors))

@@ -14,6 +14,7 @@ import typer
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.sensor_lines import CAMERA_STATES
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
@@ -24,16 +25,6 @@ if TYPE_CHECKING:
     from tangy_hw.drivers.capturing import Reader
 
 SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video, a picture or a folder of them"
-STATES = {
-    "OPENING": "no picture yet",
-    "OK": "it works",
-    "DISCONNECTED": "disconnected",
-    "FROZEN": "frozen",
-    "COVERED": "covered",
-    "DARK": "too dark",
-    "BLURRED": "blurred",
-    "ENDED": "at its end",
-}
 
 
 def camera(
@@ -81,7 +72,7 @@ async def _watch(
         row = {"at": round(at, 2), "state": sight.state, "why": sight.why, **sight.evidence()}
         states.append(row)
         if tell and (sight.state != "ENDED" or frame is not None):
-            print(f"{at:5.1f} s  {STATES[sight.state]}{_reason(sight)}", flush=True)
+            print(f"{at:5.1f} s  {CAMERA_STATES[sight.state]}{_reason(sight)}", flush=True)
 
     camera = Camera(source, log=log)
     camera.changed = changed
@@ -199,7 +190,7 @@ async def _capture(
         ):
             kept.append(known)
             if tell:
-                print(f"{known['file']}  {STATES[known['state']]}{_card(known)}", flush=True)
+                print(f"{known['file']}  {CAMERA_STATES[known['state']]}{_card(known)}", flush=True)
 
 
 def _card_reader(activity: str, deck_seed: int) -> Reader:

@@ -44,6 +44,7 @@ CHOICES = (
     Choice("r", "Rehearse", "practise what to do when things go wrong"),
     Choice("o", "Policy", "what Tangy does in which situation"),
     Choice("e", "People", "who takes part, and what persuades them"),
+    Choice("c", "Sensors", "cameras and devices, and the last card"),
     Choice("d", "Demo", "the whole story in a minute"),
     Choice("h", "Help", "keys, and how to begin"),
     Choice("q", "Quit", "leave Tangy"),
@@ -134,9 +135,13 @@ class Menu(Widget, can_focus=True):
     def _spacing(self) -> int:
         return 2 if self.size.height >= 2 * len(self._choices) + 3 else 1
 
+    def _first(self) -> int:
+        """Return the line of the first choice, with an empty one before it if that fits."""
+        return 3 if self.size.height >= len(self._choices) + 3 else 2
+
     def _line(self, y: int) -> int | None:
         """Return which choice stands on line `y` of the content."""
-        line, rest = divmod(y - 3, self._spacing())
+        line, rest = divmod(y - self._first(), self._spacing())
         return line if not rest and 0 <= line < len(self._choices) else None
 
     def _heading(self, y: int) -> Row:

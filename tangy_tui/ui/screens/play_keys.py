@@ -22,11 +22,11 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
     """Return the keys and what they do while the game goes on, stands still, or is over."""
     if over:
         return (
-            ("g", "plays again"), ("w", "why"), ("1-6", "show"), ("esc", "back"), ("?", "help"),
+            ("g", "plays again"), ("w", "why"), ("1-7", "show"), ("esc", "back"), ("?", "help"),
         )  # fmt: skip
     return (
         ("p", "pause" if going else "go on"), ("n", "step"), ("<>", "speed"), ("e", "end"),
-        ("w", "why"), ("1-6", "show"), ("f", "fault"), ("g", "game"), ("esc", "back"),
+        ("w", "why"), ("1-7", "show"), ("f", "fault"), ("g", "game"), ("esc", "back"),
         ("?", "help"),
     )  # fmt: skip
 
@@ -48,7 +48,8 @@ HELP = (
     "right) says that it is all right. When something goes wrong, a line under the first one says "
     "what, what Tangy does about it and what it asks for; a says that you have seen it and takes "
     "the line away, 6 shows all faults of this "
-    "game, and Enter there what to do. When it is critical Tangy stands still until you clear it. "
+    "game, and Enter there what to do. 7 shows how all devices are, what cameras see and the last "
+    "card that was read. When it is critical Tangy stands still until you clear it. "
     "f brings about a fault in the simulated room. v lets Tangy speak, or be quiet: as fast as "
     "in life (x1) every line is heard to its end, and in a faster game the next one cuts it. With "
     "a microphone, t talks where Tangy asks, and stop, said while Tangy does not speak, stops the "
@@ -70,6 +71,7 @@ BINDINGS: list[BindingType] = [
     Binding("4", "panel('posteriors')", "Show the posteriors"),
     Binding("5", "panel('log')", "Show the log"),
     Binding("6", "panel('faults')", "Show the faults of this game"),
+    Binding("7", "sensors", "Show the sensors, and what cameras see"),
     Binding("a", "acknowledge", "I have seen the fault"),
     Binding("r", "accept", "What Tangy asks about is all right"),
     Binding("f", "inject", "Bring about a fault (in simulation)"),

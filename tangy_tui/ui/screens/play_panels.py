@@ -85,6 +85,21 @@ class PlayPanels(TangyScreen[Tally]):
             if enlarged:
                 self.maximize(chosen)
 
+    def action_sensors(self) -> None:
+        """Show how all devices are, over the game, which goes on."""
+        from tangy_tui.ui.screens.sensors import SensorsScreen
+
+        cameras = getattr(self.app, "cameras", None)
+        try:
+            sensors = None if cameras is None else cameras()
+        except TangyError as error:
+            self._tell_now(str(error), "warn")
+            return
+        health = self._supervision.world.health
+        line = self.query_one(StatusLine)
+        screen = SensorsScreen(self._house, sensors, health=health, shown=lambda: line.status)
+        self.app.push_screen(screen)
+
     def action_why(self) -> None:
         """Tell why: of the chosen step, of what Tangy asks, or of the last step."""
         chosen = self.query_one(Transcript).chosen

@@ -1,11 +1,16 @@
-"""The card beside the robot as a few lines of text: what is marked, wrongly marked, missed."""
+"""A card as a few lines of text: what is marked, wrongly marked, missed, or could not be seen."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, sqrt
+from typing import TYPE_CHECKING
 
 from tangy_profiles.scene import CardView
 from tangy_tui.ui.widgets.rows import Row, Span
+
+if TYPE_CHECKING:
+    from tangy_hw.sensors import SeenCard
 
 CELL = 5  # columns of one number with its marks
 
@@ -29,15 +34,47 @@ def card_lines(card: CardView) -> list[Row]:
     return lines
 
 
+SEEN_LEGEND: Row = (
+    ("[7]", "good"),
+    (" marked  ", "dim"),
+    ("░7░", "warn"),
+    (" not seen", "dim"),
+)
+
+
+def seen_card_lines(card: SeenCard, letters: Sequence[str]) -> list[Row]:
+    """Write a card as it was read, under its letters; what could not be seen is hatched."""
+    lines: list[Row] = [tuple((_fill(letter, "  "), "strong") for letter in letters)]
+    for first in range(0, len(card.numbers), card.columns):
+        places = range(first, min(first + card.columns, len(card.numbers)))
+        lines.append(tuple(_seen_cell(card, place) for place in places))
+    return lines
+
+
+def _seen_cell(card: SeenCard, place: int) -> Span:
+    number = str(card.numbers[place])
+    if card.free >> place & 1:
+        return "free".rjust(CELL), "dim"
+    if card.hidden >> place & 1:
+        return _fill(number, "░░"), "warn"
+    if card.marked >> place & 1:
+        return _fill(number, "[]"), "good"
+    return _fill(number, "  "), "text"
+
+
 def _cell(card: CardView, place: int) -> Span:
     number = str(card.numbers[place])
     marked, called = card.marked >> place & 1, card.called >> place & 1
     match marked, called:
         case 1, 1:
-            return f"[{number}]".rjust(CELL), "good"
+            return _fill(number, "[]"), "good"
         case 1, 0:
-            return f"!{number}!".rjust(CELL), "bad"
+            return _fill(number, "!!"), "bad"
         case 0, 1:
-            return f"?{number}?".rjust(CELL), "warn"
+            return _fill(number, "??"), "warn"
         case _:
-            return f"{number} ".rjust(CELL), "dim"
+            return _fill(number, "  "), "dim"
+
+
+def _fill(number: str, marks: str) -> str:
+    return f"{marks[0]}{number}{marks[1]}".rjust(CELL)

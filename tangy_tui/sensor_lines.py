@@ -1,0 +1,227 @@
+"""What the robot's devices say of themselves, in words: the same on the screen and in lines."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading
+from tangy_profiles.robot import Device, Robot
+from tangy_tui.monitoring.detection import state_of
+
+if TYPE_CHECKING:
+    from tangy_hw.drivers.camera_state import Sight
+    from tangy_hw.sensors import CardSight, Sensors
+
+CAMERA_STATES = {
+    "OPENING": "no picture yet",
+    "OK": "it works",
+    "DISCONNECTED": "disconnected",
+    "FROZEN": "frozen",
+    "COVERED": "covered",
+    "DARK": "too dark",
+    "BLURRED": "blurred",
+    "ENDED": "at its end",
+}
+"""What is said of the states of a camera."""
+
+DEVICE_STATES = {OK: "it works", WARN: "it warns", STALE: "silent", ERROR: "failed"}
+SIMULATED = "simulated"
+BAD = ("DISCONNECTED", "FROZEN", STALE, ERROR)
+WELL = ("OK", OK)
+
+Clock = Callable[[], float]
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What is told of a device: its state, for how long (s, None: that is not known), and why.
+
+    `code` is the state as the device has it, "" where nothing is known of it; `age` is of its
+    newest data, in s; `facts` are what it measures, in words.
+    """
+
+    device: Device
+    code: str
+    state: str
+    why: str = ""
+    age: float | None = None
+    seconds: float | None = None
+    source: str = ""
+    facts: tuple[str, ...] = ()
+
+    @property
+    def well(self) -> bool:
+        """Whether it works."""
+        return self.code in WELL
+
+    @property
+    def bad(self) -> bool:
+        """Whether nothing at all can be known by it."""
+        return self.code in BAD
+
+    @property
+    def live(self) -> bool:
+        """Whether it is a real device."""
+        return bool(self.source)
+
+
+class Teller:
+    """Tells of the devices of a robot: of real cameras, and of those that are simulated."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        sensors: Sensors | None = None,
+        health: Callable[[], Health] = tuple,
+        clock: Clock = time.monotonic,
+    ) -> None:
+        """Prepare to tell.
+
+        Args:
+            robot: whose devices they are.
+            sensors: its real cameras, if there are any.
+            health: what the devices of a game say of themselves; nothing where none is going on.
+            clock: of the time for which a simulated device has been as it is, in s.
+        """
+        self._robot = robot
+        self._sensors = sensors
+        self._health = health
+        self._clock = clock
+        self._since: dict[str, tuple[str, float]] = {}
+
+    def tell(self) -> list[Told]:
+        """Tell of every device, in the order of the profile."""
+        readings = {reading.device: reading for reading in self._health()}
+        sensors = self._sensors
+        cameras = () if sensors is None else sensors.cameras
+        return [
+            _camera(device, sensors.sight(device.name), sensors.source(device.name))
+            if sensors is not None and device.name in cameras
+            else self._simulated(device, readings.get(device.name))
+            for device in self._robot.devices.values()
+        ]
+
+    def _simulated(self, device: Device, reading: Reading | None) -> Told:
+        if reading is None:
+            self._since.pop(device.name, None)
+            return Told(device, "", SIMULATED, "Nothing to be seen until a game goes on.")
+        code, now = state_of(device, reading), self._clock()
+        before, since = self._since.get(device.name, ("", now))
+        if code != before:
+            since = now
+            self._since[device.name] = code, since
+        why = ""
+        if code == STALE:
+            why = f"Its data is too old: at most {device.stale_after:g} s are allowed."
+        elif code == ERROR:
+            why = "It reports a failure."
+        elif code == WARN:
+            why = "It warns of something."
+        return Told(
+            device,
+            code,
+            DEVICE_STATES[code],
+            why,
+            reading.age,
+            now - since,
+            "",
+            _facts(device, dict(reading.facts)),
+        )
+
+
+def _camera(device: Device, sight: Sight, source: str) -> Told:
+    facts: dict[str, Fact] = dict(sight.reading(device.name).facts)
+    told = _facts(device, facts)
+    if sight.sharpness is not None:
+        told += (f"sharpness of the picture, 0 to 1: {sight.sharpness:.2f}",)
+    return Told(
+        device,
+        sight.state,
+        CAMERA_STATES[sight.state],
+        sight.why,
+        sight.age,
+        sight.seconds,
+        source,
+        told,
+    )
+
+
+def _facts(device: Device, facts: dict[str, Fact]) -> tuple[str, ...]:
+    """Say what a device measures, in the words of its profile."""
+    return tuple(
+        f"{device.facts[name].says}: {_value(value)}"
+        for name, value in facts.items()
+        if name in device.facts
+    )
+
+
+def _value(value: Fact) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else f"{value:.2f}"
+
+
+def age_words(seconds: float | None) -> str:
+    """Say how old something is, in a few characters; it does not flicker with what is new."""
+    if seconds is None:
+        return ""
+    if seconds < 10:
+        return f"{max(0.1, seconds):.1f} s"
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.0f} h"
+
+
+def card_words(cards: CardSight) -> tuple[str, str]:
+    """Say which card was read and when, and why none is read now ("" where one is)."""
+    now = time.monotonic()
+    last = cards.last
+    if last is None:
+        return "No card was read yet.", f"Now: {cards.problem}." if cards.problem else ""
+    hidden = f", {last.hidden.bit_count()} of its numbers hidden" if last.hidden else ""
+    words = f"Card {last.card}{hidden}, read {age_words(now - last.stamp)} ago."
+    return words, f"Now: {cards.problem}." if cards.problem else ""
+
+
+def sensor_line(told: Told, width: int) -> str:
+    """Write what is told of a device on one line, its name filled up to a width."""
+    if not told.code:
+        return f"{told.device.label:<{width}}  {told.state}"
+    state = told.state if told.live else f"{told.state} ({SIMULATED})"
+    line = f"{told.device.label:<{width}}  {state:<14}  {age_words(told.age):>6}  {told.why}"
+    return line.rstrip()
+
+
+def sensor_document(told: Told) -> dict[str, Any]:
+    """Return what is told of a device as JSON has it."""
+    return {
+        "device": told.device.name,
+        "label": told.device.label,
+        "source": told.source or None,
+        "simulated": not told.live,
+        "state": told.code or None,
+        "why": told.why,
+        "age": None if told.age is None else round(told.age, 3),
+        "seconds": None if told.seconds is None else round(told.seconds, 3),
+        "works": told.well if told.live else None,
+        "facts": list(told.facts),
+    }
+
+
+def card_document(cards: CardSight) -> dict[str, Any]:
+    """Return the last card that was read as JSON has it."""
+    last = cards.last
+    document: dict[str, Any] = {"card": None, "problem": cards.problem}
+    if last is None:
+        return document
+
+    def places(mask: int) -> list[list[int]]:
+        cells = range(len(last.numbers))
+        return [list(divmod(cell, last.columns)) for cell in cells if mask >> cell & 1]
+
+    age = round(max(0.0, time.monotonic() - last.stamp), 3)
+    marked, hidden = places(last.marked), places(last.hidden)
+    return {**document, "card": last.card, "marked": marked, "hidden": hidden, "age": age}

@@ -1,0 +1,313 @@
+"""The sensors: how every device is, what a camera sees, and the last card as it was read."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Container
+from textual.message import Message
+
+from tangy_profiles.health import Health
+from tangy_tui.house import House
+from tangy_tui.sensor_lines import Teller, Told, age_words, card_words
+from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.closing import close
+from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
+from tangy_tui.ui.widgets.block_picture import BlockPicture
+from tangy_tui.ui.widgets.card_lines import SEEN_LEGEND, seen_card_lines
+from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.page import Line as PageLine
+from tangy_tui.ui.widgets.page import Page, paragraph
+from tangy_tui.ui.widgets.rows import Row, fit, shorten
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
+
+if TYPE_CHECKING:
+    from tangy_hw.sensors import CardSight, Sensors
+
+LOOK_SECONDS = 0.25
+"""How often the devices are told of, and how often a picture is drawn at most."""
+
+NO_SOURCE = (
+    "No camera is named. Give one when you start Tangy, as in: tangy sensors --camera camera=0; "
+    "or write its source into the robot's file."
+)
+
+Shown = Callable[[], Status]
+
+
+class DeviceList(ChoiceList):
+    """The devices; `Chosen` tells of Enter on one."""
+
+    class Chosen(Message):
+        """The device that the cursor is on was chosen."""
+
+    def _tell(self, index: int) -> None:
+        self.post_message(self.Chosen())
+
+
+class SensorsScreen(TangyScreen[None]):
+    """The devices of a robot, what the chosen camera sees, and the card it has read.
+
+    The cameras are open as long as the screen is there.
+    """
+
+    CSS_PATH = "sensors.tcss"
+    HORIZONTAL_BREAKPOINTS = WIDE
+    VERTICAL_BREAKPOINTS = LOW
+    TITLE = "Sensors"
+    HELP = (
+        "Every device of the robot, how it is in a word, and how old its newest data is. What "
+        "stands behind a device that is simulated comes from the game, and from no sensor. v, or "
+        "Enter on a camera, shows what it sees, and hides it again. Below that is the last card "
+        "as it was read: what could not be seen of it is hatched and never guessed. tab goes to "
+        "the picture, and + enlarges it. A camera that was unplugged is opened again by itself."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("v", "picture", "Show what the camera sees, or hide it"),
+        Binding("escape", "leave", "Back"),
+    ]
+
+    def __init__(
+        self,
+        house: House,
+        sensors: Sensors | None = None,
+        *,
+        health: Callable[[], Health] = tuple,
+        shown: Shown | None = None,
+    ) -> None:
+        """Make the screen.
+
+        Args:
+            house: whose robot it is.
+            sensors: its cameras; they are opened here, and closed with the screen.
+            health: what the simulated devices of a game say of themselves.
+            shown: what the status line says of that game.
+        """
+        super().__init__()
+        self._house = house
+        self._sensors = sensors
+        self._teller = Teller(house.robot, sensors, health)
+        self._shown = shown
+        self._told: dict[str, Told] = {}
+        self._seen = False
+        """Whether the picture is shown."""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the devices, what is told of one, its picture and the card."""
+        yield StatusLine(self._status())
+        with Container(id="body"):
+            with Container(id="left"):
+                yield panel(DeviceList("Sensors", DEVICES_HELP, id="devices"))
+                yield panel(Page(id="about"))
+            with Container(id="right"):
+                yield panel(BlockPicture("Picture", PICTURE_HELP, id="picture"))
+                yield panel(Page(id="card"), "Last card")
+        yield key_line(
+            ("up down", "choose"), ("v", "picture"), ("tab", "panel"), ("+", "enlarge"),
+            ("esc", "back"), ("?", "help"),
+        )  # fmt: skip
+
+    def on_mount(self) -> None:
+        """Open the cameras, and tell of all devices from now on."""
+        self._devices.focus()
+        self._look()
+        cameras = self._cameras
+        if cameras:
+            self._devices.show(self._device_lines, cameras[0])
+            self._tell_of_chosen()
+            self.run_worker(self._keep_open(), group="cameras")
+        self.set_interval(LOOK_SECONDS, self._look)
+
+    def on_choice_list_moved(self, event: ChoiceList.Moved) -> None:
+        """Tell of another device, and show what it sees if that is wanted."""
+        event.stop()
+        self._tell_of_chosen()
+        self._watch()
+
+    def on_device_list_chosen(self, event: DeviceList.Chosen) -> None:
+        """Show what a camera sees, or hide it, for Enter on it."""
+        event.stop()
+        if self._chosen in self._cameras:
+            self.action_picture()
+
+    def action_picture(self) -> None:
+        """Show what the chosen camera sees, or hide it."""
+        self._seen = not self._seen
+        if self._seen and self._chosen not in self._cameras:
+            self._seen = False
+            if self._cameras:
+                self._devices.show(self._device_lines, self._cameras[0])
+                self._seen = True
+        self._tell_of_chosen()
+        self._watch()
+
+    def action_leave(self) -> None:
+        """Give an enlarged panel its place back, or go back."""
+        if self.maximized is not None:
+            self.minimize()
+        else:
+            close(self, None)
+
+    # ------------------------------------------------------------------------------ cameras
+
+    @property
+    def _cameras(self) -> tuple[str, ...]:
+        return () if self._sensors is None else self._sensors.cameras
+
+    async def _keep_open(self) -> None:
+        """Keep the cameras open, and let cards be read, until the screen goes."""
+        assert self._sensors is not None  # noqa: S101 - there are cameras
+        async with self._sensors:
+            with self._sensors.reading_cards():
+                await asyncio.Event().wait()
+
+    def _watch(self) -> None:
+        """Let pictures of the chosen camera come, if they are wanted; else none is asked for."""
+        if self._seen and self._chosen in self._cameras:
+            self.run_worker(self._draw(self._chosen), group="picture", exclusive=True)
+        else:
+            self.workers.cancel_group(self, "picture")
+
+    async def _draw(self, device: str) -> None:
+        """Draw a camera's pictures as they come."""
+        assert self._sensors is not None  # noqa: S101 - there are cameras
+        await asyncio.to_thread(__import__, "numpy")
+        picture, loop = self.query_one(BlockPicture), asyncio.get_running_loop()
+        seq, size = -1, picture.fit
+        picture.say("The first picture is coming ...")
+        while True:
+            began = loop.time()
+            if self.is_active and picture.is_on_screen:
+                if picture.fit != size:
+                    seq, size = -1, picture.fit
+                frame = await self._sensors.picture(device, size, after=seq)
+                if frame is not None:
+                    seq = frame.seq
+                    picture.show(frame)
+            await asyncio.sleep(max(0.02, began + LOOK_SECONDS - loop.time()))
+
+    # ------------------------------------------------------------------------------ telling
+
+    @property
+    def _devices(self) -> ChoiceList:
+        return self.query_one("#devices", ChoiceList)
+
+    @property
+    def _chosen(self) -> str:
+        """The device that the cursor is on."""
+        return str(self._devices.chosen)
+
+    def _status(self) -> Status:
+        if self._shown is not None:
+            return self._shown()
+        return Status(mode="sensors", note=self._house.robot.title)
+
+    def _look(self) -> None:
+        """Tell how everything is now, if anybody can see it."""
+        if self._told and not self.is_active:
+            return
+        self._told = {told.device.name: told for told in self._teller.tell()}
+        self.query_one(StatusLine).show(self._status())
+        devices = self._devices
+        devices.show(self._device_lines)
+        simulated = any(told.code and not told.live for told in self._told.values())
+        devices.border_subtitle = "~ simulated" if simulated else ""
+        self._tell_of_chosen()
+        self._tell_of_card()
+
+    def _device_lines(self, width: int, height: int) -> list[Line]:
+        return [Line(device_row(told, width), name) for name, told in self._told.items()]
+
+    def _tell_of_chosen(self) -> None:
+        told = self._told.get(self._chosen)
+        if told is None:
+            return
+        about = self.query_one("#about", Page)
+        about.border_title = clean(told.device.label).replace("[", "\\[")
+        about.show(lambda width: about_lines(told, width), None)
+        picture = self.query_one(BlockPicture)
+        picture.border_subtitle = ""
+        if not self._cameras:
+            picture.say(NO_SOURCE)
+        elif not told.live:
+            picture.say(f"{told.device.label} gives no pictures here.".capitalize())
+        elif not self._seen:
+            picture.say(f"v shows what the {told.device.label} sees.")
+        elif picture.there:
+            old = "live" if told.well else f"{told.state}, {age_words(told.age)} old"
+            picture.border_subtitle = old
+
+    def _tell_of_card(self) -> None:
+        sensors, page = self._sensors, self.query_one("#card", Page)
+        if sensors is None or not sensors.card_device:
+            words = "No camera looks at cards."
+            page.show(lambda width: paragraph(words, width, "dim"), None)
+            return
+        cards = sensors.cards
+        letters = [column.letter for column in self._house.activity.deck.columns]
+        page.show(lambda width: card_page(cards, letters, width), None)
+
+
+def device_row(told: Told, width: int) -> Row:
+    """Write one device: a mark and a word for its state, how old its data is, and, wide, why."""
+    label = min(20, max(10, width - 24))
+    ink = state_ink(told)
+    mark = "  " if told.well or not told.code else "!!" if told.bad else "! "
+    simulated = "~" if told.code and not told.live else " "
+    left = width - label - 26
+    return (
+        (mark, ink),
+        (simulated, "dim"),
+        (fit(clean(told.device.label), label), "text" if told.code else "dim"),
+        (f" {fit(told.state, 14)}", ink),
+        (f"{age_words(told.age):>6}", "dim"),
+        (f"  {shorten(clean(told.why), left)}" if left > 12 else "", "dim"),
+    )
+
+
+def state_ink(told: Told) -> str:
+    """Return the ink in which a state is written; its word says as much."""
+    if not told.code or told.code in ("OPENING", "ENDED"):
+        return "dim"
+    return "good" if told.well else "bad" if told.bad else "warn"
+
+
+def about_lines(told: Told, width: int) -> list[PageLine]:
+    """Tell of one device: how it is, why, since when, and what it measures."""
+    since = f" for {age_words(told.seconds)}" if told.seconds is not None and told.code else ""
+    kind = "" if told.live or not told.code else " (simulated)"
+    lines = [PageLine(((f"{told.state}{since}{kind}", state_ink(told)),))]
+    if told.why:
+        lines += paragraph(clean(told.why), width)
+    if told.age is not None:
+        wanted = f" (at most {told.device.stale_after:g} s)"
+        lines.append(PageLine(((f"newest data {age_words(told.age)} old{wanted}", "dim"),)))
+    for fact in told.facts:
+        lines += paragraph(clean(fact), width, "dim")
+    if told.source:
+        lines += paragraph(f"from {clean(told.source)}", width, "dim")
+    return lines
+
+
+def card_page(cards: CardSight, letters: list[str], width: int) -> list[PageLine]:
+    """Write the last card that was read, when that was, and why none is read now."""
+    read, problem = card_words(cards)
+    lines = paragraph(read, width)
+    if problem:
+        lines += paragraph(problem, width, "warn")
+    if cards.last is not None:
+        lines += [PageLine(row) for row in seen_card_lines(cards.last, letters)]
+        lines.append(PageLine(SEEN_LEGEND))
+    return lines
+
+
+DEVICES_HELP = (
+    "Each device with a word for its state: a ! where something is wrong with it, !! where "
+    "nothing can be known by it, and a ~ where it is simulated. Up and down choose one."
+)
+PICTURE_HELP = "What the chosen camera sees now, in small. Nothing of it is kept."

@@ -1,0 +1,102 @@
+"""`tangy sensors`: what the robot's devices say of themselves, what its cameras see and read."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.card_face import USUAL_SEED
+from tangy_tui.verbs.cards import DeckSeed
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Ascii,
+    Data,
+    Json,
+    Seed,
+    full_screen,
+    open_house,
+    print_json,
+)
+
+if TYPE_CHECKING:
+    from tangy_hw.sensors import Sensors
+    from tangy_tui.house import House
+    from tangy_tui.sensor_lines import Told
+
+Cameras = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--camera",
+        metavar="DEVICE=SOURCE",
+        help="Where the pictures of a camera of the robot come from, as in camera=0: a camera of "
+        "this machine, http://... or rtsp://..., a video, or a folder of pictures. Repeatable.",
+    ),
+]
+
+
+def sensors(
+    camera: Cameras = None,
+    seconds: Annotated[
+        float, typer.Option(min=0.1, help="How long they are looked at, without a screen.")
+    ] = 3.0,
+    plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
+    deck_seed: DeckSeed = USUAL_SEED,
+    activity: ActivityName = "bingo",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+    ascii_only: Ascii = False,
+) -> None:
+    """Show the state of the robot's devices, what its cameras see, and the last card they read.
+
+    By lines the status is 0 if all cameras that have a source work, and 1 if one does not.
+    """
+    from tangy_hw.sensors import sensors_of
+
+    screen = full_screen() and not (plain_lines or as_json)
+    with open_house(data, activity, 4, write=False) as house:
+        deck, folder = house.activity.deck, house.store.folder
+        opened = sensors_of(house.robot, deck, folder, camera or (), deck_seed=deck_seed)
+        if screen:
+            from tangy_tui.ui.run import run_sensors
+
+            raise typer.Exit(run_sensors(house, opened, ascii_only=ascii_only))
+        found, card = asyncio.run(_look(house, opened, seconds))
+    live = [told for told in found if told.live]
+    works = all(told.well for told in live)
+    if as_json:
+        from tangy_tui.sensor_lines import sensor_document
+
+        devices = [sensor_document(told) for told in found]
+        print_json({"works": works, "devices": devices, "card": card["document"]})
+    else:
+        from tangy_tui.sensor_lines import sensor_line
+
+        width = max(len(told.device.label) for told in found)
+        for told in found:
+            print(sensor_line(told, width))
+        for line in card["words"]:
+            print(line)
+        if not live:
+            print("No camera has a source: name one, as in `tangy sensors --camera camera=0`.")
+    if not works:
+        raise typer.Exit(1)
+
+
+async def _look(
+    house: House, sensors: Sensors, seconds: float
+) -> tuple[list[Told], dict[str, Any]]:
+    """Look at all devices for so many s; return what is told of them, and of the last card."""
+    from tangy_tui.sensor_lines import Teller, card_document, card_words
+
+    async with sensors:
+        with sensors.reading_cards():
+            await asyncio.sleep(seconds)
+        found = Teller(house.robot, sensors).tell()
+        if not sensors.card_device:
+            return found, {"document": None, "words": []}
+        cards = sensors.cards
+        words = [word for word in card_words(cards) if word]
+        return found, {"document": card_document(cards), "words": words}
