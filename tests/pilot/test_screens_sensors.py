@@ -1,0 +1,310 @@
+"""The sensors on a screen: devices in a word, a picture on request, the card as it was read."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from time import monotonic
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from textual.app import App
+
+from tangy_hw.drivers.camera_state import Sight
+from tangy_hw.sensors import CardSight, SeenCard
+from tangy_profiles.card_face import numbers_of
+from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
+from tangy_tui.house import House
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.sensors import SensorsScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tangy_tui.ui.widgets.block_picture import BLOCK, BlockPicture
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+WELL = Sight("OK", "", 8.0, 0.05, 0.0, 0.5, 0.2, 0.6)
+LOOK = 0.25
+PATIENCE = 20.0
+
+
+def picture(width: int, height: int, red: int = 0) -> Any:
+    """A picture that is blue above and bright below, with so much red."""
+    above, below = bytes((200, 20, red)) * width, bytes((250, 250, 250)) * width
+    pixels = above * (height // 2) + below * (height - height // 2)
+    return SimpleNamespace(width=width, height=height, pixels=pixels, seq=1)
+
+
+@dataclass
+class FakeSensors:
+    """A head camera and what it reads, as the test says; it counts what is asked of it."""
+
+    now: Sight = WELL
+    cards: CardSight = field(default_factory=CardSight)
+    cameras: tuple[str, ...] = ("camera",)
+    card_device: str = "camera"
+    open: int = 0
+    readers: int = 0
+    asked: list[tuple[int, int]] = field(default_factory=list)
+    red: int = 0
+
+    async def __aenter__(self) -> FakeSensors:
+        self.open += 1
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.open -= 1
+
+    async def close(self) -> None:
+        self.open = 0
+
+    def source(self, device: str) -> str:
+        return "/dev/video0"
+
+    def sight(self, device: str) -> Sight:
+        return self.now
+
+    async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Any:
+        self.asked.append(fit)
+        return picture(*fit, red=self.red)
+
+    @contextmanager
+    def reading_cards(self) -> Iterator[None]:
+        self.readers += 1
+        try:
+            yield
+        finally:
+            self.readers -= 1
+
+
+def card(house: House, hidden: int = 0b11000, stamp: float | None = None) -> SeenCard:
+    """Card 17 with its first two numbers marked, read just now."""
+    deck = house.activity.deck
+    at = monotonic() if stamp is None else stamp
+    return SeenCard(17, numbers_of(deck, 17), 0b11, hidden, deck.free, 5, at)
+
+
+@pytest.fixture
+def sensors() -> FakeSensors:
+    return FakeSensors()
+
+
+@pytest.fixture
+def make(house: House, sensors: FakeSensors) -> Callable[..., SensorsScreen]:
+    given: Any = sensors
+    return lambda **more: SensorsScreen(house, given, **more)
+
+
+async def later(pilot: TangyPilot) -> None:
+    """Wait until the devices were looked at again."""
+    screen = pilot.app.screen
+    assert isinstance(screen, SensorsScreen)
+    screen._look()
+    await pilot.pause()
+
+
+async def until(pilot: TangyPilot, true: Callable[[], object]) -> None:
+    """Wait until something is so."""
+    async with asyncio.timeout(PATIENCE):
+        while not true():
+            await pilot.pause(0.02)
+
+
+def left(pilot: TangyPilot) -> list[str]:
+    """What stands on the left: the devices, and what is told of one."""
+    return [line[:46] for line in pilot.lines()]
+
+
+def row(pilot: TangyPilot, label: str) -> str:
+    return next(line for line in left(pilot) if label in line)
+
+
+async def test_a_camera_is_told_of_in_a_word_with_age_reason_and_since_when(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
+) -> None:
+    async with run(make()) as pilot:
+        assert "it works" in row(pilot, "head camera") and "0.1 s" in row(pilot, "head camera")
+        assert "it works for 8.0 s" in pilot.text()
+        why = "No picture has come: it stopped sending."
+        sensors.now = Sight("DISCONNECTED", why, 42.0, 44.0, 0.0, 0.5, 0.2, 0.6)
+        await later(pilot)
+        assert "!! head camera" in pilot.text() and "disconnected" in row(pilot, "!! head camera")
+        assert "disconnected for 42 s" in pilot.text() and "44 s" in row(pilot, "!! head camera")
+        assert "it stopped sending" in pilot.text()
+        sensors.now = replace(WELL, state="COVERED", why="Does something cover the lens?")
+        await later(pilot)
+        assert "!  head camera" in pilot.text() and "covered" in pilot.text()
+        assert "cover the lens" in pilot.text()
+        sensors.now = WELL
+        await later(pilot)
+        assert "it works" in row(pilot, "   head camera")
+
+
+async def test_what_is_simulated_is_said_to_be(
+    run: Run, make: Callable[..., SensorsScreen]
+) -> None:
+    readings: list[Reading] = []
+
+    def health() -> Health:
+        return tuple(readings)
+
+    async with run(make(health=health)) as pilot:
+        assert "simulated" in row(pilot, "laser scanner")
+        near = {"near_share": 0.9, "variety": 0.3}
+        readings += [
+            Reading("laser", 0.05, OK, near), Reading("link", 3.0, OK), Reading("arms", 0.1, ERROR),
+        ]  # fmt: skip
+        await later(pilot)
+        assert "~laser scanner" in row(pilot, "laser scanner") and "~ simulated" in pilot.text()
+        assert "!!~link to the robot" in pilot.text()
+        assert "silent" in row(pilot, "link to") and "failed" in row(pilot, "arms")
+        pilot.type("home")
+        await pilot.pause()
+        assert "silent for 0.1 s (simulated)" in pilot.text()
+        assert "at most 0.25 s" in pilot.text()
+        pilot.type("down", "down")
+        await pilot.pause()
+        assert "share of beams that end within a" in pilot.text() and "0.90" in pilot.text()
+        assert STALE not in pilot.text()  # words for staff, none of the code's
+
+
+async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
+) -> None:
+    async with run(make()) as pilot:
+        await pilot.pause(2 * LOOK)
+        assert sensors.asked == [] and BLOCK not in pilot.text()
+        pilot.type("v")
+        await until(pilot, lambda: BLOCK in pilot.text())
+        shown = pilot.app.screen.query_one(BlockPicture)
+        width, height = shown.content_size
+        assert sensors.asked[-1] == (width, 2 * height) == shown.fit
+        assert pilot.text().count(BLOCK * width) == height
+        await later(pilot)
+        assert "live" in pilot.text()
+        pilot.type("question_mark")
+        await pilot.pause()
+        asked = len(sensors.asked)
+        await pilot.pause(2 * LOOK)
+        assert len(sensors.asked) <= asked + 1  # help lies over it
+        pilot.type("escape")
+        await pilot.pause()
+        pilot.type("enter")
+        await pilot.pause()
+        asked = len(sensors.asked)
+        await pilot.pause(2 * LOOK)
+        assert len(sensors.asked) == asked and BLOCK not in pilot.text()
+
+
+async def test_an_enlarged_picture_is_made_for_the_room_there_is(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
+) -> None:
+    async with run(make()) as pilot:
+        pilot.type("v", "tab", "tab")
+        await pilot.pause()
+        pilot.type("plus")
+        await until(pilot, lambda: BLOCK * 70 in pilot.text())
+        assert sensors.asked[-1][0] > 70 and sensors.asked[-1][1] > 36
+        pilot.type("escape")
+        await until(pilot, lambda: sensors.asked[-1][0] < 40)
+        assert isinstance(pilot.app.screen, SensorsScreen)
+
+
+@pytest.mark.parametrize("kind", [TerminalKind(ascii=True), TerminalKind(ansi=True)])
+async def test_without_colours_a_picture_is_drawn_in_shades(
+    run: Run, make: Callable[..., SensorsScreen], kind: TerminalKind
+) -> None:
+    async with run(make(), kind=kind) as pilot:
+        pilot.type("v")
+        await until(pilot, lambda: "@@@" in pilot.text())
+        width, height = pilot.app.screen.query_one(BlockPicture).content_size
+        assert pilot.text().count("." * width) >= height // 2 - 1
+        assert pilot.text().count("@" * width) >= height // 2
+
+
+async def test_only_what_has_changed_of_a_picture_is_drawn(run: Run) -> None:
+    shown = BlockPicture("Picture", "")
+    drawn: list[Any] = []
+
+    class One(App[None]):
+        def compose(self) -> Any:
+            yield shown
+
+    async with One().run_test(size=(40, 10)) as pilot:
+        shown.show(picture(30, 16))
+        await pilot.pause()
+        shown.refresh = lambda *regions, **_: drawn.append(regions)  # type: ignore[method-assign,assignment]
+        shown.show(picture(30, 16, red=9))  # as much as noise
+        assert drawn == []
+        shown.show(picture(30, 16, red=90))
+        ((*regions,),) = drawn
+        assert [(region.y, region.width) for region in regions] == [(1 + n, 30) for n in range(4)]
+
+
+async def test_the_last_card_is_drawn_as_it_was_read(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, house: House
+) -> None:
+    async with run(make()) as pilot:
+        assert "No card was read yet." in pilot.text()
+        sensors.cards = CardSight(card(house), "", monotonic())
+        await later(pilot)
+        numbers = numbers_of(house.activity.deck, 17)
+        assert "Card 17, 2 of its numbers" in pilot.text()
+        assert f"[{numbers[0]}]" in pilot.text() and f"[{numbers[1]}]" in pilot.text()
+        assert f"░{numbers[3]}░" in pilot.text() and f"░{numbers[4]}░" in pilot.text()
+        assert f"[{numbers[3]}]" not in pilot.text()
+        assert all(f" {number} " in pilot.text() for number in numbers[5:])
+        assert "not seen" in pilot.text()
+        sensors.cards = CardSight(card(house, 0, monotonic() - 20), "no card in sight", monotonic())
+        await later(pilot)
+        assert "Card 17, read 20 s ago." in pilot.text()
+        assert "Now: no card in sight." in pilot.text()
+
+
+async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
+    run: Run, house: House, sensors: FakeSensors
+) -> None:
+    given: Any = sensors
+    async with run(app=Program(house, sensors=given)) as pilot:
+        assert sensors.open == 0
+        pilot.type("c")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, SensorsScreen)
+        assert (sensors.open, sensors.readers) == (1, 1)
+        pilot.type("escape")
+        await until(pilot, lambda: (sensors.open, sensors.readers) == (0, 0))
+        assert not isinstance(pilot.app.screen, SensorsScreen)
+        pilot.type("c")
+        await pilot.pause()
+        assert sensors.open == 1
+    assert sensors.open == 0
+
+
+async def test_without_a_camera_it_says_how_to_name_one(run: Run, house: House) -> None:
+    async with run(SensorsScreen(house)) as pilot:
+        assert "camera=0" in pilot.text()
+        pilot.type("v", "enter")
+        await pilot.pause()
+        assert "camera=0" in pilot.text() and "No camera looks at cards." in pilot.text()
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["small", "large"])
+async def test_how_it_looks(
+    size: tuple[int, int],
+    run: Run,
+    make: Callable[..., SensorsScreen],
+    sensors: FakeSensors,
+    house: House,
+    picture: Callable[[App[Any]], None],
+) -> None:
+    sensors.now = replace(WELL, state="COVERED", why="Nothing can be seen in the picture.")
+    sensors.cards = CardSight(card(house, stamp=monotonic() + 9), "", monotonic())
+    health = (Reading("laser", 0.05, OK), Reading("link", 3.0))
+    async with run(make(health=lambda: health), size) as pilot:
+        pilot.type("v")
+        await until(pilot, lambda: BLOCK in pilot.text())
+        await later(pilot)
+        picture(pilot.app)
