@@ -14,7 +14,10 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.card_face import HEIGHT, LAST_CARD, USUAL_SEED, WIDTH, Face
 from tangy_profiles.card_picture import draw_face
 from tangy_profiles.cards import Deck
-from tangy_sim.card_things import Chip, background, draw_hand, put_chip, some_chip
+from tangy_sim.card_chips import Chip, put_chip, some_chip
+from tangy_sim.card_hands import draw_hand
+from tangy_sim.card_light import exposed, lit_scene, moved, project
+from tangy_sim.card_things import background
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
     Real = NDArray[Any]
 
 AROUND = 120.0  # mm of the table around the card that hands and loose chips may be on
+ON_LINE = 1.5  # mm from a line at which nobody can say in which cell a chip lies
+HANDS = ("finger", "thumb", "flat", "blob", "bar")
 MASTER = 8.0  # pixels to the mm of the face that all smaller ones are made from
 
 
@@ -44,13 +49,15 @@ class View:
     slope: float = 0.0
     warm: float = 0.0
     shadow: float = 0.0
+    soft: float = 12.0  # pixels of the shadow's edge
     glare: float = 0.0
     blur: float = 0.5
     motion: float = 0.0
     noise: float = 3.0
     quality: int = 90
     bend: float = 0.0  # mm
-    hand: str = ""  # "", "finger", "thumb", "flat", or "thing" for something else
+    hand: str = ""  # or one of `HANDS`, or "thing" for something else
+    grey: bool = False
     size: tuple[int, int] = (1280, 720)
 
 
@@ -59,7 +66,8 @@ class Frame:
     """A picture of a card, and what is true of it.
 
     `marked` are the cells with a chip, as a mask; `covered` is how much of each cell a hand hides,
-    0 to 1; `corners` are the corners of the grid in the picture.
+    0 to 1; `corners` are the corners of the grid in the picture; `between` are the cells at a line
+    on which the middle of a chip lies, as a mask.
     """
 
     picture: Picture
@@ -68,10 +76,12 @@ class Frame:
     covered: tuple[float, ...]
     view: View
     corners: tuple[tuple[float, float], ...]
+    between: int = 0
 
     def unknown(self, share: float = 0.25) -> int:
-        """Return the cells of which at least this share is hidden, as a mask."""
-        return sum(1 << cell for cell, part in enumerate(self.covered) if part >= share)
+        """Return the cells nobody can tell: at least this share is hidden, or a chip on a line."""
+        hidden = sum(1 << cell for cell, part in enumerate(self.covered) if part >= share)
+        return hidden | self.between
 
 
 def some_view(random: np.random.Generator, **given: Any) -> View:
@@ -83,17 +93,19 @@ def some_view(random: np.random.Generator, **given: Any) -> View:
         tilted_to=float(uniform(-180, 180)),
         spin=float(uniform(-180, 180)) if chance() < 0.4 else float(random.normal(0, 12)),
         wide=float(uniform(0.8, 1.6)),
-        light=float(uniform(0.45, 1.0)),
+        light=float(uniform(0.4, 1.08)),
         slope=float(uniform(0, 0.45)),
         warm=float(uniform(-0.16, 0.22)),
-        shadow=float(uniform(0.2, 0.6)) if chance() < 0.3 else 0.0,
-        glare=float(uniform(0.2, 0.7)) if chance() < 0.25 else 0.0,
+        shadow=float(uniform(0.2, 0.65)) if chance() < 0.3 else 0.0,
+        soft=float(uniform(0.3, 25)) if chance() < 0.5 else 0.5,
+        glare=float(uniform(0.2, 0.9)) if chance() < 0.25 else 0.0,
         blur=float(uniform(0.3, 1.0)),
         motion=float(uniform(1, 2.5)) if chance() < 0.15 else 0.0,
         noise=float(uniform(1, 7)),
         quality=int(uniform(55, 96)),
         bend=float(uniform(0, 1.2)) if chance() < 0.4 else 0.0,
-        hand=str(random.choice(["finger", "thumb", "flat"])) if chance() < 0.3 else "",
+        hand=str(random.choice(HANDS)) if chance() < 0.3 else "",
+        grey=bool(chance() < 0.02),
     )
     return replace(drawn, **given)
 
@@ -101,8 +113,17 @@ def some_view(random: np.random.Generator, **given: Any) -> View:
 class CardCamera:
     """Takes frames of cards of one deck that lie on a table."""
 
-    def __init__(self, deck: Deck, *, deck_seed: int = USUAL_SEED, title: str = "") -> None:
+    def __init__(
+        self,
+        deck: Deck,
+        *,
+        deck_seed: int = USUAL_SEED,
+        title: str = "",
+        straddling: float = 0.06,
+    ) -> None:
+        """Set up; `straddling` is the chance of a chip to lie carelessly on its cell."""
         self.face = Face(deck)
+        self.straddling = straddling
         self.deck_seed = deck_seed
         self.title = title
 
@@ -133,7 +154,8 @@ class CardCamera:
                 continue
             own = kind if random.random() < 0.9 else some_chip(random)
             for attempt in range(8):
-                chip = own.thrown(random, self.face.middle(cell), self.face.cell, attempt > 5)
+                careless = self.straddling if attempt < 6 else 0.0
+                chip = own.thrown(random, self.face.middle(cell), self.face.cell, careless)
                 if all(chip.clear_of(other) for other in chips.values()):
                     chips[cell] = chip
                     break
@@ -161,7 +183,7 @@ class CardCamera:
             (grid.right, grid.bottom),
             (grid.left, grid.bottom),
         )
-        corners = _project(plane, np.array(ends))
+        corners = project(plane, np.array(ends))
         return Frame(
             picture,
             card,
@@ -169,7 +191,21 @@ class CardCamera:
             tuple(float(part) for part in covered),
             view,
             tuple((float(x), float(y)) for x, y in corners),
+            self._between(chips),
         )
+
+    def _between(self, chips: dict[int, Chip]) -> int:
+        """Return the cells that a chip marks or nearly marks, because it lies on a line."""
+        face, cells = self.face, 0
+        for own, chip in chips.items():
+            reached = 0
+            for cell in range(face.deck.rows * len(face.deck.columns)):
+                x, y = face.middle(cell)
+                if max(abs(chip.x - x), abs(chip.y - y)) <= face.cell / 2 + ON_LINE:
+                    reached |= 1 << cell
+            if reached != 1 << own:
+                cells |= reached
+        return cells & ~face.deck.free
 
     def _table(
         self,
@@ -186,7 +222,7 @@ class CardCamera:
         size = round(WIDTH * scale), round(HEIGHT * scale)
         master = _master(self.face, card, self.deck_seed, self.title)
         paper = cv2.resize(master, size, interpolation=cv2.INTER_AREA).astype(np.float32) / 255
-        ink, white = random.uniform(0.04, 0.16), random.uniform(0.88, 1.0)
+        ink, white = random.uniform(0.0, 0.18), random.uniform(0.8, 1.0)
         paper = ink + (white - ink) * paper
         if view.bend:
             paper = _bent(paper, view.bend * scale, random)
@@ -266,7 +302,7 @@ def _homography(view: View, face: Face, random: np.random.Generator) -> NDArray[
     pose = np.column_stack([turn[:, 0], turn[:, 1], [0, 0, away]])
     lens = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])
     plane = lens @ pose @ middle
-    ends = _project(plane, np.array([(0, 0), (WIDTH, 0), (WIDTH, HEIGHT), (0, HEIGHT)], float))
+    ends = project(plane, np.array([(0, 0), (WIDTH, 0), (WIDTH, HEIGHT), (0, HEIGHT)], float))
     low, high = ends.min(0), ends.max(0)
     shift = np.eye(3)
     for axis, length in enumerate((width, height)):
@@ -275,14 +311,6 @@ def _homography(view: View, face: Face, random: np.random.Generator) -> NDArray[
         shift[axis, 2] = place - low[axis]
     moved: NDArray[Any] = shift @ plane
     return moved
-
-
-def _project(plane: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
-    import numpy as np
-
-    seen = np.column_stack([points, np.ones(len(points))]) @ plane.T
-    there: NDArray[Any] = seen[:, :2] / seen[:, 2:]
-    return there
 
 
 def _photograph(
@@ -301,9 +329,7 @@ def _photograph(
     behind = background(width, height, random)
     down, across = seen.shape
     to_mm = np.array([[1 / scale, 0, -AROUND], [0, 1 / scale, -AROUND], [0, 0, 1]])
-    ends = _project(
-        plane @ to_mm, np.array([(0, 0), (across, 0), (across, down), (0, down)], float)
-    )
+    ends = project(plane @ to_mm, np.array([(0, 0), (across, 0), (across, down), (0, down)], float))
     low = np.clip(np.floor(ends.min(0)).astype(int) - 1, 0, (width, height))
     high = np.clip(np.ceil(ends.max(0)).astype(int) + 2, 0, (width, height))
     part = int(high[0] - low[0]), int(high[1] - low[1])
@@ -313,62 +339,9 @@ def _photograph(
     warped = cv2.resize(warped, part, interpolation=cv2.INTER_AREA)
     box = np.s_[low[1] : high[1], low[0] : high[0]]
     behind[box] = behind[box] * (1 - warped[..., 3:]) + warped[..., :3]
-    lit = _lit(behind, plane, view, random)
+    lit = lit_scene(behind, plane, view, random)
     if view.motion >= 1:
-        lit = _moved(lit, view.motion, random)
+        lit = moved(lit, view.motion, random)
     if view.blur > 0.05:
         lit = cv2.GaussianBlur(lit, (0, 0), view.blur)
-    sigma = view.noise / 255 * np.sqrt(0.35 + lit)
-    noise = (
-        cv2.randn(np.empty_like(lit), 0, 1)
-        if False
-        else random.standard_normal(lit.shape, np.float32)
-    )
-    picture = np.clip((lit + sigma * noise) * 255, 0, 255).astype(np.uint8)
-    if view.quality < 100:
-        _, packed = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, view.quality])
-        unpacked = cv2.imdecode(packed, cv2.IMREAD_COLOR)
-        picture = picture if unpacked is None else np.asarray(unpacked, np.uint8)
-    return picture
-
-
-def _lit(scene: Real, plane: NDArray[Any], view: View, random: np.random.Generator) -> Real:
-    import cv2
-    import numpy as np
-
-    height, width = scene.shape[:2]
-    y, x = np.mgrid[0:height:8, 0:width:8].astype(np.float32)
-    angle = random.uniform(0, 2 * np.pi)
-    across = (x - width / 2) / width * np.cos(angle) + (y - height / 2) / width * np.sin(angle)
-    field = view.light * (1 + view.slope * across * 2)
-    middle = _project(plane, np.array([[WIDTH / 2, HEIGHT / 2]]))[0]
-    card = np.hypot(*(_project(plane, np.array([[WIDTH, HEIGHT / 2]]))[0] - middle)) + 10
-    if view.shadow:
-        angle = random.uniform(0, 2 * np.pi)
-        edge = (x - middle[0]) * np.cos(angle) + (y - middle[1]) * np.sin(angle)
-        edge = edge - random.uniform(-1, 1) * card
-        field = field * (1 - view.shadow / (1 + np.exp(-edge / random.uniform(2, 25))))
-    shine = np.zeros_like(x)
-    if view.glare:
-        spot = middle + random.uniform(-1.2, 1.2, 2) * card
-        far = ((x - spot[0]) ** 2 + (y - spot[1]) ** 2) / (card * random.uniform(0.2, 0.6)) ** 2
-        shine = view.glare * np.exp(-far)
-    field = cv2.resize(field.astype(np.float32), (width, height))[..., None]
-    tint = np.array([1 - view.warm, 1, 1 + view.warm], np.float32)
-    lit = scene * field * tint
-    if view.glare:
-        lit = lit + cv2.resize(shine.astype(np.float32), (width, height))[..., None]
-    return np.asarray(lit, np.float32)
-
-
-def _moved(scene: Real, length: float, random: np.random.Generator) -> Real:
-    """Blur along a line of so many pixels, as a moving camera does."""
-    import cv2
-    import numpy as np
-
-    angle, side = random.uniform(0, np.pi), 2 * int(np.ceil(length)) + 1
-    kernel = np.zeros((side, side), np.float32)
-    for step in np.linspace(-length / 2, length / 2, 21):
-        x, y = side // 2 + step * np.cos(angle), side // 2 + step * np.sin(angle)
-        kernel[round(y), round(x)] += 1
-    return np.asarray(cv2.filter2D(scene, -1, kernel / kernel.sum()), np.float32)
+    return exposed(lit, view.noise, view.quality, random, grey=view.grey)

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     Real = NDArray[Any]
 
 HALF = SIDE // 2  # pixels of a cell in the maps
-AWAY = 6  # how far from a cell's middle a chip's middle is looked for, in pixels of the maps
+AWAY = 8  # how far from a cell's middle a chip's middle is looked for, in pixels of the maps
+BEYOND = 12  # as far again is looked for chips of the next cells
+SPOTS, APART = 11, 3  # of a cell and its surroundings: so many to each side, pixels of the maps
 INNER = 26  # pixels of the middle of a cell in which its number stands
 LARGEST = 1.4  # a scale above which nothing more is seen
 SHIFT = 2  # how far a number may be off its place, in pixels
@@ -29,9 +31,18 @@ NAMES = (
     "corner colour least", "corner colour most", "corner light least", "corner change least",
     "corner change most", "white light", "white red", "white blue", "full light", "full colour",
     "bright", "kind", "best", "scale", "sharpness", "matched", "number contrast", "side change",
-    "arm", "way out",
+    "arm", "way out", "to a line", "beyond", "down", "across",
+    "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
+    "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
+    "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
 )  # fmt: skip
-"""What the features are called, in their order."""
+"""What the first features are called, in their order."""
+SEEN = ("colour", "lighter", "unlike")
+"""What is seen in the spots of a cell and around it: the further features, spot by spot.
+
+They are how far a spot is from grey, how much lighter it is than the print that the card has
+there, and how unlike in colour the place in the cell that is most like a chip.
+"""
 
 
 def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real, Real]:
@@ -75,14 +86,17 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     chipped = in_disc[..., 0] - in_ring[..., 0] + 0.7 * (in_disc[..., 1] - in_ring[..., 1])
 
     start = RIM // 2
-    near = _cells(chipped, rows, columns)[:, HALF // 2 - AWAY : HALF // 2 + AWAY + 1]
-    near = near[:, :, HALF // 2 - AWAY : HALF // 2 + AWAY + 1]
-    side = 2 * AWAY + 1
-    best = near.reshape(-1, side * side).argmax(1)
-    dy, dx = best // side - AWAY, best % side - AWAY
     cell = np.arange(rows * columns)
     y = start + cell // columns * HALF + HALF // 2
     x = start + cell % columns * HALF + HALF // 2
+    # A chip is looked for in more than the cell: one whose middle lies beyond marks another.
+    span = np.arange(-BEYOND, BEYOND + 1)
+    wide = np.pad(chipped, BEYOND, mode="edge")
+    wide = wide[(y[:, None] + BEYOND + span)[:, :, None], (x[:, None] + BEYOND + span)[:, None]]
+    inner = slice(BEYOND - AWAY, BEYOND + AWAY + 1)
+    side = 2 * AWAY + 1
+    best = wide[:, inner, inner].reshape(-1, side * side).argmax(1)
+    dy, dx = best // side - AWAY, best % side - AWAY
     at, ringed, middle = in_disc[y + dy, x + dx], in_ring[y + dy, x + dx], in_disc[y, x]
     deviation = np.sqrt(np.maximum(at[:, 8:10] - at[:, (0, 2)] ** 2, 0))
 
@@ -108,8 +122,73 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
         np.full(len(cell), np.median(flat.crossings)),
         np.full(len(cell), flat.matched / len(flat.crossings)), read[:, 3], sides.max(1),
         *_ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx),
+        np.maximum(np.abs(dx), np.abs(dy)) / HALF, wide.max((1, 2)) - strength,
+        np.abs(dy) / HALF, np.abs(dx) / HALF,
     ]  # fmt: skip
-    return np.stack(row, 1).astype(np.float32), read[:, :2]
+    lighter = light - (ink + (1 - ink) * expected)
+    dye = shown[..., (2, 0)] - shown[..., 1:2]
+    dye -= np.median(dye[RIM:-RIM:4, RIM:-RIM:4].reshape(-1, 2), 0)
+    row += _plainly(np.dstack([dye, lighter]), (y, x), (strength, read[:, 0]))
+    named = np.stack(row, 1).astype(np.float32)
+    spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
+    return np.hstack([named, spots]), read[:, :2]
+
+
+def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) -> list[Real]:
+    """Measure faint discs: averages with their sign, in which noise cancels out.
+
+    `layers` are two differences of colours, and how much lighter a pixel is than the print.
+    What is measured is also compared with the card's other cells: chips are of one kind mostly.
+    """
+    import cv2
+    import numpy as np
+
+    small = (layers.shape[1] // 2, layers.shape[0] // 2)
+    maps = cv2.resize(layers, small, interpolation=cv2.INTER_AREA)
+    inner, outer = _disc(maps), _ring(maps)
+    apart = inner - outer
+    dyed = np.hypot(apart[..., 0], apart[..., 1])
+    dark = -apart[..., 2]
+    strong = dyed + np.abs(dark)
+    y, x = middle
+    span = np.arange(-BEYOND, BEYOND + 1)
+    wide = np.pad(strong, BEYOND, mode="edge")
+    wide = wide[(y[:, None] + BEYOND + span)[:, :, None], (x[:, None] + BEYOND + span)[:, None]]
+    near = slice(BEYOND - AWAY, BEYOND + AWAY + 1)
+    side = 2 * AWAY + 1
+    best = wide[:, near, near].reshape(-1, side * side).argmax(1)
+    dy, dx = best // side - AWAY, best % side - AWAY
+    at = y + dy, x + dx
+    disc, dye = strong[at], np.hypot(inner[at][:, 0], inner[at][:, 1])
+    strength, printed = known
+    rows = [
+        dye, np.hypot(inner[y, x, 0], inner[y, x, 1]), dyed[at], dark[at], dark[y, x],
+        inner[y, x, 2], disc, np.maximum(np.abs(dx), np.abs(dy)) / HALF,
+        wide.max((1, 2)) - disc,
+    ]  # fmt: skip
+    for value in (disc, strength, dye, printed):
+        low, high = np.percentile(value, (20, 90))
+        rows += [value - low, value - high]
+    return rows
+
+
+def _spots(layers: Real, middle: tuple[Real, Real], best: tuple[Real, Real]) -> Real:
+    """Look at spots of cells and what is around them; return a row of `SEEN` for each cell."""
+    import cv2
+    import numpy as np
+
+    small = (layers.shape[1] // 2, layers.shape[0] // 2)
+    halved = np.dstack(
+        [cv2.resize(part, small, interpolation=cv2.INTER_AREA) for part in cv2.split(layers)]
+    )
+    dots = np.dstack([cv2.blur(part, (APART, APART)) for part in cv2.split(halved)])
+    span = (np.arange(SPOTS) - SPOTS // 2) * APART
+    y, x = (place[:, None, None] for place in middle)
+    here = dots[y + span[:, None], x + span]
+    there = dots[best][:, None, None, 3:]
+    unlike = np.abs(here[..., 3:] - there).sum(-1)
+    rows: Real = np.stack([np.hypot(here[..., 0], here[..., 1]), here[..., 2], unlike], 1)
+    return rows.reshape(len(rows), -1)
 
 
 def _light_and_tint(picture: Real) -> tuple[Real, Real]:

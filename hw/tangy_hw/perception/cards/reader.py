@@ -125,7 +125,7 @@ class CardReader:
         self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()
     ) -> CardReading:
         """Say what is told of cells, and which cannot be told, from their probabilities."""
-        sure = load_classifier().sure
+        classifier = load_classifier()
         marked = hidden = 0
         confidence = 1.0
         for cell, part in enumerate(parts):
@@ -133,7 +133,7 @@ class CardReader:
                 marked |= 1 << cell
                 continue
             best = float(max(part[UNMARKED], part[MARKED]))
-            if best < sure:
+            if not classifier.tells(part):
                 hidden |= 1 << cell
                 continue
             confidence = min(confidence, best)

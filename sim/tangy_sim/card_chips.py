@@ -1,0 +1,214 @@
+"""Chips on the simulated table: thick and thin, clear and not, of all colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, hypot, pi, radians, sin, tan
+from typing import TYPE_CHECKING, Any
+
+from tangy_sim.card_things import Tone, tone_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Real = NDArray[Any]
+
+STRADDLES = 0.46  # of a cell: how far from its middle a chip may lie that marks it
+HUES = {"red": 0, "orange": 24, "yellow": 50, "green": 130, "blue": 215, "purple": 285, "pink": 335}
+
+
+@dataclass(frozen=True)
+class Chip:
+    """A chip that lies at (x, y) mm on the card.
+
+    `clear` is how much light goes through; it is dyed on its way, or not where it is `washed`.
+    `rim` is how much darker or lighter its rim is; `outline` and `ring` how dark a line there is
+    around it and on it, 0 to 1.
+    """
+
+    radius: float
+    tone: Tone
+    clear: float
+    thick: float
+    rim: float
+    outline: float = 0.0
+    ring: float = 0.0
+    washed: bool = False
+    x: float = 0.0
+    y: float = 0.0
+
+    def at(self, x: float, y: float) -> Chip:
+        """Return the chip at another place."""
+        return replace(self, x=float(x), y=float(y))
+
+    def thrown(
+        self,
+        random: np.random.Generator,
+        middle: tuple[float, float],
+        cell: float,
+        straddling: float,
+    ) -> Chip:
+        """Put the chip on a cell: near its middle, or by this chance anywhere, even at its lines.
+
+        Its own middle always lies in the cell, which is then the one that it marks.
+        """
+        if random.random() < straddling:
+            dx, dy = random.uniform(-STRADDLES * cell, STRADDLES * cell, 2)
+        else:
+            most = 0.36 * cell
+            dx, dy = (max(-most, min(most, d)) for d in random.normal(0, 0.075 * cell, 2))
+        return self.at(middle[0] + dx, middle[1] + dy)
+
+    def clear_of(self, other: Chip) -> bool:
+        """Say whether two chips can lie beside each other."""
+        return hypot(self.x - other.x, self.y - other.y) > 0.92 * (self.radius + other.radius)
+
+
+def some_chip(random: np.random.Generator) -> Chip:
+    """Draw a kind of chip: mostly red ones of 19 mm, some of them translucent."""
+    chance, uniform = random.random, random.uniform
+    hue = "red" if chance() < 0.5 else str(random.choice(list(HUES)))
+    tone = tone_of(HUES[hue] + random.normal(0, 5), uniform(0.5, 1.0), uniform(0.3, 1.0))
+    colourless = chance() < 0.14
+    if colourless:
+        tone = tone_of(0, 0, float(random.choice([0.08, 0.2, 0.45, 0.6, 0.9, 0.97])))
+    plain = chance() < 0.3  # as thin as paper, and of one tone
+    pale = min(tone) > 0.75
+    outline = uniform(0.3, 0.8) if (pale and plain) or chance() < 0.15 else 0.0
+    return Chip(
+        radius=float(random.normal(9.5, 0.5) if chance() < 0.7 else uniform(7.7, 11.8)),
+        tone=tone,
+        clear=float(uniform(0.15, 0.68)) if chance() < 0.4 and not pale else 0.0,
+        thick=0.05 if plain else float(uniform(0.8, 3.0)),
+        rim=0.0 if plain else float(uniform(-0.35, 0.25)),
+        outline=float(outline),
+        ring=float(uniform(-0.5, 0.5)) if chance() < 0.12 else 0.0,
+        washed=bool(chance() < 0.6),
+    )
+
+
+def put_chip(
+    table: Real,
+    seen: Real,
+    chip: Chip,
+    scale: float,
+    around: float,
+    tilt: float,
+    tilted_to: float,
+    random: np.random.Generator,
+) -> None:
+    """Draw a chip with its shadow, its side (as the camera's tilt shows it) and its top."""
+    import numpy as np
+
+    high = chip.thick * tan(radians(min(tilt, 70)))
+    away = radians(tilted_to) - pi / 2
+    dx, dy = high * cos(away), high * sin(away)
+    tone = np.array(chip.tone, np.float32)
+    light = random.uniform(0, 2 * pi)
+    fall = chip.thick * 0.5
+    _disc(
+        table,
+        seen,
+        chip.x + fall * cos(light),
+        chip.y + fall * sin(light),
+        chip.radius * 1.04,
+        scale,
+        around,
+        np.zeros(3, np.float32),
+        0.75,
+        soft=chip.thick * scale * 0.35,
+    )
+    steps = max(1, round(high * scale / 1.5))
+    for step in range(steps):
+        part = step / steps
+        _disc(
+            table,
+            seen,
+            chip.x + dx * part,
+            chip.y + dy * part,
+            chip.radius,
+            scale,
+            around,
+            tone * 0.6,
+            chip.clear ** (1 / steps) if chip.clear else 0.0,
+        )
+    _disc(
+        table,
+        seen,
+        chip.x + dx,
+        chip.y + dy,
+        chip.radius,
+        scale,
+        around,
+        tone * (1 + chip.rim),
+        chip.clear,
+        washed=chip.washed,
+    )
+    top = chip.x + dx, chip.y + dy
+    if not chip.clear and chip.rim:
+        _disc(table, seen, *top, chip.radius * 0.82, scale, around, tone, 0.0)
+    if chip.outline:
+        _circle(table, top, chip.radius, scale, around, tone * (1 - chip.outline))
+    if chip.ring:
+        _circle(table, top, chip.radius * 0.62, scale, around, tone * (1 + chip.ring))
+    if random.random() < 0.25:  # lamplight on its top
+        spot = chip.radius * 0.4
+        _disc(
+            table,
+            seen,
+            chip.x + dx + spot * cos(light),
+            chip.y + dy + spot * sin(light),
+            chip.radius * random.uniform(0.15, 0.35),
+            scale,
+            around,
+            np.ones(3, np.float32),
+            random.uniform(0.3, 0.8),
+            soft=scale,
+        )
+
+
+def _disc(
+    table: Real,
+    seen: Real,
+    x: float,
+    y: float,
+    radius: float,
+    scale: float,
+    around: float,
+    tone: Real,
+    clear: float,
+    soft: float = 0.7,
+    washed: bool = False,
+) -> None:
+    """Lay a disc on the table: `clear` of what is beneath shines through, in its tone."""
+    import numpy as np
+
+    px, py, reach = (x + around) * scale, (y + around) * scale, radius * scale + 3 * soft + 2
+    left, right = max(0, int(px - reach)), min(table.shape[1], int(px + reach) + 1)
+    top, bottom = max(0, int(py - reach)), min(table.shape[0], int(py + reach) + 1)
+    if left >= right or top >= bottom:
+        return
+    v, u = np.mgrid[top:bottom, left:right].astype(np.float32) + np.float32(0.5)
+    far = np.hypot(u - px, v - py) - radius * scale
+    inside = (1 / (1 + np.exp(np.clip(far / max(soft * 0.5, 0.2), -30, 30))))[..., None]
+    box = np.s_[top:bottom, left:right]
+    beneath = table[box]
+    dye = tone if tone.any() and not washed else 1
+    through = beneath * (clear * dye) + (1 - clear) * tone
+    # Where nothing lay, a shadow darkens nothing: the background is not in this layer.
+    there = np.maximum(seen[box][..., None], inside if tone.any() else 0)
+    table[box] = (beneath * (1 - inside) + through * inside) * np.where(tone.any(), 1, there)
+    seen[box] = np.maximum(seen[box], inside[..., 0] if tone.any() else 0)
+
+
+def _circle(
+    table: Real, middle: tuple[float, float], radius: float, scale: float, around: float, tone: Real
+) -> None:
+    """Draw a thin line around a place."""
+    import cv2
+
+    x, y = (round((place + around) * scale * 16) for place in middle)
+    line = [float(part) for part in tone]
+    thick = max(1, round(0.9 * scale))
+    cv2.circle(table, (x, y), round(radius * scale * 16), line, thick, cv2.LINE_AA, 4)
