@@ -394,7 +394,7 @@ def main() -> None:
         half, seed = (0, 11) if chosen.fit else (1, 12)
         if chosen.answers:
             decoded = gather(voices, half, seed, folder, settings, "answers")
-            for limit in (-0.3, -0.6, -0.9, -1.2, -1.5) if chosen.fit else ():
+            for limit in (-0.6, -0.9, -1.2, -1.5) if chosen.fit else ():
                 understanding.LEAST_ANSWER = limit
                 print(f"LEAST_ANSWER = {limit}")
                 answers(decoded, settings)

@@ -39,7 +39,9 @@ STOPS = (
 OWN_NAME = {"tangy": ("T AE NG IY",)}
 YES = ("yes", "yes please", "yes do it", "yes that is right")
 NO = ("no", "no thank you", "no do not", "no that is wrong")
-LEAST_ANSWER = -0.9  # the margin below which no word is taken for an answer
+LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
+"""The margins from which words are an answer: where the grammar finds it too, and where not."""
+
 MOST_STOP_WORDS = 2  # different ones, after those that only call for attention
 CALLS = frozenset(("no", "oh", "wait"))
 
@@ -99,12 +101,14 @@ def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
     """Return the answer to a question that an utterance gives, if it gives one.
 
     A yes moves the robot: the grammar, in which any phones can be said instead, has to find it as
-    well. The paper's mode has nothing that other speech could be, so it hears no answers.
+    well, or the words to explain the sound nearly as well as any phones do. The paper's mode has
+    nothing that other speech could be, so it hears no answers.
     """
     said = evidence.words
     if stops(said):
         return Stop(said)
-    agreed = said == evidence.phrase and evidence.margin - settings.shift >= LEAST_ANSWER
+    least = {said: LEAST_ANSWER, "": LEAST_ALONE}.get(evidence.phrase)
+    agreed = least is not None and evidence.margin - settings.shift >= least
     if settings.mode != "paper" and agreed and (said in YES or said in NO):
         return Reply(said in YES)
     return None
