@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.message import Message
+from textual.widget import Widget
 
 from tangy_profiles.health import Health
 from tangy_tui.house import House
@@ -94,6 +95,7 @@ class SensorsScreen(TangyScreen[None]):
         self._teller = Teller(house.robot, sensors, health)
         self._shown = shown
         self._told: dict[str, Told] = {}
+        self._frames: dict[Widget, tuple[str | None, str | None]] = {}
         self._seen = False
         """Whether the picture is shown."""
 
@@ -216,7 +218,7 @@ class SensorsScreen(TangyScreen[None]):
         devices = self._devices
         devices.show(self._device_lines)
         simulated = any(told.code and not told.live for told in self._told.values())
-        devices.border_subtitle = "~ simulated" if simulated else ""
+        self._frame(devices, below="~ simulated" if simulated else "")
         self._tell_of_chosen()
         self._tell_of_card()
 
@@ -228,10 +230,10 @@ class SensorsScreen(TangyScreen[None]):
         if told is None:
             return
         about = self.query_one("#about", Page)
-        about.border_title = clean(told.device.label).replace("[", "\\[")
+        self._frame(about, above=told.device.label)
         about.show(lambda width: about_lines(told, width), None)
         picture = self.query_one(BlockPicture)
-        picture.border_subtitle = ""
+        below = ""
         if not self._cameras:
             picture.say(NO_SOURCE)
         elif not told.live:
@@ -239,8 +241,18 @@ class SensorsScreen(TangyScreen[None]):
         elif not self._seen:
             picture.say(f"v shows what the {told.device.label} sees.")
         elif picture.there:
-            old = "live" if told.well else f"{told.state}, {age_words(told.age)} old"
-            picture.border_subtitle = old
+            below = "live" if told.well else f"{told.state}, {age_words(told.age)} old"
+        self._frame(picture, below=below)
+
+    def _frame(self, widget: Widget, *, above: str | None = None, below: str | None = None) -> None:
+        """Write what stands in a frame; the same again would draw all of the panel anew."""
+        title, subtitle = self._frames.get(widget, (None, None))
+        above, below = title if above is None else above, subtitle if below is None else below
+        self._frames[widget] = above, below
+        if above is not None and above != title:
+            widget.border_title = clean(above).replace("[", "\\[")
+        if below is not None and below != subtitle:
+            widget.border_subtitle = clean(below).replace("[", "\\[")
 
     def _tell_of_card(self) -> None:
         sensors, page = self._sensors, self.query_one("#card", Page)

@@ -1,0 +1,59 @@
+"""The sensors on a real terminal, before a camera that does what cameras do."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.real.camera_server import CameraServer
+
+if TYPE_CHECKING:
+    from tests.real.conftest import OpenTerminal
+
+
+def children(pid: int) -> list[int]:
+    """Return the processes that a process has started."""
+    listed = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii")
+    return [int(child) for child in listed.split()]
+
+
+def alive(pid: int) -> bool:
+    return Path(f"/proc/{pid}").exists()
+
+
+def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
+    open_terminal: OpenTerminal,
+) -> None:
+    with CameraServer() as server:
+        terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
+        terminal.until("it works")
+        terminal.type("v")
+        terminal.until("▀▀▀▀▀▀▀▀")
+        started = children(terminal.process.pid)
+        assert started
+        server.mode = "covered"
+        terminal.until("!  head camera       covered")
+        server.mode = "live"
+        terminal.until("   head camera       it works")
+        server.unplug()
+        terminal.until("!! head camera       disconnected")
+        server.mode = "live"
+        server.listen()
+        text = terminal.until("   head camera       it works")
+        assert "TANGY sensors" in text and "Last card" in text  # and nothing lies over them
+        terminal.type("\x1b")
+        assert terminal.wait() == 0
+        assert not [pid for pid in started if alive(pid)]
+
+
+def test_a_window_that_is_closed_leaves_no_camera(open_terminal: OpenTerminal) -> None:
+    with CameraServer() as server:
+        terminal = open_terminal("sensors", "--camera", f"camera={server.url}")
+        terminal.until("it works")
+        started = children(terminal.process.pid)
+        terminal.close()
+        terminal.process.wait(20)
+        for pid in started:
+            while alive(pid):
+                os.sched_yield()
