@@ -149,3 +149,38 @@ def test_cameras_are_listed_as_the_system_has_them(tmp_path: Path) -> None:
         ("video2", "Head: C920"), ("video10", "Overview"),
     ]  # fmt: skip
     assert list_cameras(tmp_path / "none", devices) == []
+
+
+class TestSensors:
+    def test_each_device_has_its_line_and_a_camera_that_works_its_age(
+        self, tangy: Tangy, tmp_path: Path
+    ) -> None:
+        with CameraServer() as server:
+            done = tangy("sensors", "--camera", f"camera={server.url}", "--seconds", 2)
+        lines = done.stdout.splitlines()
+        assert (done.returncode, done.stderr) == (0, "")
+        assert any(line.startswith("head camera") and "it works" in line for line in lines)
+        assert "laser scanner      simulated" in lines
+        assert lines[-2:] == ["No card was read yet.", "Now: no card in sight."]
+
+    def test_one_that_does_not_work_fails_and_says_why(self, tangy: Tangy) -> None:
+        done = tangy("sensors", "--camera", "camera=/dev/video93", "--seconds", 2, "--json")
+        told = json.loads(done.stdout)
+        assert (done.returncode, done.stderr, told["works"]) == (1, "", False)
+        devices = {device["device"]: device for device in told["devices"]}
+        assert devices["camera"]["state"] == "DISCONNECTED"
+        assert "there is no such camera" in devices["camera"]["why"]
+        assert devices["laser"]["simulated"] and devices["laser"]["works"] is None
+        assert told["card"] == {"card": None, "problem": ""}
+
+    def test_without_a_camera_it_says_how_to_name_one(self, tangy: Tangy) -> None:
+        done = tangy("sensors", "--seconds", 0.1)
+        assert done.returncode == 0
+        assert "tangy sensors --camera camera=0" in done.stdout
+
+    @pytest.mark.parametrize("source", ["camra=0", "camera", "camera=none.avi"])
+    def test_a_source_that_is_none_is_refused_in_a_sentence(
+        self, source: str, tangy: Tangy
+    ) -> None:
+        done = tangy("sensors", "--camera", source)
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
