@@ -23,6 +23,7 @@ from tangy_profiles.voice import VoicePreference
 # The engine is imported when it is first asked for: the first screen needs none of it.
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
+    from tangy_profiles.health import Health
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
@@ -222,12 +223,14 @@ class House:
         *,
         asks: bool = False,
         injections: Sequence[str] = (),
+        live: Callable[[], Health] | None = None,
     ) -> Supervision:
         """Make a run of simulated games under execution monitoring.
 
         Args:
             asks: somebody is there to say what to do where Tangy is not sure.
             injections: faults that are to come, as in `--inject`.
+            live: what real devices report, in place of the simulated ones.
 
         Raises:
             TangyError: one of the injections is none, or the fault rules have a mistake.
@@ -240,7 +243,13 @@ class House:
 
         to_come = [read_injection(text) for text in injections]
         seed = self._seed(seed)
-        world = FaultyWorld(self.activity, list(self.names), seed=seed, injections=to_come)
+        people = list(self.names)
+        if live is None:
+            world = FaultyWorld(self.activity, people, seed=seed, injections=to_come)
+        else:
+            from tangy_tui.live_devices import PartlyLiveWorld
+
+            world = PartlyLiveWorld(self.activity, people, seed=seed, injections=to_come, live=live)
         return Supervision(
             self._facilitation(world, policy, seed, asks),
             load_faults(self.robot),

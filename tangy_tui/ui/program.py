@@ -22,6 +22,7 @@ from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors
+    from tangy_profiles.health import Health
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
 
@@ -32,6 +33,9 @@ STORY_TEACHING = (2.0, 6.0, 12.0)
 
 PLAYING = 20.0
 """Times life at which a game is watched unless Tangy speaks or another speed is asked for."""
+
+CAMERA_SECONDS = 5.0
+"""For which a game waits at most for the first pictures of its cameras."""
 
 STORY_PLAYING = 100.0
 """Times life of the demo's game: half an hour in about 20 s."""
@@ -50,17 +54,20 @@ class Program(SoundingApp):
         start: Start | None = None,
         *,
         sensors: Sensors | None = None,
+        live: bool = False,
         **settings: Any,
     ) -> None:
         """Make the program; without a start it waits at home. It may have ears and a voice.
 
-        Without `sensors` its cameras are those of the robot's profile.
+        Without `sensors` its cameras are those of the robot's profile. `live`: in simulated
+        games they count as the robot's, and what is wrong with them is a fault there.
         """
         pictures = house.store.folder
         super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
         self.house = house
         self._start = start
         self._sensors = sensors
+        self._live = live
         self._busy = False
         self._opening = False
 
@@ -235,18 +242,32 @@ class Program(SoundingApp):
         """Open the playing screen with a policy, the last one unless another is wanted.
 
         Args:
-            speed: times life; usually as life where Tangy speaks, and faster where it does not.
+            speed: times life; usually as life where Tangy speaks or its cameras are real, and
+                faster where not.
             teacher: who answers where Tangy asks.
             injections: faults that are to come.
         """
         from tangy_tui.ui.screens.play import PlayScreen
 
         policy = await self._load_policy(wanted)
-        if policy is not None:
-            speed = speed or (1.0 if self.speaker.on else PLAYING)
-            supervision = self.house.supervision(policy, seed, asks=True, injections=injections)
-            screen = PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
-            await self.push_screen(screen)
+        if policy is None:
+            return
+        speed = speed or (1.0 if self.speaker.on or self._live else PLAYING)
+
+        def make(live: Callable[[], Health] | None) -> PlayScreen:
+            supervision = self.house.supervision(
+                policy, seed, asks=True, injections=injections, live=live
+            )
+            return PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
+
+        if not self._live:
+            await self.push_screen(make(None))
+            return
+        async with self.cameras() as cameras:
+            self.say("The cameras are being opened ...")
+            await cameras.settled(CAMERA_SECONDS)
+            self.clear_notifications()
+            await self.push_screen_wait(make(cameras.health))
 
     async def drill(
         self, rounds: int | None = None, seed: int | None = None, who: str = ""

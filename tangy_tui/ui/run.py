@@ -67,10 +67,12 @@ def run_playing(
     ascii_only: bool,
     voice: bool = False,
     ears: Ears | None = None,
+    sensors: Sensors | None = None,
 ) -> int:
     """Open the playing screen; return the exit status.
 
     Without a speed the game goes as in life where Tangy speaks, and faster where it does not.
+    Cameras that are given count as the robot's, and the game goes as in life.
     Where Tangy asks, answers are heard through the ears, if there are any.
     """
     return _run(
@@ -79,6 +81,8 @@ def run_playing(
         ascii_only,
         ears,
         voice=voice,
+        sensors=sensors,
+        live=sensors is not None,
     )
 
 
@@ -115,7 +119,9 @@ def _run(
     *,
     voice: bool = False,
     sensors: Sensors | None = None,
+    live: bool = False,
 ) -> int:
     outlive_terminal()
     kind = terminal_kind(ascii=True if ascii_only else None)
-    return run_app(Program(house, start, kind=kind, ears=ears, voice=voice, sensors=sensors))
+    program = Program(house, start, kind=kind, ears=ears, voice=voice, sensors=sensors, live=live)
+    return run_app(program)

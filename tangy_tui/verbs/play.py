@@ -31,6 +31,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
+from tangy_tui.verbs.sensors import Cameras
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -66,9 +67,12 @@ def play(
     spoken_answers: SpokenAnswers = False,
     mode: Mode = None,
     voice: WithVoice = False,
+    camera: Cameras = None,
     speed: Annotated[
         float | None,
-        typer.Option(min=1, max=1000, help="Times life; 10, or 1 where Tangy speaks."),
+        typer.Option(
+            min=1, max=1000, help="Times life; 20, or 1 where Tangy speaks or cameras are real."
+        ),
     ] = None,
     seed: Seed = None,
     data: Data = None,
@@ -80,6 +84,7 @@ def play(
     Where nobody has shown it what to do, it asks a teacher, and goes on with the answer. Without
     one (--headless or --json) the game stops there. What goes wrong is diagnosed and recovered
     from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
+    With --camera that device is real: cover its lens, and Tangy asks to have it uncovered.
     """
     from tangy_tui.house import teacher_name
     from tangy_tui.inputs import keys_from_terminal
@@ -98,10 +103,16 @@ def play(
     screen = not (headless or as_json) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
+    if camera and not screen:
+        raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
     with open_house(data, activity, users) as house:
         need_policy(house.store, house.activity, policy)
         if screen:
+            from tangy_hw.sensors import sensors_of
             from tangy_tui.ui.run import run_playing
+
+            deck, folder = house.activity.deck, house.store.folder
+            sensors = sensors_of(house.robot, deck, folder, camera) if camera else None
 
             raise typer.Exit(
                 run_playing(
@@ -117,6 +128,7 @@ def play(
                     ears=listening.ears(
                         house, Phrasebook(house.activity, house.people), who, sound=sound
                     ),
+                    sensors=sensors,
                 )
             )
         learnt, notices = load_policy(house.store, house.activity, policy)

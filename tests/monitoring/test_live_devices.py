@@ -1,0 +1,94 @@
+"""A real camera in a simulated game: what happens to it is a fault there, and so is its end."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_hw.drivers.camera_state import Sight
+from tangy_profiles.health import Health
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tests.monitoring.conftest import codes, moves, until
+
+WELL = Sight("OK", "", 8.0, 0.05, 0.0, 0.5, 0.2, 0.6)
+COVERED = Sight("COVERED", "Nothing can be seen.", 1.0, 0.05, 0.0, 0.01, 0.005, None)
+GONE = Sight("DISCONNECTED", "No picture has come.", 1.0, 2.0, 0.0, 0.5, 0.2, 0.6)
+FROZEN = Sight("FROZEN", "The very same picture.", 1.0, 0.05, 3.0, 0.5, 0.2, 0.6)
+
+
+class Camera:
+    """A head camera that is as the test says."""
+
+    def __init__(self) -> None:
+        self.sight = WELL
+        self.asked = 0
+
+    def health(self) -> Health:
+        self.asked += 1
+        return (self.sight.reading("camera"),)
+
+
+@pytest.fixture
+def camera(monkeypatch: pytest.MonkeyPatch) -> Camera:
+    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", -1.0)
+    return Camera()
+
+
+@pytest.mark.parametrize(
+    ("sight", "code", "halts"),
+    [
+        (COVERED, "camera-occluded", False),
+        (GONE, "camera-disconnected", True),
+        (FROZEN, "camera-frozen", True),
+    ],
+)
+def test_what_happens_to_a_real_camera_is_diagnosed_and_its_end_seen(
+    sight: Sight, code: str, halts: bool, house: House, learnt: Policy, camera: Camera
+) -> None:
+    game = house.supervision(learnt, 3, live=camera.health)
+    game.begin()
+    until(game, lambda now: now.game.steps > 3)
+    assert not game.faults
+    camera.sight = sight
+    assert codes(game.look()) == [code]
+    assert (game.halted is not None) == halts
+    camera.sight = WELL
+    if halts:
+        game.acknowledge("Ada")
+        assert "cleared" in moves(game.clear("Ada"))
+    else:
+        until(game, lambda now: not now.waiting)
+    assert game.halted is None and game.status == ("OK", "")
+
+
+def test_devices_that_are_not_real_stay_simulated(
+    house: House, learnt: Policy, camera: Camera
+) -> None:
+    game = house.supervision(learnt, 3, live=camera.health)
+    simulated = house.supervision(learnt, 3)
+    game.begin()
+    simulated.begin()
+    assert [r.device for r in game.world.health()] == [r.device for r in simulated.world.health()]
+    assert {r.device for r in game.world.health() if r not in simulated.world.health()} == {
+        "camera"
+    }
+
+
+def test_a_camera_is_not_asked_more_often_than_its_readings_change(
+    house: House, learnt: Policy, camera: Camera, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", 60.0)
+    game = house.supervision(learnt, 3, live=camera.health)
+    game.begin()
+    first = game.world.health()
+    assert all(game.world.health() is first for _ in range(50))
+    assert camera.asked == 1
+
+
+def test_a_fault_of_another_device_can_still_be_brought_about(
+    house: House, learnt: Policy, camera: Camera
+) -> None:
+    game = house.supervision(learnt, 3, live=camera.health, injections=["base-failed"])
+    game.begin()
+    until(game, lambda now: now.halted)
+    assert [fault.code for fault in game.faults] == ["base-failed"]
