@@ -35,7 +35,7 @@ TRAINED, CHOSEN = (1000, 3000), 2000  # seeds: for the weights; for temperature 
 CLEAR, COVERED = 0.10, 0.45  # of a cell under a hand: it counts as seen, as hidden
 NETS = 3
 WRONG = 4.5e-4  # of the cells, at most, where the limit is chosen: they are harder than in rooms
-DOUBT = 0.2  # how probably hidden a cell may be that is told
+DOUBT = 0.1  # how probably hidden a cell may be that is told
 
 
 def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:

@@ -49,7 +49,8 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     """Measure the cells of a card; return a row of features for each, and how they are read.
 
     The second array has, for each cell, the correlation with the number that the card has there,
-    and the best correlation with any other number of its column.
+    the best correlation with any other number of its column, and how black the number is: 1 for
+    ink on paper, less beneath a translucent chip or in glare.
     """
     import cv2
     import numpy as np
@@ -131,7 +132,10 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     row += _plainly(np.dstack([dye, lighter]), (y, x), (strength, read[:, 0]))
     named = np.stack(row, 1).astype(np.float32)
     spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
-    return np.hstack([named, spots]), read[:, :2]
+    edge = (SIDE - INNER) // 2
+    printed = _whole_cells(expected, rows, columns)[:, edge : edge + INNER, edge : edge + INNER]
+    black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
+    return np.hstack([named, spots]), np.column_stack([read[:, :2], black])
 
 
 def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) -> list[Real]:

@@ -27,6 +27,7 @@ NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
+WASHED, INKED = 0.6, 80  # how black a number must be beside that percentile of the card's
 
 
 @dataclass(frozen=True)
@@ -105,12 +106,15 @@ class CardReader:
             return self.nothing(TOO_LITTLE)
         numbers = numbers_of(self.deck, seen.card, self.deck_seed)
         features, read = features_of(flat, self.face, numbers)
-        legible = read.max(1) >= LEGIBLE
+        legible = read[:, :2].max(1) >= LEGIBLE
         own = int((legible & (read[:, 0] >= read[:, 1])).sum())
         if own < FEWEST_AGREE or own < AGREE * int(legible.sum()):
             few = int(legible.sum()) < FEWEST_AGREE
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         parts = load_classifier().probabilities(features)
+        # Glare can wash a translucent chip out and leave the number: then the ink is washed, too.
+        washed = read[:, 2] < WASHED * np.percentile(read[:, 2], INKED)
+        parts[washed & (parts[:, UNMARKED] > parts[:, MARKED])] = UNCERTAIN
         grid = self.face.grid
         ends = [
             (grid.left, grid.top),
