@@ -18,10 +18,14 @@ from tangy_hw.sensors import CardSight, SeenCard
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
 from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.sensors import SensorsScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.block_picture import BLOCK, BlockPicture
+from tests.pilot.conftest import StillClock
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -70,6 +74,12 @@ class FakeSensors:
     async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Any:
         self.asked.append(fit)
         return picture(*fit, red=self.red)
+
+    def health(self) -> Health:
+        return (self.now.reading("camera"),)
+
+    async def settled(self, seconds: float) -> None:
+        return None
 
     @contextmanager
     def reading_cards(self) -> Iterator[None]:
@@ -289,6 +299,42 @@ async def test_without_a_camera_it_says_how_to_name_one(run: Run, house: House) 
         pilot.type("v", "enter")
         await pilot.pause()
         assert "camera=0" in pilot.text() and "No camera looks at cards." in pilot.text()
+
+
+async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
+    run: Run,
+    house: House,
+    policy: Policy,
+    sensors: FakeSensors,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def loaded(program: Program, wanted: str = "") -> Policy:
+        return policy
+
+    monkeypatch.setattr(Program, "_load_policy", loaded)
+    given: Any = sensors
+    clock = StillClock()
+    app = Program(
+        house, lambda program: program.play(seed=3), sensors=given, live=True, clock=clock
+    )
+    async with run(app=app) as pilot:
+        await until(pilot, lambda: "robot OK" in pilot.text())
+        assert (sensors.open, sensors.readers) == (1, 0)
+        sensors.now = replace(WELL, state="COVERED", brightness=0.01, contrast=0.005)
+        await until(pilot, lambda: "Head camera covered" in pilot.text())
+        pilot.type("7")
+        await pilot.pause()
+        assert "! robot WARN: Head camera covered" in pilot.lines()[0]
+        assert "covered" in row(pilot, "!  head camera") and "~arms" in row(pilot, "arms")
+        assert sensors.open == 2
+        pilot.type("escape")
+        await until(pilot, lambda: sensors.open == 1)
+        assert isinstance(pilot.app.screen, PlayScreen)
+        pilot.type("escape")
+        await pilot.pause()
+        pilot.type("y")
+        await until(pilot, lambda: sensors.open == 0)
+        assert isinstance(pilot.app.screen, HomeScreen)
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["small", "large"])
