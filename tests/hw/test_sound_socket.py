@@ -15,9 +15,9 @@ import pytest
 
 from tangy_hw.sound import socket_place
 from tangy_hw.sound.socket_place import connect
-from tangy_hw.sound.socket_source import LISTENING, TAKEN, LaptopMicrophone
+from tangy_hw.sound.socket_source import LISTENING, QUIET, TAKEN, LaptopMicrophone
 from tangy_hw.sound.sources import open_source
-from tangy_hw.sound.wav import SoundError
+from tangy_hw.sound.wav import RATE, SoundError
 
 PATIENCE = 20.0
 
@@ -32,6 +32,12 @@ class Listening:
         self.source.tell = self.told.put_nowait
 
     async def next(self) -> bytes:
+        """The next chunk that is not the quiet after a stream."""
+        while not (chunk := await self.piece()).strip(b"\0"):
+            pass
+        return chunk
+
+    async def piece(self) -> bytes:
         return await asyncio.wait_for(anext(self.source), PATIENCE)
 
     async def said(self) -> str:
@@ -235,6 +241,15 @@ class TestStreams:
         await on.source.close()
         with pytest.raises(StopAsyncIteration):
             await gone
+
+    async def test_after_a_stream_it_is_quiet_for_a_second(self, on: Listening) -> None:
+        waiting = asyncio.ensure_future(on.piece())
+        with on.connect() as connection:
+            connection.send(b"stop")
+            assert await waiting == b"stop"
+        quiet = b"".join([await on.piece() for _ in range(QUIET)])
+        assert quiet == bytes(2 * RATE)
+        await on.source.close()
 
     async def test_half_a_sample_at_the_end_of_a_stream_does_not_shift_the_next(
         self, on: Listening

@@ -59,6 +59,26 @@ def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
     assert beside.answer() == (10, os.getpid())
 
 
+def test_an_answer_that_nobody_waited_for_is_nobodys() -> None:
+    beside = Beside(_who)
+    for number in (1, 2, 3):
+        beside.ask(number)
+    assert beside.answer()[0] == 6
+    beside.ask(4)
+    assert beside.answer()[0] == 8
+
+
+def test_closing_ends_it() -> None:
+    beside = Beside(_who)
+    beside.ask(1)
+    _, pid = beside.answer()
+    beside.close()
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    beside.ask(2)
+    assert beside.answer() == (4, os.getpid())
+
+
 ENDS = """
 import os, signal, sys
 from tangy_tui.learning.speech import beside

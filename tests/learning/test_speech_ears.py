@@ -127,6 +127,19 @@ class TestPushToTalk:
         await here.ready()
         assert here.decoder.heard == [(sound("c", 1), "commands")]
 
+    async def test_it_ends_by_itself_where_no_more_sound_comes(
+        self, enter: Enter, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(room, "MOST_TALK", 0.01)
+        here = await enter().ready()
+        here.ears.talk()
+        await here.source.feed(sound("c"))
+        await soon(lambda: bool(here.decoder.heard))
+        await here.ready()
+        await here.source.feed(sound("x"))
+        assert here.words == ["call number"]
+        assert here.decoder.heard == [(sound("c"), "commands")]
+
     async def test_a_push_too_early_is_answered(self, enter: Enter) -> None:
         here = await enter().ready()
         here.decoder.decoding.clear()

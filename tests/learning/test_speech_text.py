@@ -241,7 +241,13 @@ class TestUnderstanding:
             assert said.commands == ()
 
     @pytest.mark.parametrize("settings", [USUAL, PAPER, replace(USUAL, shift=9.0)])
-    @pytest.mark.parametrize("words", [*STOPS, "please stop", "Stop!", "tangy stop now"])
+    @pytest.mark.parametrize(
+        "words",
+        [
+            *(*STOPS, "Stop!", "tangy stop now", "stop right there", "I said stop!", "whoa, stop"),
+            *("stop what you are doing", "you must stop", "stop where you are", "stop people"),
+        ],
+    )
     def test_what_stops_the_robot_does_so_in_every_mode(
         self, words: str, settings: Settings
     ) -> None:
@@ -251,7 +257,11 @@ class TestUnderstanding:
         assert stops(words)
 
     @pytest.mark.parametrize(
-        "words", ["", "don't stop", "do not stop", "where does the bus stop", "non stop", "please"]
+        "words",
+        [
+            *("", "don't stop", "do not stop", "where does the bus stop", "non stop", "please"),
+            *("stop the music please", "stop now the music", "he said that they stop here"),
+        ],
     )
     def test_what_only_mentions_stopping_does_not(self, words: str) -> None:
         assert not stops(words)

@@ -20,6 +20,7 @@ from tangy_profiles.reading import plain
 LISTENING = b"listening\n"  # what a connection is told when its sound is taken
 TAKEN = b"taken\n"  # and when another has taken its place
 PIECE = 3_200  # bytes, 100 ms
+QUIET = 10  # pieces
 AFTER_ERROR = 1.0  # s until the next try when a connection cannot be accepted
 
 
@@ -62,6 +63,8 @@ class LaptopMicrophone(Source):
                 async with contextlib.aclosing(self._stream(connection)) as chunks:
                     async for chunk in chunks:
                         yield chunk
+                for _ in range(QUIET):  # what was said last ends with the connection
+                    yield bytes(PIECE)
                 if self._next is None:
                     self.tell("The laptop's microphone has gone; waiting for it to come back.")
                 else:

@@ -26,39 +26,54 @@ class Beside(Generic[Asked, Answer]):
         """Make the copy, of a function that keeps nothing from one call to the next."""
         self._work = work
         self._there: Connection | None = None
+        self._process: multiprocessing.process.BaseProcess | None = None
         self._asked: list[Asked] = []
+        self._number = 0
         if len(_processors()) > 1 and "fork" in multiprocessing.get_all_start_methods():
             self._fork()
 
     def ask(self, asked: Asked) -> None:
         """Have it worked out; `answer` gives what comes of it."""
         self._asked = [asked]
+        self._number += 1
         if self._there is not None:
             try:
-                self._there.send(asked)
+                self._there.send((self._number, asked))
             except OSError:
                 self._there = None
 
     def answer(self) -> Answer:
         """Wait for the answer to what was asked last."""
-        if self._there is not None:
+        while self._there is not None:
             try:
-                answer: Answer = self._there.recv()
+                number, answer = self._there.recv()
             except (EOFError, OSError):
                 self._there = None
             else:
-                return answer
+                if number == self._number:  # else nobody waited for that one
+                    found: Answer = answer
+                    return found
         return self._work(self._asked.pop())
+
+    def close(self) -> None:
+        """End the copy."""
+        if self._there is not None:
+            self._there.close()
+            self._there = None
+        if self._process is not None:
+            self._process.join()
+            self._process = None
 
     def _fork(self) -> None:
         context = multiprocessing.get_context("fork")
         here, there = context.Pipe()
         try:
-            context.Process(target=self._serve, args=(here, there), daemon=True).start()
+            process = context.Process(target=self._serve, args=(here, there), daemon=True)
+            process.start()
         except OSError:
             here.close()
         else:
-            self._there = here
+            self._there, self._process = here, process
         there.close()
 
     def _serve(self, here: Connection, there: Connection) -> None:
@@ -69,7 +84,8 @@ class Beside(Generic[Asked, Answer]):
         os.closerange(own + 1, os.sysconf("SC_OPEN_MAX"))
         try:
             while True:
-                there.send(self._work(there.recv()))
+                number, asked = there.recv()
+                there.send((number, self._work(asked)))
         except (EOFError, OSError, KeyboardInterrupt):
             os._exit(0)
 

@@ -63,6 +63,9 @@ class Decoder(Protocol):
     def partial(self, pcm: bytes) -> str:
         """Take the next piece and return the words so far."""
 
+    def close(self) -> None:
+        """End what it has started."""
+
 
 def make_decoder(wanted: Wanted) -> Decoder:
     """Build the decoder for what is to be heard.
@@ -131,6 +134,10 @@ class TwoDecoders:
         """Take the next piece and return the words so far."""
         return _so_far(self._words, pcm) if self._open else ""
 
+    def close(self) -> None:
+        """End the process beside this one."""
+        self._beside.close()
+
     def _end(self) -> None:
         if self._open:
             self._words.end_utt()
@@ -177,6 +184,9 @@ class PaperDecoder:
     def partial(self, pcm: bytes) -> str:
         """Take the next piece and return the words so far."""
         return _so_far(self._decoder, pcm) if self._open else ""
+
+    def close(self) -> None:
+        """Nothing was started."""
 
     def _end(self) -> None:
         if self._open:

@@ -16,10 +16,11 @@ from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Evidence, S
 from tangy_tui.learning.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.learning.speech.recordings import Recorder
 from tangy_tui.learning.speech.understanding import answer, understand, wanted
-from tangy_tui.learning.speech.utterance import Utterance
+from tangy_tui.learning.speech.utterance import LONGEST_TALK, Utterance
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.verifying import Reply, Say, Stop
 
+MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
 RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
 FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
@@ -129,6 +130,7 @@ class Ears:
         elif self._state == "off":
             self.meter.begin()
             self._utterance = Utterance(found=False)
+            asyncio.get_running_loop().call_later(MOST_TALK, self._late, self._utterance)
             self._talks.set()
             self._now("listening")
 
@@ -341,6 +343,11 @@ class Ears:
             self._ended = True
             self._end()
             self._talks.set()
+
+    def _late(self, utterance: Utterance) -> None:
+        """End what was begun and has no end, for no more sound comes."""
+        if self._utterance is utterance:
+            self._end()
 
     def _end(self, *, dropped: bool = False) -> None:
         """Let the present utterance end; if it is dropped, it counts for nothing."""

@@ -11,12 +11,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
-from itertools import dropwhile
 
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech.evidence import Evidence, Settings, Wanted
 from tangy_tui.learning.verifying import Reply, Say, Stop
-from tangy_tui.learning.words import bare, words_of
+from tangy_tui.learning.words import words_of
 
 # How likely words are to be the command they come nearest to: a logistic over the confidence of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
@@ -26,7 +25,7 @@ CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 14.98, 0.39, 1.51, -12.
 LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
 MOST_KNOWN = 3
 SURE = 0.6
-UNSURE = 0.35
+UNSURE = 0.28
 SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
 SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
 UNDERSTOOD = 0.35
@@ -34,7 +33,8 @@ UNDERSTOOD = 0.35
 
 STOPS = (
     *("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "stop stop stop", "halt"),
-    *("no stop", "oh stop", "wait stop"),
+    *("no stop", "oh stop", "wait stop", "please stop", "stop it", "stop that", "stop right now"),
+    *("stop right there", "stop please", "stop what you are doing", "i said stop", "stop moving"),
 )
 OWN_NAME = {"tangy": ("T AE NG IY",)}
 YES = ("yes", "yes please", "yes do it", "yes that is right")
@@ -42,8 +42,17 @@ NO = ("no", "no thank you", "no do not", "no that is wrong")
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
-MOST_STOP_WORDS = 2  # different ones, after those that only call for attention
-CALLS = frozenset(("no", "oh", "wait"))
+CRIES = frozenset(("stop", "halt"))
+BESIDE_CRIES = frozenset(
+    (
+        *("no", "oh", "wait", "whoa", "please", "hey", "tangy", "robot", "now", "just", "and"),
+        *("i", "said", "you", "must", "have", "to", "it", "this", "that", "what", "what's"),
+        *("are", "you're", "doing", "right", "there", "here", "where", "moving", "driving"),
+        *("talking", "at", "once", "immediately", "everything", "know"),
+    )
+)
+"""What is said with a cry to stop; with any other word it is not certain who, or what, stops."""
+MOST_STOP_WORDS = 7
 
 
 def wanted(
@@ -116,8 +125,12 @@ def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
 
 def stops(text: str) -> bool:
     """Say whether words stop the robot, whatever else is going on."""
-    words = [*dropwhile(CALLS.__contains__, bare(words_of(text)))]
-    return bool(words) and words[0] in ("stop", "halt") and len({*words}) <= MOST_STOP_WORDS
+    words = words_of(text)
+    if not CRIES.intersection(words):
+        return False
+    if words[0] in CRIES and len(words) <= 2:
+        return True
+    return len(words) <= MOST_STOP_WORDS and BESIDE_CRIES.issuperset(set(words) - CRIES)
 
 
 def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:

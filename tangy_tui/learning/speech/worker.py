@@ -106,6 +106,8 @@ class Worker:
 
         try:
             read = Wanted.from_json(wanted)
+            if self._decoder is not None:
+                self._decoder.close()
             self._decoder = make_decoder(read)
         except Unspeakable as reason:
             raise Refused(str(reason)) from None
