@@ -27,7 +27,7 @@ NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
-WASHED, INKED = 0.6, 80  # how black a number must be beside that percentile of the card's
+WASHED, INKED = 0.45, 80  # how black a number must be beside that percentile of the card's
 
 
 @dataclass(frozen=True)
