@@ -354,3 +354,18 @@ async def test_how_it_looks(
         await until(pilot, lambda: BLOCK in pilot.text())
         await later(pilot)
         picture(pilot.app)
+
+
+async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, house: House
+) -> None:
+    sensors.cards = CardSight(card(house), "", monotonic())
+    async with run(make(), (60, 18)) as pilot:
+        assert "head camera" in pilot.text() and "Last card" not in pilot.text()
+        pilot.type("v")
+        await until(pilot, lambda: BLOCK in pilot.text())
+        assert "Card 17" in pilot.text() and "Sensors" not in pilot.text()
+        pilot.type("v")
+        await pilot.pause()
+        assert "Last card" not in pilot.text()
+        assert pilot.app.focused is pilot.app.screen.query_one("#devices")

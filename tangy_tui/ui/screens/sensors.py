@@ -38,6 +38,9 @@ NO_SOURCE = (
     "or write its source into the robot's file."
 )
 
+TINY_OR_WIDE = [(0, "-tiny"), (77, "-narrow"), WIDE[-1]]
+"""Below so many columns devices and picture are not seen side by side."""
+
 Shown = Callable[[], Status]
 
 
@@ -58,7 +61,7 @@ class SensorsScreen(TangyScreen[None]):
     """
 
     CSS_PATH = "sensors.tcss"
-    HORIZONTAL_BREAKPOINTS = WIDE
+    HORIZONTAL_BREAKPOINTS = TINY_OR_WIDE
     VERTICAL_BREAKPOINTS = LOW
     TITLE = "Sensors"
     HELP = (
@@ -145,6 +148,9 @@ class SensorsScreen(TangyScreen[None]):
             if self._cameras:
                 self._devices.show(self._device_lines, self._cameras[0])
                 self._seen = True
+        self.set_class(self._seen, "-seen")
+        if not self._seen:
+            self._devices.focus()
         self._tell_of_chosen()
         self._watch()
 
