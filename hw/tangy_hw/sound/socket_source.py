@@ -63,12 +63,12 @@ class LaptopMicrophone(Source):
                 async with contextlib.aclosing(self._stream(connection)) as chunks:
                     async for chunk in chunks:
                         yield chunk
-                for _ in range(QUIET):  # what was said last ends with the connection
-                    yield bytes(PIECE)
                 if self._next is None:
                     self.tell("The laptop's microphone has gone; waiting for it to come back.")
                 else:
                     self.tell("Another microphone has connected, and takes the place of this one.")
+                for _ in range(QUIET):  # what was said last ends with the connection
+                    yield bytes(PIECE)
         finally:
             accepting.cancel()
             await asyncio.wait({accepting})
