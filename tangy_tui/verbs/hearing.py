@@ -10,6 +10,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import as_given
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -92,8 +93,17 @@ def _recorder(house: House, teacher: str) -> Recorder | None:
             raise TangyError(
                 "--record: say yes to it once on a terminal; nothing is recorded before."
             )
-        yes = typer.confirm(plain(consent_question(house.store)), default=False, err=True)
+        question = consent_question(house.store, _options(house))
+        yes = typer.confirm(plain(question), default=False, err=True)
         consent(house.store, teacher, yes)
         if not yes:
             return None
     return Recorder(house.store.folder, teacher)
+
+
+def _options(house: House) -> str:
+    """Return the options with which another command means the same data folder."""
+    from tangy_tui.house import data_folder
+
+    folder = house.store.folder
+    return as_given(None if folder == data_folder(None) else folder)

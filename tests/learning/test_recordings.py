@@ -107,6 +107,8 @@ class TestConsent:
         assert str(store.folder / FOLDER) in question
         assert "tangy listen --forget-recordings" in question
         assert question.count("?") == 1
+        there = consent_question(store, " --data /mine")
+        assert "`tangy listen --forget-recordings --data /mine` deletes" in there
 
 
 class TestKeeping:
@@ -150,6 +152,20 @@ class TestKeeping:
         assert stat.S_IMODE(file.stat().st_mode) == 0o600
         for folder in (file.parent, recorder.folder):
             assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+    def test_a_folder_that_others_could_read_is_closed_before_anything_is_recorded(
+        self, tmp_path: Path, spoken: Callable[[str], Say]
+    ) -> None:
+        there = tmp_path / "data" / FOLDER
+        of_jokes = there / "joke"
+        of_jokes.mkdir(parents=True)
+        for folder in (there, of_jokes):
+            folder.chmod(0o755)
+        recorder = Recorder(tmp_path / "data", "rosa")
+        assert stat.S_IMODE(there.stat().st_mode) == 0o700
+        recorder.heard(SOUND, spoken("tell a joke"))
+        recorder.verified("joke", None)
+        assert stat.S_IMODE(of_jokes.stat().st_mode) == 0o700
 
     def test_what_was_not_verified_is_not_kept(
         self, recorder: Recorder, spoken: Callable[[str], Say]

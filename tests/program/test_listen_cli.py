@@ -12,13 +12,14 @@ import pytest
 
 from tangy_hw.sound.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
+from tangy_tui.house import House, data_folder
 from tangy_tui.learning.speech import listening
 from tangy_tui.learning.speech.calibration import Chosen, Figures
 from tangy_tui.learning.speech.checking import PATIENCE, Checked, MicrophoneCheck
 from tangy_tui.learning.speech.evidence import Settings, Wanted
 from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.recordings import consent, consented
-from tangy_tui.verbs import mic_check
+from tangy_tui.verbs import hearing, mic_check
 from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
 
@@ -129,6 +130,26 @@ def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usua
     assert (
         "socket was never" in tangy("listen", "a.wav", "--mic", "socket", "--data", folder).stderr
     )
+
+
+def test_who_is_asked_for_consent_is_told_how_to_delete_what_is_kept_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    def confirm(question: str, **more: object) -> bool:
+        asked.append(question)
+        return False
+
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.confirm", confirm)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    for folder in (tmp_path / "two words", data_folder(None)):
+        house = House(folder)
+        assert hearing._recorder(house, "rosa") is None
+        house.close()
+    assert f"`tangy listen --forget-recordings --data '{tmp_path / 'two words'}'`" in asked[0]
+    assert "`tangy listen --forget-recordings`" in asked[1]
 
 
 def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Path) -> None:

@@ -39,12 +39,17 @@ CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
 _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 
 
-def consent_question(store: Store) -> str:
-    """Return what a teacher is asked before anything is recorded."""
+def consent_question(store: Store, options: str = "") -> str:
+    """Return what a teacher is asked before anything is recorded.
+
+    Args:
+        store: in whose folder recordings lie.
+        options: which the command that deletes them needs, with a space before them.
+    """
     return (
         "May Tangy keep recordings of the commands that you say, and say yes to, while you teach, "
         f"to practise on? They stay on this machine, in {store.folder / FOLDER}; "
-        "`tangy listen --forget-recordings` deletes them all."
+        f"`tangy listen --forget-recordings{options}` deletes them all."
     )
 
 
@@ -117,7 +122,7 @@ class Recorder:
             now: the clock that they are named by.
 
         Raises:
-            TangyError: the folder of recordings is a symbolic link.
+            TangyError: the folder of recordings is a symbolic link, or cannot be closed to others.
         """
         self.folder = folder / FOLDER
         self.teacher = teacher
@@ -134,6 +139,12 @@ class Recorder:
             raise TangyError(
                 plain(f"{self.folder}: is a symbolic link; make it a folder to record into.")
             )
+        if self.folder.is_dir():
+            try:
+                self.folder.chmod(0o700)
+            except OSError as error:
+                why = f"others may read it, and that cannot be changed ({error.strerror})"
+                raise TangyError(plain(f"{self.folder}: {why}; move it away to record.")) from None
 
     def heard(self, pcm: bytes, command: Say | Stop | Reply) -> None:
         """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
@@ -186,6 +197,7 @@ class Recorder:
             if place.is_symlink():
                 raise OSError(errno.ELOOP, "it is, or holds, a symbolic link")
             place.mkdir(mode=0o700, exist_ok=True)
+            place.chmod(0o700)  # it may have been there before
         time = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%S")
         number = 1
         while (file := folder / f"{time}-{number}.wav").exists():
