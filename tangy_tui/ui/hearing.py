@@ -34,6 +34,9 @@ WAITS = 0.05
 STOP = "stop"
 ANSWERS = "yes, no or stop"
 
+COLOURS = {"warn": "$warning", "bad": "$error"}
+"""Of sentences in a question, by their kind; of others it is that of what is less important."""
+
 
 class Listener(Protocol):
     """What takes spoken commands: a screen, or a part of one."""
@@ -103,10 +106,10 @@ class Hearing:
 
     @property
     def aloud(self) -> str:
-        """How a question can be answered by voice; "" if it cannot."""
+        """How an answer to a question begins that is given by voice; "" if none can be."""
         if not self.ears.answers:
             return ""
-        return "Or ctrl+t, and say yes or no." if self.by_key else "Or say yes or no."
+        return "Or ctrl+t, and say" if self.by_key else "Or say"
 
     def attend(self, listener: Listener) -> None:
         """Give what is heard to a listener from now on."""
@@ -163,10 +166,12 @@ class Hearing:
             self.ears.talk()
 
     def tell(self, sentence: str, kind: Kind = "dim") -> None:
-        """Show a sentence about hearing."""
+        """Show a sentence about hearing; where a question lies over the screen, in both."""
+        if (question := self._question) is not None:
+            question.tell(sentence, COLOURS.get(kind, "$ink-dim"))
         if self._listeners:
             self._listeners[-1].told(sentence, kind)
-        elif self._app.is_running:
+        elif self._app.is_running and question is None:
             self._app.notify(clean(sentence), markup=False)
 
     @contextmanager
@@ -232,12 +237,21 @@ class Hearing:
         screen = self._app.screen_stack[-1] if self._app.screen_stack else None
         return screen if isinstance(screen, VerifyingDialog) else None
 
+    @property
+    def _begins(self) -> tuple[str, ...]:
+        """The states in which somebody begins to say something new."""
+        if not self.ears.live:
+            return ("thinking",)
+        return ("listening", "speaking") if self.by_key else ("speaking",)
+
     def _changed(self) -> None:
         state = self.ears.state
         if state != self._state:
             self._state = state
             if state in (("listening", "speaking") if self.ears.live else ("thinking",)):
                 self._about = self._question
+            if state in self._begins and self._question is not None:
+                self._question.tell("")
         for show in tuple(self._watching):
             show()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from textual.app import App
@@ -237,6 +238,77 @@ async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, house: Hous
         assert isinstance(pilot.app.screen, TeachScreen)
 
 
+def dialog_text(pilot: TangyPilot) -> str:
+    """Return what stands in the frame of the dialog, as one line."""
+    box = pilot.app.screen.query_one(".box").region
+    rows = pilot.lines()[box.y + 1 : box.bottom - 1]
+    return " ".join(" ".join(row[box.x + 1 : box.right - 1] for row in rows).split())
+
+
+@pytest.mark.parametrize("size", [(60, 18), (80, 24), (120, 40)])
+async def test_what_is_told_while_a_question_is_open_stands_in_it(
+    run: Run, house: House, size: tuple[int, int]
+) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(house, ears), size=size) as pilot:
+        ears.hear(ears.say(UNSURE, sure=False))
+        await pilot.pause()
+        nothing, which = (
+            "I heard something, but no yes, no or stop.",
+            "Heard: yes. Please say which: type its number, or N for a new command.",
+        )
+        ears.tell(nothing)
+        await pilot.pause()
+        assert nothing in dialog_text(pilot)
+        ears.be("speaking")
+        await pilot.pause()
+        assert nothing not in dialog_text(pilot)
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert which in dialog_text(pilot)
+        ears.be("listening")  # which it always does: nobody has begun to speak
+        await pilot.pause()
+        assert which in dialog_text(pilot)
+        assert nothing in log_of(pilot)
+        assert which in log_of(pilot)
+
+
+async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
+    run: Run, house: House
+) -> None:
+    ears = FakeEars(answers=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        ears.hear(ears.say("greet everyone"))
+        await pilot.pause()
+        ears.tell("I heard something, but no yes, no or stop.")
+        await pilot.pause()
+        assert "I heard something" in dialog_text(pilot)
+        await pilot.press("ctrl+t")
+        await pilot.pause()
+        assert ears.state == "listening"
+        assert "I heard something" not in dialog_text(pilot)
+
+
+async def test_a_choice_says_which_answers_it_takes_by_voice(run: Run, house: House) -> None:
+    ears = FakeEars(hands_free=True, answers=True)
+    async with run(app=teaching(house, ears)) as pilot:
+        several = ears.say(UNSURE, sure=False)
+        assert several.commands is not None
+        ears.hear(several)
+        await pilot.pause()
+        assert "Or say no: none of these." in dialog_text(pilot)
+        ears.hear(Reply(False))
+        await pilot.pause()
+        ears.hear(replace(several, commands=several.commands[:1]))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, ChoicesDialog)
+        assert "Or say yes or no." in dialog_text(pilot)
+        ears.hear(Reply(True))
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)  # it is still asked about
+        assert steps(house) == []
+
+
 async def test_a_yes_that_no_question_waits_for_does_nothing(run: Run, house: House) -> None:
     ears = FakeEars(hands_free=True, answers=True)
     async with run(app=teaching(house, ears)) as pilot:
@@ -397,8 +469,9 @@ async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
         ("trouble", (80, 24)),
         ("choices", (80, 24)),
         ("others", (80, 24)),
+        ("no answer", (80, 24)),
     ],
-    ids=["words", "words-large", "trouble", "choices", "others"],
+    ids=["words", "words-large", "trouble", "choices", "others", "no-answer"],
 )
 async def test_how_hearing_looks(
     run: Run,
@@ -407,7 +480,7 @@ async def test_how_hearing_looks(
     shows: str,
     picture: Callable[[App[None]], None],
 ) -> None:
-    ears = FakeEars()
+    ears = FakeEars(answers=shows == "no answer")
     async with run(app=teaching(house, ears), size=size) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
         if shows == "words":
@@ -424,4 +497,7 @@ async def test_how_hearing_looks(
         line._ticks = 0
         line._tick()
         await pilot.pause()
+        if shows == "no answer":
+            ears.tell("I heard something, but no yes, no or stop.")
+            await pilot.pause()
         picture(pilot.app)

@@ -24,6 +24,8 @@ from tangy_tui.ui.widgets.rows import shorten
 
 MOST_ALTERNATIVES = 3
 LONGEST_HEARD = 100  # characters: two lines
+LONGEST_TOLD = 150  # characters: three lines
+ROOM_FOR_ALL = 24  # lines of a window
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,7 @@ class VerifyingDialog(Dialog[Answer]):
             heard: the words that it was understood from.
             confidence: from 0 to 1.
             choices: behaviours in the words of the activity; the first three are offered.
-            aloud: how it can be answered by voice, if it can.
+            aloud: how an answer by voice begins ("Or say"), if there can be one.
             clock: seconds, on the scale of `time.monotonic` (default: the app's).
         """
         super().__init__(NO)
@@ -80,6 +82,7 @@ class VerifyingDialog(Dialog[Answer]):
         self._choices = tuple(clean(choice) for choice in choices[:MOST_ALTERNATIVES])
         self._numbers = ("1", "2", "3")[: len(self._choices)]
         self._say = clean(aloud)
+        self._told: tuple[str, str] | None = None  # a sentence and its colour
         self._clock = clock
         self._keys = FreshKeys()
 
@@ -118,12 +121,36 @@ class VerifyingDialog(Dialog[Answer]):
         self.answer(NO)
         return ""
 
+    def tell(self, sentence: str, colour: str = "$ink-dim") -> None:
+        """Show a sentence about hearing at the foot, in place of the last one; "" shows none.
+
+        The log behind the dialog may be hidden by it.
+        """
+        told = (shorten(clean(sentence), LONGEST_TOLD), colour) if sentence else None
+        if told != self._told and self.is_attached:
+            self._told = told
+            self._write()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Show as much as there is room for."""
+        super().on_resize(event)
+        if self._told is not None:
+            self._write()
+
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
+
+    def _write(self) -> None:
+        self.query_one(f"#{self.ID}", Static).update(self._content())
 
     def _yes(self) -> str:
         """Take a yes; return what is wrong with it."""
         raise NotImplementedError
+
+    @property
+    def _sayable(self) -> str:
+        """The answers that can be given by voice."""
+        return "yes or no"
 
     def _content(self) -> Content:
         """Write the question."""
@@ -137,6 +164,8 @@ class VerifyingDialog(Dialog[Answer]):
 
     def _grounds(self) -> Parts:
         parts: Parts = []
+        if self._told is not None and self.app.size.height < ROOM_FOR_ALL:
+            return parts  # the room is for what was told
         if self._heard:
             parts += ["\n\n", ("Heard       ", "$ink-dim"), self._heard]
         if self._confidence is not None:
@@ -147,8 +176,13 @@ class VerifyingDialog(Dialog[Answer]):
             ]
         return parts
 
-    def _by_voice(self) -> Parts:
-        return ["\n\n", (self._say, "$ink-dim")] if self._say else []
+    def _foot(self) -> Parts:
+        parts: Parts = []
+        if self._say:
+            parts += ["\n\n", (f"{self._say} {self._sayable}.", "$ink-dim")]
+        if self._told is not None:
+            parts += ["\n" if parts else "\n\n", self._told]
+        return parts
 
 
 class QuestionDialog(VerifyingDialog):
@@ -214,11 +248,14 @@ class QuestionDialog(VerifyingDialog):
         ]
         if self._choices:
             parts += ["\n\n", ("Or did you mean", "$ink-dim"), *self._listed()]
-        return Content.assemble(*parts, *self._by_voice())
+        return Content.assemble(*parts, *self._foot())
 
 
 class ChoicesDialog(VerifyingDialog):
-    """Asks "Did you mean" one of up to three: 1-3 choose one to be asked about, n or esc none."""
+    """Asks "Did you mean" one of up to three: 1-3 choose one to be asked about, n or esc none.
+
+    A yes chooses where there is only one; of several it does not say which.
+    """
 
     ID = "choices"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -232,7 +269,14 @@ class ChoicesDialog(VerifyingDialog):
     )
 
     def _yes(self) -> str:
-        return WHICH
+        if len(self._choices) != 1:
+            return WHICH
+        self.answer(Answer(False, 0))
+        return ""
+
+    @property
+    def _sayable(self) -> str:
+        return "yes or no" if len(self._choices) == 1 else "no: none of these"
 
     def _content(self) -> Content:
         return Content.assemble(
@@ -242,7 +286,7 @@ class ChoicesDialog(VerifyingDialog):
             ("N", "$error bold"),
             "  none of these, I give the command again",
             *self._grounds(),
-            *self._by_voice(),
+            *self._foot(),
         )
 
 

@@ -56,7 +56,7 @@ class TeachHearing:
 
     @property
     def aloud(self) -> str:
-        """How a question can be answered by voice; "" if it cannot."""
+        """How an answer to a question begins that is given by voice; "" if none can be."""
         return "" if self.hearing is None else self.hearing.aloud
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
