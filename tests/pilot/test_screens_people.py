@@ -241,6 +241,13 @@ async def test_names_that_look_like_markup_are_only_names(run: Run, house: House
         assert "[@click=quit]Jo" in pilot.text()
 
 
+async def test_every_key_is_told_at_80_columns(run: Run, house: House) -> None:
+    async with run(PeopleScreen(house), size=SMALL) as pilot:
+        keys = pilot.lines()[-1]
+        for key in ("tab", "v", "f", "x", "m", "u", "n", "esc", "?"):
+            assert f" {key} " in keys
+
+
 # -------------------------------------------------------------------------------- its looks
 
 

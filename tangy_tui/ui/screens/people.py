@@ -79,7 +79,7 @@ class PeopleScreen(TangyScreen[None]):
             ("tab", "panel"),
             ("v", "void"),
             ("f", "answer"),
-            ("x", "off/on"),
+            ("x", "off"),
             ("m", "method"),
             ("u", "undo"),
             ("n", "name"),
