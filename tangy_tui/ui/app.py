@@ -15,6 +15,8 @@ Widget ids that scripts and testers may rely on:
     #demonstrations  the list of the library; #step is one step of a demonstration in full
     #answers     the answers of a conflict, side by side
     #why         the grounds of a decision
+    #devices     the state of every device; #about one of them, #picture what a camera sees,
+                 #card the last card that was read
 """
 
 from __future__ import annotations

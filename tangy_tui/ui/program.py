@@ -16,13 +16,13 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
 from tangy_tui.monitoring.drill_sheet import last_sheet
+from tangy_tui.ui.eyes import Eyes
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors
-    from tangy_profiles.health import Health
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
 
@@ -33,9 +33,6 @@ STORY_TEACHING = (2.0, 6.0, 12.0)
 
 PLAYING = 20.0
 """Times life at which a game is watched unless Tangy speaks or another speed is asked for."""
-
-CAMERA_SECONDS = 5.0
-"""For which a game waits at most for the first pictures of its cameras."""
 
 STORY_PLAYING = 100.0
 """Times life of the demo's game: half an hour in about 20 s."""
@@ -59,15 +56,13 @@ class Program(SoundingApp):
     ) -> None:
         """Make the program; without a start it waits at home. It may have ears and a voice.
 
-        Without `sensors` its cameras are those of the robot's profile. `live`: in simulated
-        games they count as the robot's, and what is wrong with them is a fault there.
+        `sensors` and `live` are as of `Eyes`.
         """
         pictures = house.store.folder
         super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
         self.house = house
         self._start = start
-        self._sensors = sensors
-        self._live = live
+        self.eyes = Eyes(house, sensors, live=live)
         self._busy = False
         self._opening = False
 
@@ -185,29 +180,15 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
         try:
-            screen = SensorsScreen(self.house, self.cameras())
+            screen = SensorsScreen(self.house, self.eyes.sensors())
         except TangyError as error:
             await self._tell(str(error), title="Not possible")
             return
         await self.push_screen_wait(screen)
 
-    def cameras(self) -> Sensors:
-        """Return the cameras of the robot; they are opened by whoever uses them.
-
-        Raises:
-            TangyError: the robot's profile names a source that is none.
-        """
-        if self._sensors is None:
-            from tangy_hw.sensors import sensors_of
-
-            house = self.house
-            self._sensors = sensors_of(house.robot, house.activity.deck, house.store.folder)
-        return self._sensors
-
     async def on_unmount(self) -> None:
         """End the cameras with the program, whatever it was doing."""
-        if self._sensors is not None:
-            await self._sensors.close()
+        await self.eyes.close()
 
     def action_learn(self) -> None:
         """Learn from all finished demonstrations."""
@@ -252,22 +233,20 @@ class Program(SoundingApp):
         policy = await self._load_policy(wanted)
         if policy is None:
             return
-        speed = speed or (1.0 if self.speaker.on or self._live else PLAYING)
-
-        def make(live: Callable[[], Health] | None) -> PlayScreen:
-            supervision = self.house.supervision(
+        house, eyes = self.house, self.eyes
+        speed = speed or (1.0 if self.speaker.on or eyes.live else PLAYING)
+        if eyes.live:
+            self.say("The cameras are being opened ...")
+        async with eyes.watching() as live:
+            supervision = house.supervision(
                 policy, seed, asks=True, injections=injections, live=live
             )
-            return PlayScreen(self.house, supervision, games=games, speed=speed, teacher=teacher)
-
-        if not self._live:
-            await self.push_screen(make(None))
-            return
-        async with self.cameras() as cameras:
-            self.say("The cameras are being opened ...")
-            await cameras.settled(CAMERA_SECONDS)
-            self.clear_notifications()
-            await self.push_screen_wait(make(cameras.health))
+            screen = PlayScreen(house, supervision, games=games, speed=speed, teacher=teacher)
+            if live is None:
+                await self.push_screen(screen)
+            else:
+                self.clear_notifications()
+                await self.push_screen_wait(screen)
 
     async def drill(
         self, rounds: int | None = None, seed: int | None = None, who: str = ""

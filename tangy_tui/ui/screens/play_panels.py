@@ -13,6 +13,7 @@ from tangy_tui.house import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
+from tangy_tui.ui.eyes import Eyes
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
@@ -89,9 +90,9 @@ class PlayPanels(TangyScreen[Tally]):
         """Show how all devices are, over the game, which goes on."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
-        cameras = getattr(self.app, "cameras", None)
+        eyes: Eyes | None = getattr(self.app, "eyes", None)
         try:
-            sensors = None if cameras is None else cameras()
+            sensors = None if eyes is None else eyes.sensors()
         except TangyError as error:
             self._tell_now(str(error), "warn")
             return
