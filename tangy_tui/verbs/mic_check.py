@@ -142,6 +142,11 @@ def _lines(checked: Checked, mic: str) -> list[str]:
     figures, above = checked.chosen.figures, checked.voice - checked.room
     how = "clear" if above >= CLEAR else "enough" if above >= FAIR else "too little"
     lines = [f"Your voice is {max(0.0, above):.0f} dB louder than the room: {how}."]
+    if not checked.room_heard:
+        lines = [
+            "There is no noise of a room in it at all (digital silence), so how much louder your "
+            "voice is was not measured."
+        ]
     lines += [
         f"  asked for {asked.text!r}, heard {words!r}" if words is not None
         else f"  asked for {asked.text!r}, heard nothing"
@@ -149,11 +154,14 @@ def _lines(checked: Checked, mic: str) -> list[str]:
         if asked.meant and words != asked.text
     ]  # fmt: skip
     offered = f", {figures.offered} offered as a choice" if figures.offered else ""
-    result = (
-        f"{figures.understood} of {figures.commands} commands understood{offered}; "
+    taken = (
         f"{figures.taken} of {figures.others} other sentences taken for one"
+        if figures.others
+        else "no other sentence was heard"
     )
-    lines.append(f"{result}.")
+    lines.append(
+        f"{figures.understood} of {figures.commands} commands understood{offered}; {taken}."
+    )
     usual = checked.chosen.usual
     if checked.parted and checked.chosen.settings == USUAL:
         lines.append(f"The usual settings suit this microphone; stored for {mic}.")

@@ -16,7 +16,8 @@ from tangy_tui.house import House, data_folder
 from tangy_tui.learning.speech import listening
 from tangy_tui.learning.speech.calibration import Chosen, Figures
 from tangy_tui.learning.speech.checking import PATIENCE, Checked, MicrophoneCheck
-from tangy_tui.learning.speech.evidence import Settings, Wanted
+from tangy_tui.learning.speech.evidence import RATE, Settings, Wanted
+from tangy_tui.learning.speech.loudness import LOUD, loudness
 from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.recordings import consent, consented
 from tangy_tui.verbs import hearing, mic_check
@@ -253,6 +254,24 @@ class TestCheckingAMicrophone:
         assert json.loads(told.stdout)["stored"] is not bool(status)
         with Store.open(tmp_path / "data", write=False) as store:
             assert any(store.events("microphone checked")) is not bool(status)
+
+    def test_what_was_not_measured_is_not_put_in_figures(
+        self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        chosen = Chosen(Settings(), Figures(6, 5, 0, 0, 0), Figures(6, 5, 0, 0, 0))
+        room = loudness(bytes(2 * RATE), LOUD)  # zeros alone
+
+        async def run(check: MicrophoneCheck) -> Checked:
+            return Checked(room, -17.0, (), chosen, False, ())
+
+        monkeypatch.setattr(MicrophoneCheck, "run", run)
+        (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))
+        check = ("mic", "check", "--mic", tmp_path / "a.wav", "--data", tmp_path / "data")
+        done = tangy(*check)
+        assert "no noise of a room in it at all (digital silence)" in done.stdout
+        assert " dB" not in done.stdout
+        assert "5 of 6 commands understood; no other sentence was heard." in done.stdout
+        assert json.loads(tangy(*check, "--json").stdout)["room_db"] is None
 
     def test_forgetting_says_whether_there_was_anything(self, tangy: Tangy, tmp_path: Path) -> None:
         folder = tmp_path / "data"

@@ -27,7 +27,7 @@ from tangy_tui.learning.speech.calibration import (
 )
 from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
 from tangy_tui.learning.speech.labels import Label
-from tangy_tui.learning.speech.loudness import LOUD, advice, loudness
+from tangy_tui.learning.speech.loudness import LOUD, SILENT, advice, loudness
 from tangy_tui.learning.speech.understanding import stops, wanted
 
 COMMANDS = 6
@@ -87,6 +87,11 @@ class Checked:
     advice: tuple[str, ...]
 
     @property
+    def room_heard(self) -> bool:
+        """Whether there was any sound of the room, above which a voice can be measured."""
+        return self.room > SILENT
+
+    @property
     def reason(self) -> str:
         """Say in one sentence why it is not good enough to be kept; "" if it is."""
         figures = self.chosen.figures
@@ -107,7 +112,7 @@ class Checked:
     def document(self) -> dict[str, Any]:
         """Return it as one JSON document."""
         return {
-            "room_db": round(self.room, 1),
+            "room_db": round(self.room, 1) if self.room_heard else None,
             "voice_db": round(self.voice, 1),
             "heard": [
                 {"asked": a.text, "command": a.meant is not None, "heard": words}

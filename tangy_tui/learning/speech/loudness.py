@@ -10,6 +10,8 @@ from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS
 FRAME = 320  # samples, 20 ms
 LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be
 CLEAR, FAIR = 20.0, 12.0  # dB of a voice above the room
+LEAST = 0.33  # of a sample's steps: nothing that was recorded is less loud
+SILENT = -99.0  # dB: zeros alone are below that
 
 
 def loudness(pcm: bytes, share: float) -> float:
@@ -20,7 +22,7 @@ def loudness(pcm: bytes, share: float) -> float:
     if not len(frames):
         return -100.0
     level = float(np.quantile(frames.astype(np.float64).std(axis=1), share))
-    return 20 * math.log10(max(level, 0.33) / 32_768)
+    return 20 * math.log10(max(level, LEAST) / 32_768)
 
 
 def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
