@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,11 +15,10 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
-from tangy_tui.monitoring.drill_sheet import last_sheet
 from tangy_tui.ui.eyes import Eyes
+from tangy_tui.ui.how_far import how_far
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
-from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors
@@ -54,10 +53,7 @@ class Program(SoundingApp):
         live: bool = False,
         **settings: Any,
     ) -> None:
-        """Make the program; without a start it waits at home. It may have ears and a voice.
-
-        `sensors` and `live` are as of `Eyes`.
-        """
+        """Make the program; without a start it waits at home. It may have ears, eyes and voice."""
         pictures = house.store.folder
         super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
         self.house = house
@@ -72,28 +68,7 @@ class Program(SoundingApp):
             self.run_worker(self._start(self))
 
     def _home(self) -> Screen[Any]:
-        return HomeScreen(self._states, note=self.house.activity.title)
-
-    def _states(self) -> Mapping[str, str]:
-        """Say how far each choice is."""
-        there = library.read_library(self.house.store, self.house.activity.name)
-        shown = there.demonstrations
-        finished = sum(1 for d in shown if d.finished)
-        unfinished = sum(1 for d in shown if d.steps and not d.finished)
-        away = sum(1 for entry in there.entries.values() if entry.hidden)
-        kept = policies.last_policy(self.house.store, self.house.activity.name)
-        people = ", ".join(person.name for person in self.house.people)
-        sheet = last_sheet(self.house.store)
-        return {
-            "teach": counted(finished, "demonstration")
-            + (f", {unfinished} unfinished" if unfinished else ""),
-            "library": f"{len(shown)} in use, {away} put away" if away else "",
-            "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
-            "play": "" if kept is not None else "learn first",
-            "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
-            "policy": "" if kept is None else str(kept["name"]),
-            "people": people,
-        }
+        return HomeScreen(lambda: how_far(self.house), note=self.house.activity.title)
 
     # ---------------------------------------------------------------------------------- ways
 
@@ -233,11 +208,9 @@ class Program(SoundingApp):
         policy = await self._load_policy(wanted)
         if policy is None:
             return
-        house, eyes = self.house, self.eyes
-        speed = speed or (1.0 if self.speaker.on or eyes.live else PLAYING)
-        if eyes.live:
-            self.say("The cameras are being opened ...")
-        async with eyes.watching() as live:
+        house = self.house
+        speed = speed or (1.0 if self.speaker.on or self.eyes.live else PLAYING)
+        async with self.eyes.watching() as live:
             supervision = house.supervision(
                 policy, seed, asks=True, injections=injections, live=live
             )
@@ -245,7 +218,6 @@ class Program(SoundingApp):
             if live is None:
                 await self.push_screen(screen)
             else:
-                self.clear_notifications()
                 await self.push_screen_wait(screen)
 
     async def drill(
