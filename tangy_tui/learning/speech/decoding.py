@@ -17,6 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
+from tangy_tui.learning.speech.bandwidth import widened
 from tangy_tui.learning.speech.beside import Beside
 from tangy_tui.learning.speech.cleaning import cleaned, surrounded
 from tangy_tui.learning.speech.evidence import RATE, Evidence, Expecting, Wanted
@@ -109,7 +110,7 @@ class TwoDecoders:
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._said[expecting]:
             return Evidence(seconds=seconds)
-        pcm = cleaned(surrounded(pcm))
+        pcm = widened(cleaned(surrounded(pcm)))
         self._beside.ask((pcm, expecting))
         words, score, _ = _best_path(self._words, pcm, expecting)
         phrase, garbage = self._beside.answer()
