@@ -364,7 +364,7 @@ async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
         assert "head camera" in pilot.text() and "Last card" not in pilot.text()
         pilot.type("v")
         await until(pilot, lambda: BLOCK in pilot.text())
-        assert "Card 17" in pilot.text() and "Sensors" not in pilot.text()
+        assert "Card 17" in pilot.text() and "Devices" not in pilot.text()
         pilot.type("v")
         await pilot.pause()
         assert "Last card" not in pilot.text()

@@ -65,11 +65,12 @@ class SensorsScreen(TangyScreen[None]):
     VERTICAL_BREAKPOINTS = LOW
     TITLE = "Sensors"
     HELP = (
-        "Every device of the robot, how it is in a word, and how old its newest data is. What "
-        "stands behind a device that is simulated comes from the game, and from no sensor. v, or "
-        "Enter on a camera, shows what it sees, and hides it again. Below that is the last card "
-        "as it was read: what could not be seen of it is hatched and never guessed. tab goes to "
-        "the picture, and + enlarges it. A camera that was unplugged is opened again by itself."
+        "Every device of the robot, how it is in a word, and how old its newest data is. What a "
+        "simulated device says comes from the game, and from no sensor. v, or Enter on a camera, "
+        "shows what it sees, and hides it again; nothing of it is kept. Below that is the last "
+        "card as it was read: what could not be seen of it is hatched, and never guessed. tab "
+        "goes to the picture, and + enlarges it. A camera that was unplugged is opened again by "
+        "itself."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("v", "picture", "Show what the camera sees, or hide it"),
@@ -107,7 +108,7 @@ class SensorsScreen(TangyScreen[None]):
         yield StatusLine(self._status())
         with Container(id="body"):
             with Container(id="left"):
-                yield panel(DeviceList("Sensors", DEVICES_HELP, id="devices"))
+                yield panel(DeviceList("Devices", DEVICES_HELP, id="devices"))
                 yield panel(Page(id="about"))
             with Container(id="right"):
                 yield panel(BlockPicture("Picture", PICTURE_HELP, id="picture"))
