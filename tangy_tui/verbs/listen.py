@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -22,6 +22,7 @@ from tangy_tui.verbs.common import (
     as_given,
     open_house,
     print_json,
+    print_line,
     say_notices,
 )
 
@@ -90,13 +91,17 @@ def _listen(
 ) -> None:
     from tangy_tui.learning.speech.listening import listen as hear
 
-    heard = hear(files, phrasebook, settings)
-    say_notices([told for told in map(_cut_off, dict.fromkeys(files)) if told])
+    def show(done: int, rows: Sequence[dict[str, Any]]) -> None:
+        for row in rows:
+            print_line(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
+
     if as_json:
+        with _progress() as progress:
+            heard = hear(files, phrasebook, settings, lambda done, _: progress(done, len(files)))
         print_json(heard)
-        return
-    for row in heard:
-        print(plain(f"{row['file']}: {row['heard']!r} -> {_meaning(row, names)}"))
+    else:
+        hear(files, phrasebook, settings, show)
+    say_notices([told for told in map(_cut_off, dict.fromkeys(files)) if told])
 
 
 def _cut_off(file: Path) -> str:

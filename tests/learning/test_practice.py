@@ -14,7 +14,7 @@ from tangy_profiles.person import Person
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
 from tangy_tui.learning.speech.labels import STOP, Label, Labels
-from tangy_tui.learning.speech.practice import Practice, practise, unnamed
+from tangy_tui.learning.speech.practice import Practice, practise
 from tangy_tui.learning.speech.recogniser import SpeechUnavailable
 from tangy_tui.learning.speech.report import practice_lines
 
@@ -144,6 +144,12 @@ class TestFolders:
     ) -> None:
         with pytest.raises(TangyError, match="there are no WAV files"):
             Labels(book).find(tmp_path)
+        write(tmp_path / "foo" / "1.wav")
+        with pytest.raises(TangyError, match=r"its one recording, foo/1.wav, is not named by what"):
+            Labels(book).find(tmp_path)
+        write(tmp_path / "foo" / "2.wav")
+        with pytest.raises(TangyError, match=r"none of its 2 recordings \(foo/1.wav, ...\) is"):
+            Labels(book).find(tmp_path)
         with pytest.raises(TangyError, match="there is no such folder"):
             Labels(book).find(tmp_path / "none")
         with pytest.raises(TangyError, match="is a file; give the folder in which it lies"):
@@ -169,7 +175,7 @@ class TestCounting:
 
     async def test_every_outcome_is_counted(self, book: Phrasebook, tmp_path: Path) -> None:
         document = (await heard(tmp_path, book, self.SAID)).document()
-        assert document["files"] == 13
+        assert document["files"] == 12
         assert document["intents"]["call number"] == {
             "said": 4, "right": 1, "offered": 0, "wrong": 2, "nothing": 1
         }  # fmt: skip
@@ -178,13 +184,13 @@ class TestCounting:
         assert document["intents"]["navigate to user"]["right"] == 1
         assert document["accuracy"] == round(5 / 9, 4)
         assert document["wrong"] == round(3 / 9, 4)
-        assert document["false_accepts"] == {"sure": 3, "offered": 0, "of": 4}
+        assert document["false_accepts"] == {"sure": 2, "offered": 0, "of": 3}
         assert document["confusion"]["call number"] == {
             "call number": 1, "joke": 1, "nothing": 1, "stop": 1
         }  # fmt: skip
-        assert document["confusion"]["no command"] == {"joke": 2, "nothing": 1, "stop": 1}
-        assert sum(sum(row.values()) for row in document["confusion"].values()) == 13
-        assert len(document["rows"]) == 13
+        assert document["confusion"]["no command"] == {"joke": 1, "nothing": 1, "stop": 1}
+        assert sum(sum(row.values()) for row in document["confusion"].values()) == 12
+        assert len(document["rows"]) == 12
 
     async def test_an_unsure_one_is_offered_or_wrong(
         self, book: Phrasebook, tmp_path: Path
@@ -220,10 +226,22 @@ class TestCounting:
         assert practice.document()["cut_off"] == ["joke-2.wav"]
         assert practice_lines(practice)[-1] == "  joke-2.wav"
 
-    async def test_a_misspelt_name_is_seen(self, book: Phrasebook, tmp_path: Path) -> None:
-        practice = await heard(tmp_path, book, self.SAID)
-        assert unnamed(practice.rows) == ["jke.wav"]
-        assert "  jke.wav" in practice_lines(practice)
+    async def test_what_is_named_wrongly_is_left_out_of_all_figures_and_counted(
+        self, book: Phrasebook, tmp_path: Path
+    ) -> None:
+        said = {"foo/1.wav": "tell a joke", "foo/2.wav": "stop", "jkoe/1.wav": "tell a joke"}
+        practice = await heard(tmp_path, book, {**said, "joke.wav": "tell a joke"})
+        document = practice.document()
+        assert (document["files"], document["accuracy"]) == (1, 1.0)
+        assert document["false_accepts"] == {"sure": 0, "offered": 0, "of": 0}
+        assert document["unnamed"] == ["foo/1.wav", "foo/2.wav", "jkoe/1.wav"]
+        lines = practice_lines(practice)
+        assert lines[0] == "1 recording: 1 of a command, 0 of none."
+        assert not any("no command" in line.casefold() for line in lines)
+        told = "3 recordings were left out: their names are no intent, and not none:"
+        assert lines[lines.index(told) + 1 :] == [f"  {name}" for name in said]
+        one = practice_lines(await heard(tmp_path / "set", book, self.SAID))
+        assert "1 recording was left out: its name is no intent, and not none:" in one
 
     async def test_only_sounds_that_are_no_command_have_no_accuracy(
         self, book: Phrasebook, tmp_path: Path

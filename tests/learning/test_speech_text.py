@@ -16,6 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_hw.sound.wav import read_wav
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
@@ -477,6 +478,26 @@ class TestListening:
         json.dumps(rows)
         assert FakeRecogniser.made[0].closed
 
+    def test_files_are_read_one_by_one_and_each_is_told_when_it_was_heard(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        happened: list[str] = []
+
+        def noted(file: Path) -> bytes:
+            happened.append(f"read {file.stem}")
+            return read_wav(file)
+
+        monkeypatch.setattr(listening, "read_wav", noted)
+        files = [tmp_path / f"{letter}.wav" for letter in "cj"]
+        for file in files:
+            file.write_bytes(wav(sound(file.stem)))
+        listening.listen(
+            files,
+            BOOK,
+            tell=lambda done, rows: happened.append(f"{done}: {rows[0]['behaviour']}"),
+        )
+        assert happened == ["read c", "1: call number", "read j", "2: joke"]
+
     def test_a_file_that_is_no_command_is_cut_at_its_pauses(self, tmp_path: Path) -> None:
         file = tmp_path / "two.wav"
         file.write_bytes(wav(sound("c") + sound(" ", 1) + sound("j")))
@@ -497,7 +518,9 @@ class TestListening:
         self, tmp_path: Path
     ) -> None:
         (tmp_path / "text.wav").write_text("hello")
+        good = tmp_path / "c.wav"
+        good.write_bytes(wav(sound("c")))
         for name in ("none.wav", "text.wav"):
             with pytest.raises(TangyError, match=name):
-                listening.listen([tmp_path / name], BOOK)
+                listening.listen([good, tmp_path / name], BOOK)
         assert FakeRecogniser.made == []

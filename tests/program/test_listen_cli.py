@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from subprocess import CompletedProcess
+from typing import Any
 
 import pytest
 
@@ -25,6 +27,7 @@ from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
 
 Tangy = Callable[..., CompletedProcess[str]]
+Tell = Callable[[int, list[dict[str, Any]]], None]
 
 
 @pytest.mark.parametrize(
@@ -90,7 +93,21 @@ def test_lines_say_the_tier_and_the_choices(
             ("d\x1b.wav", "stop", []),
         )
     ]
-    monkeypatch.setattr(listening, "listen", lambda files, book, settings: rows)
+    printed: list[str] = []
+
+    def hear(files: object, book: object, settings: object, tell: Tell) -> list[dict[str, Any]]:
+        for done, row in enumerate(rows, 1):
+            tell(done, [row])
+            assert len(printed) == done, "each is printed as soon as it was heard"
+        return rows
+
+    def line(text: str) -> None:
+        printed.append(text)
+        print(text)
+
+    monkeypatch.setattr("tangy_tui.verbs.listen.print_line", line)
+
+    monkeypatch.setattr(listening, "listen", hear)
     tangy("people", "rename", "user2", "Rosa", "--data", tmp_path / "data")
     done = tangy("listen", "a.wav", "--data", tmp_path / "data")
     assert done.returncode == 0, done.stderr
@@ -102,10 +119,31 @@ def test_lines_say_the_tier_and_the_choices(
     ]
 
 
+def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
+    tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[tuple[int, int]] = []
+
+    @contextmanager
+    def progress() -> Iterator[Callable[[int, int], None]]:
+        yield lambda done, of: seen.append((done, of))
+
+    def hear(files: list[Path], book: object, settings: object, tell: Tell) -> list[object]:
+        for done, _ in enumerate(files, 1):
+            tell(done, [])
+        return []
+
+    monkeypatch.setattr(listening, "listen", hear)
+    monkeypatch.setattr("tangy_tui.verbs.listen._progress", progress)
+    done = tangy("listen", "a.wav", "b.wav", "--json", "--data", tmp_path / "data")
+    assert json.loads(done.stdout) == []
+    assert seen == [(1, 2), (2, 2)]
+
+
 def test_a_file_that_ends_early_is_heard_and_told_of(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(listening, "listen", lambda files, book, settings: [])
+    monkeypatch.setattr(listening, "listen", lambda files, book, settings, tell: [])
     whole, cut = tmp_path / "whole.wav", tmp_path / "cut.wav"
     whole.write_bytes(wav(pcm(tone(1.0))))
     cut.write_bytes(wav(pcm(tone(1.0)))[:-16_000])
@@ -117,7 +155,7 @@ def test_a_file_that_ends_early_is_heard_and_told_of(
 def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usual_ones(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(listening, "listen", lambda files, book, settings: [])
+    monkeypatch.setattr(listening, "listen", lambda files, book, settings, tell: [])
     folder = tmp_path / "two words"
     told = tangy("listen", "a.wav", "--mic", "arecord", "--data", folder).stderr
     assert told.count("\n") == 1

@@ -33,7 +33,7 @@ _TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
 class Label:
     """What was said: a behaviour (or STOP), and the person it names; None: no command.
 
-    `named` is False if nobody can tell from the name, which then counts as no command.
+    `named` is False if nobody can tell from the name; such a recording proves nothing.
     """
 
     behaviour: str | None
@@ -51,11 +51,15 @@ NOBODY_KNOWS = Label(None, named=False)
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """The recordings below a folder, each with what was said, and what was left out, and why."""
+    """The recordings below a folder, each with what was said, and what was left out, and why.
+
+    `unnamed` are those whose names do not tell what was said: they are left out as well.
+    """
 
     folder: Path
     recordings: tuple[tuple[Path, Label], ...]
     left_out: tuple[tuple[Path, str], ...]
+    unnamed: tuple[Path, ...] = ()
 
 
 class Labels:
@@ -98,7 +102,7 @@ class Labels:
         """Find the recordings below a folder, without following symbolic links.
 
         Raises:
-            TangyError: it is not a folder, or there are no recordings in it.
+            TangyError: it is not a folder, or there are no recordings in it that are named.
         """
         shown = plain(str(folder))
         if not folder.is_dir():
@@ -110,19 +114,32 @@ class Labels:
         top = folder.absolute()
         found: list[tuple[Path, Label]] = []
         left_out: list[tuple[Path, str]] = []
+        unnamed: list[Path] = []
         for file, why in _files(top):
             label = NOBODY_KNOWS if why else self.of(file, top)
             if why:
                 left_out.append((file.relative_to(top), why))
+            elif not label.named:
+                unnamed.append(file.relative_to(top))
             else:
                 found.append((file.relative_to(top), label))
+        if unnamed and not found:
+            which = f"none of its {len(unnamed)} recordings ({unnamed[0]}, ...) is"
+            if len(unnamed) == 1:
+                which = f"its one recording, {unnamed[0]}, is not"
+            raise TangyError(
+                plain(
+                    f"{shown}: {which} named by what is said in it, "
+                )
+                + "as call_number-1.wav is, and call number/1.wav (none/1.wav: no command)."
+            )
         if not found:
             why = f" ({left_out[0][0]} {left_out[0][1]})" if left_out else ""
             raise TangyError(
                 plain(f"{shown}: there are no WAV files in it{why}; name each by what is said, ")
                 + "as in call_number-1.wav, or put it into a folder of that name."
             )
-        return Found(top, tuple(found), tuple(left_out))
+        return Found(top, tuple(found), tuple(left_out), tuple(unnamed))
 
     def _of_folder(self, folder: Path, *, below: bool) -> Label | None:
         """Return what a folder's name says; of the first one just an intent, not "speech"."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tangy_hw.sound.wav import read_wav
+from tangy_hw.sound.wav import HEADER, read_header, read_wav
+from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Settings
@@ -16,42 +17,68 @@ from tangy_tui.learning.speech.recogniser import Recogniser
 from tangy_tui.learning.speech.understanding import understand, wanted
 from tangy_tui.learning.verifying import Say, Stop
 
+Row = dict[str, Any]
+
 
 def listen(
-    files: Sequence[Path], phrasebook: Phrasebook, settings: Settings = USUAL
-) -> list[dict[str, Any]]:
+    files: Sequence[Path],
+    phrasebook: Phrasebook,
+    settings: Settings = USUAL,
+    tell: Callable[[int, Sequence[Row]], None] = lambda done, rows: None,
+) -> list[Row]:
     """Decode WAV files: one row for each command in them, in order.
 
     A row has file, heard, tier (sure, unsure, nothing, stop), behaviour (only of a sure one),
     arguments, confidence, and choices, which may be meant, the likeliest first. A file is heard as
     one command; if it is none for sure, or too long, and has pauses, what is between them.
 
+    Args:
+        files: are looked at first, and then read one by one.
+        phrasebook: what can be said.
+        settings: how it is listened.
+        tell: is called after each file with how many are done, and the rows of this one.
+
     Raises:
         SoundError: a file is missing or cannot be read as sound; it is named.
         SpeechUnavailable: the worker cannot run here.
     """
-    sounds = [(file, read_wav(file)) for file in files]
-    return asyncio.run(_listen(sounds, phrasebook, settings)) if sounds else []
+    for file in files:
+        _look_at(file)
+    return asyncio.run(_listen(files, phrasebook, settings, tell)) if files else []
+
+
+def _look_at(file: Path) -> None:
+    """Refuse what is no WAV file, before any other one has been listened to."""
+    if not file.is_file() or not os.access(file, os.R_OK):
+        read_wav(file)  # which says what is wrong
+    with file.open("rb") as opened:
+        read_header(opened.read(HEADER), plain(str(file)))
 
 
 async def _listen(
-    sounds: Sequence[tuple[Path, bytes]], phrasebook: Phrasebook, settings: Settings
-) -> list[dict[str, Any]]:
+    files: Sequence[Path],
+    phrasebook: Phrasebook,
+    settings: Settings,
+    tell: Callable[[int, Sequence[Row]], None],
+) -> list[Row]:
     recogniser = Recogniser()
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     try:
         lexicon = Lexicon(phrasebook, suggest=lambda word: "")
         await recogniser.start(wanted(phrasebook, settings, lexicon.heard()))
-        for file, pcm in sounds:
-            whole = understand(await recogniser.decode(pcm), phrasebook, settings)
-            settled = tier_of(whole) in ("sure", "stop") and len(pcm) <= 2 * RATE * LONGEST
+        for done, file in enumerate(files, 1):
+            pcm = read_wav(file)
+            said = understand(await recogniser.decode(pcm), phrasebook, settings)
+            settled = tier_of(said) in ("sure", "stop") and len(pcm) <= 2 * RATE * LONGEST
             pieces = [] if settled else await recogniser.pieces(pcm)
-            if len(pieces) < 2:
-                rows.append(_row(file, whole))
-                continue
-            for piece in pieces:
-                said = understand(await recogniser.decode(piece), phrasebook, settings)
-                rows.append(_row(file, said))
+            found = [_row(file, said)]
+            if len(pieces) > 1:
+                found = [
+                    _row(file, understand(await recogniser.decode(piece), phrasebook, settings))
+                    for piece in pieces
+                ]
+            rows += found
+            tell(done, found)
     finally:
         await recogniser.close()
     return rows
@@ -64,7 +91,7 @@ def tier_of(said: Say | Stop) -> str:
     return "nothing" if not said.commands else "sure" if said.sure else "unsure"
 
 
-def _row(file: Path, said: Say | Stop) -> dict[str, Any]:
+def _row(file: Path, said: Say | Stop) -> Row:
     tier = tier_of(said)
     commands = said.commands or () if isinstance(said, Say) else ()
     first = commands[0] if tier == "sure" else None

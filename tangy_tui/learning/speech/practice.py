@@ -64,7 +64,7 @@ class Row:
     def to_json(self) -> dict[str, Any]:
         """Write it for a document."""
         choices = [{"behaviour": c.behaviour, "user": c.user} for c in self.choices]
-        said = {"said": self.said.behaviour, "user": self.said.user, "named": self.said.named}
+        said = {"said": self.said.behaviour, "user": self.said.user}
         return {**asdict(self), **said, "choices": choices, "latency": round(self.latency, 4)}
 
 
@@ -73,6 +73,7 @@ class Practice:
     """All recordings of a folder, heard with the same settings; `cpu` in s, where it is known.
 
     `cut_off` are those that end before they say they do: what there is of them was heard.
+    `unnamed` were not heard, because their names do not tell what is said in them.
     """
 
     settings: Settings
@@ -80,6 +81,7 @@ class Practice:
     left_out: tuple[tuple[str, str], ...]
     cpu: float | None
     cut_off: tuple[str, ...] = ()
+    unnamed: tuple[str, ...] = ()
 
     @property
     def commands(self) -> list[Row]:
@@ -142,6 +144,7 @@ class Practice:
             "cpu_seconds": None if self.cpu is None else round(self.cpu, 2),
             "confusion": {said: dict(counts) for said, counts in self.confusion().items()},
             "left_out": [{"file": file, "why": why} for file, why in self.left_out],
+            "unnamed": list(self.unnamed),
             "cut_off": list(self.cut_off),
             "rows": [row.to_json() for row in self.rows],
         }
@@ -191,7 +194,8 @@ async def practise(
         tell(done, len(found.recordings))
     ended = cpu_seconds(recogniser.pid)
     cpu = None if began is None or ended is None or ended < began else ended - began
-    return Practice(settings, tuple(rows), tuple(left_out), cpu, tuple(cut_off))
+    unnamed = tuple(map(os.fspath, found.unnamed))
+    return Practice(settings, tuple(rows), tuple(left_out), cpu, tuple(cut_off), unnamed)
 
 
 def judged(file: Path, label: Label, said: Say | Stop, seconds: float, latency: float) -> Row:
@@ -247,8 +251,3 @@ def _reason(error: SoundError, file: Path) -> str:
 
 def _rounded(share: float | None) -> float | None:
     return None if share is None else round(share, 4)
-
-
-def unnamed(rows: Sequence[Row]) -> list[str]:
-    """Return the recordings whose names tell nothing, which count as no command."""
-    return [row.file for row in rows if not row.said.named]

@@ -7,7 +7,7 @@ from itertools import product
 from string import ascii_lowercase
 
 from tangy_profiles.reading import plain
-from tangy_tui.learning.speech.practice import NOTHING, OUTCOMES, Practice, unnamed
+from tangy_tui.learning.speech.practice import NOTHING, OUTCOMES, Practice
 
 MOST_LISTED = 12  # files
 NAME = 32  # columns
@@ -96,11 +96,15 @@ def _keys(number: int) -> list[str]:
 
 
 def _left_out(practice: Practice) -> Iterator[str]:
-    nameless = unnamed(practice.rows)
-    if nameless:
+    if practice.unnamed:
+        count = len(practice.unnamed)
         yield ""
-        yield "These names are no intent, so they count as no command:"
-        yield from _some(nameless)
+        yield (
+            "1 recording was left out: its name is no intent, and not none:"
+            if count == 1
+            else f"{count} recordings were left out: their names are no intent, and not none:"
+        )
+        yield from _some(practice.unnamed)
     if practice.cut_off:
         yield ""
         yield "These end before they say they do; what is there was heard:"
