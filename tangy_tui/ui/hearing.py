@@ -35,7 +35,7 @@ STOP = "stop"
 ANSWERS = "yes, no or stop"
 
 COLOURS = {"warn": "$warning", "bad": "$error"}
-"""Of sentences in a question, by their kind; of others it is that of what is less important."""
+"""Of sentences in a question, by their kind; others stand in the usual one."""
 
 
 class Listener(Protocol):
@@ -168,7 +168,7 @@ class Hearing:
     def tell(self, sentence: str, kind: Kind = "dim") -> None:
         """Show a sentence about hearing; where a question lies over the screen, in both."""
         if (question := self._question) is not None:
-            question.tell(sentence, COLOURS.get(kind, "$ink-dim"))
+            question.tell(sentence, COLOURS.get(kind, "$foreground"))
         if self._listeners:
             self._listeners[-1].told(sentence, kind)
         elif self._app.is_running and question is None:

@@ -121,7 +121,7 @@ class VerifyingDialog(Dialog[Answer]):
         self.answer(NO)
         return ""
 
-    def tell(self, sentence: str, colour: str = "$ink-dim") -> None:
+    def tell(self, sentence: str, colour: str = "$foreground") -> None:
         """Show a sentence about hearing at the foot, in place of the last one; "" shows none.
 
         The log behind the dialog may be hidden by it.
