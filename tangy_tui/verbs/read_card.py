@@ -116,7 +116,7 @@ def _readings(
     refused = 0
     for path in files:
         try:
-            picture = read_picture(path)
+            picture = read_picture(path, colours=True)
         except PictureError as error:
             print(f"tangy: {error}", file=sys.stderr)
             refused += 1

@@ -62,18 +62,44 @@ def test_what_can_be_read_is_read_beside_what_cannot(tangy: Tangy, tmp_path: Pat
     assert [row["card"] for row in json.loads(done.stdout)] == [42]
 
 
-@pytest.mark.parametrize("kind", ["L", "1", "P", "LA", "RGBA", "I;16", "CMYK"])
-def test_a_card_is_read_from_a_picture_of_any_kind(kind: str, tangy: Tangy, tmp_path: Path) -> None:
+@pytest.fixture
+def card(tangy: Tangy, tmp_path: Path) -> Image.Image:
+    """The printed card 42."""
     tangy("cards", "print", "--first", 42, "--count", 1, "--png", tmp_path, "--dpi", 60)
-    picture = Image.open(tmp_path / "card-042.png")
+    return Image.open(tmp_path / "card-042.png")
+
+
+@pytest.mark.parametrize(
+    ("kind", "file", "says"),
+    [
+        ("L", "a.png", "is grey"),
+        ("1", "a.png", "is grey"),
+        ("I;16", "a.png", "is grey"),
+        ("LA", "a.png", "has transparent parts"),
+        ("RGBA", "a.png", "has transparent parts"),
+        ("RGB", "a.jpg", "is PNG inside; name it .png"),
+    ],
+)
+def test_what_no_camera_took_so_is_refused_where_colours_count(
+    kind: str, file: str, says: str, card: Image.Image, tangy: Tangy, tmp_path: Path
+) -> None:
+    path = tmp_path / file
     if kind == "I;16":
-        deep = np.asarray(picture.convert("L")).astype(np.uint16) * 257
-        changed = Image.fromarray(deep)
+        Image.fromarray(np.asarray(card.convert("L")).astype(np.uint16) * 257).save(path, "PNG")
     else:
-        changed = picture.convert(kind)
-    path = tmp_path / "other.jpg"  # whatever it is named
-    changed.save(path, "TIFF" if kind == "CMYK" else "PNG")
+        card.convert(kind).save(path, "PNG")
     done = tangy("read-card", path, "--json")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert f"{path}: {says}" in done.stderr
+    assert read_picture(path).shape == (card.height, card.width, 3)  # faces are as good in grey
+
+
+@pytest.mark.parametrize(("kind", "file"), [("P", "a.png"), ("RGB", "a.jpeg"), ("CMYK", "a.tiff")])
+def test_a_card_is_read_from_colours_of_any_kind(
+    kind: str, file: str, card: Image.Image, tangy: Tangy, tmp_path: Path
+) -> None:
+    card.convert(kind).save(tmp_path / file)
+    done = tangy("read-card", tmp_path / file, "--json")
     assert done.returncode == 0, done.stderr
     [row] = json.loads(done.stdout)
     assert [*row] == ["file", "card", "marked", "hidden", "confidence", "cells"]

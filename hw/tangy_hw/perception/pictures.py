@@ -18,21 +18,31 @@ if TYPE_CHECKING:
 
 SMALLEST = 60  # pixels to a side
 LARGEST = 50_000_000  # pixels
-KINDS = ("PNG", "JPEG", "MPO", "WEBP", "BMP", "TIFF", "PPM")  # MPO: some telephones write it
+ENDINGS = {
+    "PNG": (".png",),
+    "JPEG": (".jpg", ".jpeg", ".jpe", ".jfif"),
+    "MPO": (".jpg", ".jpeg", ".mpo"),  # as some telephones write them
+    "WEBP": (".webp",),
+    "BMP": (".bmp", ".dib"),
+    "TIFF": (".tif", ".tiff"),
+    "PPM": (".ppm", ".pnm"),
+}
 
 
 class PictureError(TangyError):
     """A file gives no picture that can be used; one sentence that names it."""
 
 
-def read_picture(path: Path) -> Picture:
+def read_picture(path: Path, *, colours: bool = False) -> Picture:
     """Read a picture file as colour (blue, green, red), turned the way it was taken.
 
     A grey picture has three colours that are the same; white is behind transparent parts; what
-    the file is named does not matter.
+    the file is named does not matter. Where colours count (`colours`), all three are refused: they
+    are signs of a picture that something was done to, and a guess would look like a reading.
 
     Raises:
-        PictureError: it is missing, no picture, broken off, too small or too large.
+        PictureError: it is missing, no picture, broken off, too small or too large, or has no
+            colours where they count.
     """
     import numpy as np
     from PIL import Image, ImageOps, UnidentifiedImageError
@@ -45,6 +55,8 @@ def read_picture(path: Path) -> Picture:
             warnings.simplefilter("ignore")  # of its size, which is asked about here
             with Image.open(path) as file:
                 _check(file.format or "", file.size, name)
+                if colours:
+                    _check_colours(file, path)
                 file.load()
                 turned = _coloured(ImageOps.exif_transpose(file))
     except (UnidentifiedImageError, Image.DecompressionBombError) as error:
@@ -68,12 +80,23 @@ def _too_large(name: str) -> str:
 
 def _check(kind: str, size: tuple[int, int], name: str) -> None:
     """Refuse what is of no use before its pixels are unpacked."""
-    if kind not in KINDS:
+    if kind not in ENDINGS:
         raise PictureError(f"{name}: is not a picture (PNG, JPEG, WebP, BMP or TIFF).")
     if min(size) < SMALLEST:
         raise PictureError(f"{name}: is only {size[0]} x {size[1]} pixels: too small to see in.")
     if size[0] * size[1] > LARGEST:
         raise PictureError(_too_large(name))
+
+
+def _check_colours(picture: Image, path: Path) -> None:
+    """Refuse a picture that cannot be as a camera took it."""
+    name, kind = plain(str(path)), picture.format or ""
+    if path.suffix.lower() not in ENDINGS[kind]:
+        raise PictureError(f"{name}: is {kind} inside; name it {ENDINGS[kind][0]}.")
+    if picture.mode.lower().endswith("a") or "transparency" in picture.info:
+        raise PictureError(f"{name}: has transparent parts; save it without them.")
+    if picture.mode in ("1", "L") or picture.mode[0] in "IF":
+        raise PictureError(f"{name}: is grey; colours are needed to see it as Tangy does.")
 
 
 def _coloured(picture: Image) -> Image:
