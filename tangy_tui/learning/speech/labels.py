@@ -128,9 +128,7 @@ class Labels:
             if len(unnamed) == 1:
                 which = f"its one recording, {unnamed[0]}, is not"
             raise TangyError(
-                plain(
-                    f"{shown}: {which} named by what is said in it, "
-                )
+                plain(f"{shown}: {which} named by what is said in it, ")
                 + "as call_number-1.wav is, and call number/1.wav (none/1.wav: no command)."
             )
         if not found:
