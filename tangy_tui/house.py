@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from random import Random
@@ -59,6 +60,7 @@ class House:
         activity: str = "bingo",
         users: int = 4,
         write: bool = True,
+        robot: str = "tangy",
         now: Callable[[], datetime] | None = None,
     ) -> None:
         """Read the profiles and open the store, whose clock is `now` (default: the machine's).
@@ -70,7 +72,7 @@ class House:
         self.profile = activity
         """The activity as it was asked for: a name, or the path of a file."""
         self.activity: Activity = load_activity(activity)
-        self.robot: Robot = load_robot()
+        self.robot: Robot = load_robot(robot)
         self.robot.check(self.activity)
         self.room: Room = load_room()
         self._sample = load_people(users)
@@ -123,7 +125,8 @@ class House:
         Lines that were spoken with the old one are forgotten.
 
         Raises:
-            TangyError: the name is somebody else's name or id, or a place.
+            TangyError: the name is somebody else's name or id, or a place, or means something
+                else where it is said.
         """
         wanted = name.strip().casefold()
         taken = {FRONT: "is a place"}
@@ -134,6 +137,9 @@ class House:
                 )
         if wanted in taken:
             raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
+        from tangy_tui.learning.clashes import check_new_name
+
+        check_new_name(self.activity, self.people, replace(person, name=name.strip()))
         old = self.name(person.id)
         self.store.rename(person.id, name)
         self.read_people()
@@ -144,12 +150,24 @@ class House:
         """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
 
         Raises:
-            ProfileError: a phone is none, or there are not as many words as in the name.
+            TangyError: a phone is none, there are not as many words as in the name, or it sounds
+                like somebody else's, or like a phrase.
         """
+        self.store.pronounce(person.id, phones and self.check_said(person, phones))
+        self.read_people()
+
+    def check_said(self, person: Person, phones: str) -> str:
+        """Return the phones of a person's name as they are written down.
+
+        Raises:
+            TangyError: as for `pronounce`.
+        """
+        from tangy_tui.learning.clashes import check_said
         from tangy_tui.learning.pronouncing import check_name
 
-        self.store.pronounce(person.id, phones and check_name(phones, person.name))
-        self.read_people()
+        checked = check_name(phones, person.name)
+        check_said(self.activity, self.people, person, checked)
+        return checked
 
     def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
         """Note how a person likes to be spoken to."""

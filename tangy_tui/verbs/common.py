@@ -28,11 +28,11 @@ Games = Annotated[int, typer.Option(min=1, help="How many games.")]
 
 @contextmanager
 def open_house(
-    data: Path | None, activity: str, users: int, *, write: bool = True
+    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = "tangy"
 ) -> Iterator[House]:
     from tangy_tui.house import House, data_folder
 
-    house = House(data_folder(data), activity=activity, users=users, write=write)
+    house = House(data_folder(data), activity=activity, users=users, write=write, robot=robot)
     try:
         say_notices(house.store.notices)
         yield house

@@ -31,7 +31,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
-from tangy_tui.verbs.sensors import Cameras
+from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -68,6 +68,7 @@ def play(
     mode: Mode = None,
     voice: WithVoice = False,
     camera: Cameras = None,
+    robot: RobotName = "tangy",
     speed: Annotated[
         float | None,
         typer.Option(
@@ -105,7 +106,7 @@ def play(
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
-    with open_house(data, activity, users) as house:
+    with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         if screen:
             from tangy_hw.sensors import sensors_of

@@ -35,9 +35,14 @@ Cameras = Annotated[
     ),
 ]
 
+RobotName = Annotated[
+    str, typer.Option("--robot", help="A robot, or its TOML, which may name sources of cameras.")
+]
+
 
 def sensors(
     camera: Cameras = None,
+    robot: RobotName = "tangy",
     seconds: Annotated[
         float, typer.Option(min=0.1, help="How long they are looked at, without a screen.")
     ] = 3.0,
@@ -56,7 +61,7 @@ def sensors(
     from tangy_hw.sensors import sensors_of
 
     screen = full_screen() and not (plain_lines or as_json)
-    with open_house(data, activity, 4, write=False) as house:
+    with open_house(data, activity, 4, write=False, robot=robot) as house:
         deck, folder = house.activity.deck, house.store.folder
         opened = sensors_of(house.robot, deck, folder, camera or (), deck_seed=deck_seed)
         if screen:

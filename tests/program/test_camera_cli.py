@@ -16,6 +16,7 @@ from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_devices import list_cameras
 from tangy_hw.drivers.camera_source import CameraError, find_camera
 from tangy_hw.drivers.capturing import capture
+from tangy_profiles.robot import load_robot
 from tests.hw.pictures import Image, room, seen
 from tests.real.camera_server import CameraServer
 
@@ -184,3 +185,17 @@ class TestSensors:
     ) -> None:
         done = tangy("sensors", "--camera", source)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+
+    def test_a_robot_of_ones_own_says_where_its_pictures_come_from(
+        self, tangy: Tangy, folder: Path, tmp_path: Path
+    ) -> None:
+        shipped = load_robot().file.read_text(encoding="utf-8")
+        mine = tmp_path / "mine.toml"
+        mine.write_text(shipped.replace('# source = "/dev/video0"', f'source = "{folder.name}"'))
+        done = tangy("sensors", "--robot", mine, "--seconds", 1, "--json")
+        devices = {device["device"]: device for device in json.loads(done.stdout)["devices"]}
+        assert devices["camera"]["source"] == str(folder)
+        mine.write_text(shipped.replace('# source = "/dev/video0"', 'source = "nowhere"'))
+        done = tangy("sensors", "--robot", mine)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith("tangy: mine.toml: devices[camera].source = 'nowhere': ")
