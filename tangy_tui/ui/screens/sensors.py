@@ -244,7 +244,7 @@ class SensorsScreen(TangyScreen[None]):
         if not self._cameras:
             picture.say(NO_SOURCE)
         elif not told.live:
-            picture.say(f"{told.device.label} gives no pictures here.".capitalize())
+            picture.say(f"No pictures come from the {told.device.label}.")
         elif not self._seen:
             picture.say(f"v shows what the {told.device.label} sees.")
         elif picture.there:
