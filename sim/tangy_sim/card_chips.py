@@ -88,6 +88,26 @@ def some_chip(random: np.random.Generator) -> Chip:
     )
 
 
+def faint_chip(random: np.random.Generator) -> Chip:
+    """Draw a kind of chip that is hard to see: half of the light and more goes through, or pale."""
+    chance, uniform = random.random, random.uniform
+    hue = float(random.choice([*HUES.values(), 180]))
+    tone = tone_of(hue + random.normal(0, 8), uniform(0.15, 1.0), uniform(0.5, 1.0))
+    pale = chance() < 0.25
+    if pale:
+        tone = tone_of(hue, uniform(0.0, 0.12), uniform(0.9, 1.0))
+    thin = chance() < 0.5
+    return replace(
+        some_chip(random),
+        tone=tone,
+        clear=0.0 if pale and chance() < 0.7 else float(uniform(0.4, 0.72)),
+        thick=0.05 if thin else float(uniform(0.4, 2.5)),
+        rim=0.0 if thin and not pale else float(uniform(-0.25, 0.1)),
+        outline=float(uniform(0.1, 0.5)) if pale and thin else 0.0,
+        washed=bool(chance() < 0.75),
+    )
+
+
 def put_chip(
     table: Real,
     seen: Real,

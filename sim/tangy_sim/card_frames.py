@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.card_face import HEIGHT, LAST_CARD, USUAL_SEED, WIDTH, Face
 from tangy_profiles.card_picture import draw_face
 from tangy_profiles.cards import Deck
-from tangy_sim.card_chips import Chip, put_chip, some_chip
+from tangy_sim.card_chips import Chip, faint_chip, put_chip, some_chip
 from tangy_sim.card_hands import draw_hand
 from tangy_sim.card_light import exposed, lit_scene, moved, project
 from tangy_sim.card_things import background
@@ -120,10 +120,15 @@ class CardCamera:
         deck_seed: int = USUAL_SEED,
         title: str = "",
         straddling: float = 0.06,
+        faint: float = 0.0,
     ) -> None:
-        """Set up; `straddling` is the chance of a chip to lie carelessly on its cell."""
+        """Set up; `straddling` is the chance of a chip to lie carelessly on its cell.
+
+        `faint` is the chance that the chips of a card are of a kind that is hard to see.
+        """
         self.face = Face(deck)
         self.straddling = straddling
+        self.faint = faint
         self.deck_seed = deck_seed
         self.title = title
 
@@ -147,7 +152,8 @@ class CardCamera:
     def chips(self, random: np.random.Generator, marked: int) -> dict[int, Chip]:
         """Put chips of one kind on cells, the way hands do: none lies on another."""
         deck = self.face.deck
-        kind = some_chip(random)
+        faint = self.faint > 0 and random.random() < self.faint
+        kind = faint_chip(random) if faint else some_chip(random)
         chips: dict[int, Chip] = {}
         for cell in range(deck.rows * len(deck.columns)):
             if not marked >> cell & 1:
