@@ -55,6 +55,8 @@ class Lexicon:
     """Of every word that can be said or typed, how it is said."""
     alike: tuple[Alike, ...]
     """Phrases that cannot be told from others by their sound; the others can be heard."""
+    phrases: tuple[Phrase, ...]
+    """Those that are listened for, if they can be heard."""
 
     def __init__(
         self,
@@ -64,7 +66,7 @@ class Lexicon:
         suggest: Callable[[str], str] = suggest,
     ) -> None:
         """Look up every word; `suggest` is asked about those that nobody has a pronunciation of."""
-        self._phrases = [p for p in phrasebook.table.all() if p.heard]
+        self.phrases = tuple(p for p in phrasebook.table.all() if p.heard)
         self._pronounce, self._suggest = pronounce, suggest
         self._table = phrasebook.table
         spoken = (word for p in phrasebook.table.all() for word in p.said.split())
@@ -74,14 +76,14 @@ class Lexicon:
     @property
     def unknown(self) -> tuple[Said, ...]:
         """The words of phrases that have no pronunciation, with what is suggested."""
-        words = dict.fromkeys(word for phrase in self._phrases for word in phrase.said.split())
+        words = dict.fromkeys(word for phrase in self.phrases for word in phrase.said.split())
         return tuple(self.words[word] for word in words if not self.words[word].heard)
 
     def heard(self) -> tuple[str, ...]:
         """Return the phrases that can be heard, as they are said."""
         out = {one.phrase.said for one in self.alike}
         return tuple(
-            dict.fromkeys(p.said for p in self._phrases if self._known(p) and p.said not in out)
+            dict.fromkeys(p.said for p in self.phrases if self._known(p) and p.said not in out)
         )
 
     def nearly_alike(self) -> tuple[Alike, ...]:
@@ -92,7 +94,7 @@ class Lexicon:
         out = {one.phrase.said for one in self.alike}
         first: dict[Words, list[Phrase]] = defaultdict(list)
         found: dict[tuple[str, str], Alike] = {}
-        for phrase in self._phrases:
+        for phrase in self.phrases:
             if phrase.said in out or not self._known(phrase):
                 continue
             forms = {form for way in self._ways(phrase) for form in _one_less(way.split())}
@@ -106,7 +108,7 @@ class Lexicon:
     def left_out(self) -> dict[str, str]:
         """Return the phrases that cannot be heard, only typed, each with the reason in words."""
         reasons = {one.phrase.said: f"sounds like {one.other.said!r}" for one in self.alike}
-        for phrase in self._phrases:
+        for phrase in self.phrases:
             lacks = [word for word in phrase.said.split() if not self.words[word].heard]
             if lacks:
                 reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
@@ -145,7 +147,7 @@ class Lexicon:
     def _find_alike(self) -> Iterator[Alike]:
         """Find phrases of different meanings that have the same phones, whatever their words."""
         first: dict[str, Phrase] = {}
-        for phrase in filter(self._known, self._phrases):
+        for phrase in filter(self._known, self.phrases):
             ways = set(self._ways(phrase))
             other = next((first[way] for way in ways if _differ(first.get(way), phrase)), None)
             if other is not None:

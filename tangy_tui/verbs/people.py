@@ -248,18 +248,27 @@ def people_rename(
     as_json: Json = False,
 ) -> None:
     """Give a person another name; what Tangy has learnt of them stays."""
+    from tangy_tui.learning.clashes import find_clash
     from tangy_tui.learning.naming import how_said, naming_lines
 
     with open_house(data, "bingo", users) as house:
         found = house.find_person(person)
         house.rename(found, name)
         named = house.find_person(found.id)
+        clash = find_clash(house.activity, house.people, named)
         if as_json:
-            print_json({"id": named.id, "name": name, **how_said(named).to_json()})
-        else:
-            print(f"{named.id} is now called {plain(name)}.")
-            for line in naming_lines(named, as_given(data, users)):
-                print(plain(line))
+            like = None if clash is None else clash.like
+            named_so = {"id": named.id, "name": name, **how_said(named).to_json()}
+            print_json({**named_so, "sounds_like": like})
+            return
+        print(f"{named.id} is now called {plain(name)}.")
+        options = as_given(data, users)
+        lines = naming_lines(named, options)
+        if clash is not None:
+            verb = f'tangy people pronounce {named.id}{options} "R OW Z AH"'
+            lines = [clash.sentence, f"Say it otherwise, or choose another name: {verb}"]
+        for line in lines:
+            print(plain(line))
 
 
 @contextmanager

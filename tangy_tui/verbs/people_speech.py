@@ -38,6 +38,7 @@ def people_pronounce(
     as_json: Json = False,
 ) -> None:
     """Say how a person's name is pronounced, so that it is heard when it is spoken."""
+    from tangy_tui.learning.clashes import find_clash
     from tangy_tui.learning.naming import accept_suggested, how_said
 
     changes = phones is not None or accept or forget
@@ -54,8 +55,11 @@ def people_pronounce(
         if as_json:
             print_json({"id": found.id, "name": found.name, **said.to_json()})
         else:
+            clash = find_clash(house.activity, house.people, found)
             print(plain(said.sentence))
-            if said.source == "suggested":
+            if clash is not None:
+                print(plain(clash.sentence))
+            elif said.source == "suggested":
                 verb = f"tangy people pronounce {found.id}{as_given(data, users)}"
                 print(plain(f"If that is right: {verb} --accept"))
     if hear:

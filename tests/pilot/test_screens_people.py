@@ -346,3 +346,22 @@ async def test_a_name_is_heard_and_its_pronunciation_noted(
         assert house.find_person("user1").pronunciation == "R OW S AH"
         assert house.store.pronunciations() == {"user1": "R OW S AH"}
         assert all("R OW S AH" not in str(event.body) for event in house.store.events())
+
+
+async def test_a_pronunciation_that_is_anothers_is_told_and_the_line_stays(
+    run: Run, house: House
+) -> None:
+    house.rename(house.find_person("user2"), "Ann")
+    async with run(PeopleScreen(house)) as pilot:
+        pilot.type("n")
+        await pilot.pause()
+        dialog = pilot.app.screen
+        assert isinstance(dialog, PronunciationDialog)
+        dialog.query_one(PhonesInput).value = "AE N"
+        await pilot.pause()
+        pilot.type("enter", at=1e9)
+        await pilot.pause()
+        assert pilot.app.screen is dialog
+        assert "sounds like Ann (user2)" in pilot.text()
+        assert dialog.query_one(PhonesInput).value == "AE N"
+        assert house.store.pronunciations() == {}

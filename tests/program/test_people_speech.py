@@ -124,6 +124,90 @@ class TestNames:
         assert (data / "tangy.db").read_bytes() == before
 
 
+class TestNamesThatSoundAlike:
+    def test_a_pronunciation_that_is_anothers_is_refused(self, tangy: Tangy, data: Path) -> None:
+        tangy("people", "rename", "user2", "Xanthippe", "--data", data)
+        tangy("people", "rename", "user4", "Xantippe", "--data", data)
+        accepted = tangy("people", "pronounce", "user4", "--accept", "--json", "--data", data)
+        phones = json.loads(accepted.stdout)["pronunciation"]
+        done = tangy("people", "pronounce", "user2", phones, "--data", data)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == (
+            f"tangy: Said {phones}, Xanthippe sounds like Xantippe (user4), and could not be told "
+            "from it: give another pronunciation, or another name.\n"
+        )
+        with Store.open(data, write=False) as store:
+            assert store.pronunciations() == {"user4": phones}
+        assert tangy("people", "pronounce", "user2", f"{phones} AH", "--data", data).returncode == 0
+
+    def test_a_pronunciation_that_is_a_phrase_is_refused(self, tangy: Tangy, data: Path) -> None:
+        done = tangy("people", "pronounce", "Rosa", "S T AA P", "--data", data)
+        assert done.returncode == 2
+        assert "Rosa sounds like 'stop'" in done.stderr
+
+    def test_a_new_name_that_sounds_like_anothers_is_taken_and_told_of(
+        self, tangy: Tangy, data: Path
+    ) -> None:
+        tangy("people", "rename", "user3", "Ann", "--data", data)
+        done = tangy("people", "rename", "user4", "Anne", "--data", data)
+        assert done.returncode == 0
+        told = done.stdout.splitlines()
+        assert told[:2] == [
+            "user4 is now called Anne.",
+            "Anne sounds like Ann (user3): Anne can be typed, but not heard.",
+        ]
+        assert f"tangy people pronounce user4 --data {data}" in told[2]
+        tangy("people", "rename", "user4", "Bob", "--data", data)
+        first = tangy("people", "rename", "user1", "Anne", "--data", data).stdout
+        assert "Anne sounds like Ann (user3): Ann can be typed, but not heard." in first
+        again = tangy("people", "rename", "user1", "Anne", "--json", "--data", data)
+        assert json.loads(again.stdout)["sounds_like"] == "Ann (user3)"
+
+    def test_what_is_suggested_for_a_name_is_not_offered_if_it_is_anothers(
+        self, tangy: Tangy, data: Path
+    ) -> None:
+        suggested = tangy("people", "rename", "user3", "Xanthippe", "--json", "--data", data)
+        phones = json.loads(suggested.stdout)["pronunciation"]
+        tangy("people", "rename", "user4", "Bob", "--data", data)
+        tangy("people", "pronounce", "user4", phones, "--data", data)
+        for done in (
+            tangy("people", "rename", "user3", "Xanthippe", "--data", data),
+            tangy("people", "pronounce", "user3", "--data", data),
+        ):
+            assert f"it may be said {phones}, and that sounds like Bob (user4)." in done.stdout
+            assert "--accept" not in done.stdout
+        refused = tangy("people", "pronounce", "user3", "--accept", "--data", data)
+        assert refused.returncode == 2
+
+    @pytest.mark.parametrize(
+        ("name", "why"),
+        [
+            ("Stop", "stops the robot"),
+            ("Stop now!", "stops the robot"),
+            ("Yes", "is an answer"),
+            ("No", "is an answer"),
+            ("Call Number", "is a command (call number)"),
+            ("the call number", "is a command (call number)"),
+            ("Xanthíppus Lee", "is what user2 is called"),
+            ("Seat 3", "is where user3 sits"),
+            ("User 2", "is another way to call user2"),
+        ],
+    )
+    def test_a_name_that_means_something_else_is_refused(
+        self, name: str, why: str, tangy: Tangy, data: Path
+    ) -> None:
+        done = tangy("people", "rename", "user1", name, "--data", data)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"tangy: {name!r} {why}")
+        assert done.stderr.endswith(": choose another name.\n")
+        with Store.open(data, write=False) as store:
+            assert store.names()["user1"] == "Rosa"
+
+    @pytest.mark.parametrize("name", ["Rosa", "User 1", "Noemi", "Joe King", "李雷", "Callum"])
+    def test_other_names_are_names(self, name: str, tangy: Tangy, data: Path) -> None:
+        assert tangy("people", "rename", "user1", name, "--data", data).returncode == 0
+
+
 class TestVoices:
     def test_rate_and_voice_are_chosen_one_by_one_and_taken_back(
         self, tangy: Tangy, data: Path, monkeypatch: pytest.MonkeyPatch

@@ -67,13 +67,26 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
     )
 
     def __init__(
-        self, person: Person, hear: Callable[[str], object], *, clock: Clock | None = None
+        self,
+        person: Person,
+        hear: Callable[[str], object],
+        check: Callable[[Person, str], object],
+        *,
+        clock: Clock | None = None,
     ) -> None:
-        """Make the dialog; `hear` has phones said aloud."""
+        """Make the dialog.
+
+        Args:
+            person: whose name it is.
+            hear: has phones said aloud.
+            check: raises a `TangyError` if the name cannot be told from another when said so.
+            clock: seconds, on the scale of `time.monotonic` (default: the app's).
+        """
         super().__init__(None)
         self._person = person
         self._said = how_said(person)
         self._hear = hear
+        self._check = check
         self._clock = clock
 
     def compose(self) -> ComposeResult:
@@ -104,7 +117,12 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         if not event.value.strip():
             self.answer(NewPronunciation(None))
         elif phones := self._checked():
-            self.answer(NewPronunciation(phones))
+            try:
+                self._check(self._person, phones)
+            except TangyError as error:
+                self._tell(str(error))
+            else:
+                self.answer(NewPronunciation(phones))
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Take back what was wrong before."""

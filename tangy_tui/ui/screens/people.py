@@ -165,7 +165,8 @@ class PeopleScreen(TangyScreen[None]):
             if new is not None:
                 self._do(lambda: self._house.pronounce(person, new.phones))
 
-        self.app.push_screen(PronunciationDialog(person, self._hear), take)
+        dialog = PronunciationDialog(person, self._hear, self._house.check_said)
+        self.app.push_screen(dialog, take)
 
     def _hear(self, phones: str) -> None:
         """Have phones said aloud beside the screen."""

@@ -153,7 +153,8 @@ class PhrasesScreen(TangyScreen[None]):
                     self._say(str(error), bad=True)
                 self.run_worker(self._read(), group="read", exclusive=True)
 
-        self.app.push_screen(PronunciationDialog(person, self._hear), take)
+        dialog = PronunciationDialog(person, self._hear, self._house.check_said)
+        self.app.push_screen(dialog, take)
 
     def action_leave(self) -> None:
         """Show everything again, or go back."""
