@@ -93,6 +93,8 @@ def faint_chip(random: np.random.Generator) -> Chip:
     chance, uniform = random.random, random.uniform
     hue = float(random.choice([*HUES.values(), 180]))
     tone = tone_of(hue + random.normal(0, 8), uniform(0.15, 1.0), uniform(0.5, 1.0))
+    if chance() < 0.25:  # smoke-grey
+        tone = tone_of(hue, uniform(0.0, 0.12), uniform(0.05, 0.75))
     pale = chance() < 0.25
     if pale:
         tone = tone_of(hue, uniform(0.0, 0.12), uniform(0.9, 1.0))

@@ -1,15 +1,16 @@
 """Train the classifier of card cells, from frames that are rendered here.
 
 Run by hand: `python -m tests.bench.card_training --frames 2000` writes
-`hw/tangy_hw/perception/cards/classifier.json`. The seeds of its frames are its own: the bench of
-cards quotes its figures on others. `--keep FILE.npz` keeps the features, to train again from them.
+`hw/tangy_hw/perception/cards/classifier.json`, in about half an hour on one core. The seeds of its
+frames are its own: the bench of cards quotes its figures on others. `--keep FILE.npz` keeps the
+features, to train again from them. Fewer than 60 frames are too few.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -32,10 +33,11 @@ Real: TypeAlias = NDArray[np.float32]
 Whole: TypeAlias = NDArray[np.int64]
 
 TRAINED, CHOSEN = (1000, 3000), 2000  # seeds: for the weights; for temperature and limit
+FAINT, FAINT_CHOSEN = 5000, 6000  # seeds of frames with chips that are hard to see
 CLEAR, COVERED = 0.10, 0.45  # of a cell under a hand: it counts as seen, as hidden
 NETS = 3
 WRONG = 4.5e-4  # of the cells, at most, where the limit is chosen: they are harder than in rooms
-DOUBT = 0.1  # how probably hidden a cell may be that is told
+DOUBT = (0.35, 0.02)  # how probably hidden a cell may be that is told unmarked, marked
 
 
 def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
@@ -55,16 +57,25 @@ def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
     yield from camera.frames(seed + 50, frames // 10, size=small, hand="thing")
 
 
-def measured(seed: int, frames: int) -> tuple[Real, Real, Whole]:
-    """Render frames and measure their cells.
+def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames of chips that are hard to see, half of them in glare."""
+    small = (660, 540)
+    hard: list[dict[str, Any]] = [
+        {}, {}, {}, *({"glare": glare} for glare in (0.25, 0.45, 0.7, 1.0)), {"hand": "finger"},
+    ]  # fmt: skip
+    for number, given in enumerate(hard):
+        yield from camera.frames(seed + number, frames // len(hard), size=small, **given)
+
+
+def measured(frames: Iterable[Frame], camera: CardCamera) -> tuple[Real, Real, Whole]:
+    """Measure the cells of frames.
 
     Returns a row of features for each, how much it belongs to each class, and whether there is
     really a chip on it.
     """
-    deck = load_activity("bingo").deck
-    camera = CardCamera(deck, title="Bingo", straddling=0.2)
+    deck = camera.face.deck
     rows, classes, marks = [], [], []
-    for frame in some_frames(camera, seed, frames):
+    for frame in frames:
         grey = cv2.cvtColor(frame.picture, cv2.COLOR_BGR2GRAY).astype(np.uint8)
         seen = next((s for s in find_cards(grey) if s.card == frame.card), None)
         flat = flatten(frame.picture, seen, camera.face, camera.deck_seed) if seen else None
@@ -77,6 +88,17 @@ def measured(seed: int, frames: int) -> tuple[Real, Real, Whole]:
             classes.append(belonging(mark, covered))
             marks.append(mark)
     return np.vstack(rows), np.array(classes, np.float32), np.array(marks)
+
+
+def rendered(seeds: Sequence[int], faint: int, frames: int) -> list[Any]:
+    """Render frames of these seeds, half as many again with faint chips, and measure the cells."""
+    deck = load_activity("bingo").deck
+    camera = CardCamera(deck, title="Bingo", straddling=0.2)
+    washed = CardCamera(deck, title="Bingo", straddling=0.1, faint=0.85)
+    parts = [measured(some_frames(camera, seed, frames), camera) for seed in seeds]
+    more = len(seeds) * frames // 2
+    parts.append(measured(faint_frames(washed, faint, more), washed))
+    return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 
 def belonging(mark: int, covered: float) -> list[float]:
@@ -98,16 +120,15 @@ def main() -> None:
         kept = np.load(options.keep)
         learnt, chosen = ([kept[f"{name}{part}"] for part in range(3)] for name in "ab")
     else:
-        both = [measured(seed, options.frames) for seed in TRAINED]
-        learnt = [np.concatenate(part) for part in zip(*both, strict=True)]
-        chosen = list(measured(CHOSEN, options.frames * 35 // 100))
+        learnt = rendered(TRAINED, FAINT, options.frames)
+        chosen = rendered((CHOSEN,), FAINT_CHOSEN, options.frames * 35 // 100)
         if options.keep is not None:
             parts = {
                 f"{n}{i}": p for n, s in (("a", learnt), ("b", chosen)) for i, p in enumerate(s)
             }
             np.savez_compressed(options.keep, **parts)
     document = train(learnt[0], learnt[1], *chosen)
-    options.out.write_text(json.dumps(document) + "\n", encoding="utf-8")
+    options.out.write_text(json.dumps(document, separators=(",", ":")) + "\n", encoding="utf-8")
     print(f"{options.out}: told from {document['sure']}")
 
 
@@ -129,7 +150,8 @@ def train(x: Real, y: Real, u: Real, v: Real, marks: Whole) -> dict[str, Any]:
     temperature = float(minimize_scalar(surprise, bounds=(0.5, 5), method="bounded").x)
     part = parts(temperature)
     told = part[:, :2].argmax(1)
-    best = np.where(part[:, HIDDEN] <= DOUBT, part[:, :2].max(1) / part[:, :2].sum(1), 0)
+    in_sight = part[:, HIDDEN] <= np.array(DOUBT)[told]
+    best = np.where(in_sight, part[:, :2].max(1) / part[:, :2].sum(1), 0)
     seen = v[:, HIDDEN] == 0
     print(
         f"{len(x)} cells, {len(v)} to choose on; "

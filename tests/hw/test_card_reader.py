@@ -113,6 +113,11 @@ def reading_of(
     return reader.told(card, rows)
 
 
+def test_what_may_be_a_finger_is_sooner_told_unmarked_than_marked(reader: CardReader) -> None:
+    reading = reading_of(reader, 3, {2: (0.92, 0.0, 0.08), 6: (0.0, 0.92, 0.08)})
+    assert (reading.marked, reading.hidden) == (0, 1 << 6)
+
+
 def test_frames_are_fused_and_what_one_hides_another_shows(reader: CardReader) -> None:
     hidden, seen = (0.02, 0.02, 0.96), (0.0005, 0.999, 0.0005)
     first = reading_of(reader, 3, {0: hidden, 7: seen})

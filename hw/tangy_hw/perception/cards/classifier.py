@@ -27,7 +27,8 @@ class Classifier:
 
     `temperature` divides what they give, so that of a hundred cells that are 99 % sure one is
     wrong. A cell is told if it is at least `sure` either marked or unmarked, supposed that it is in
-    sight, and hidden with a probability of `doubt` at most.
+    sight, and hidden with a probability of `doubt` at most: that of unmarked cells, of marked ones.
+    A finger may look like a chip, but hardly like print.
     """
 
     centre: Real
@@ -35,7 +36,7 @@ class Classifier:
     nets: tuple[Net, ...]
     temperature: float
     sure: float
-    doubt: float
+    doubt: tuple[float, float]
 
     def probabilities(self, features: Real) -> Real:
         """Return for each row how probable each of `CLASSES` is: the mean of the nets."""
@@ -58,7 +59,8 @@ class Classifier:
         """Say whether a cell is told that has these probabilities."""
         seen = float(part[UNMARKED] + part[MARKED])
         best = float(max(part[UNMARKED], part[MARKED]))
-        return float(part[HIDDEN]) <= self.doubt and best >= self.sure * seen
+        doubt = self.doubt[int(part[MARKED] > part[UNMARKED])]
+        return float(part[HIDDEN]) <= doubt and best >= self.sure * seen
 
 
 @cache
@@ -93,5 +95,5 @@ def read_classifier(told: dict[str, Any]) -> Classifier:
         ),
         float(told["temperature"]),
         float(told["sure"]),
-        float(told["doubt"]),
+        (float(told["doubt"][UNMARKED]), float(told["doubt"][MARKED])),
     )

@@ -21,6 +21,7 @@ BEYOND = 12  # as far again is looked for chips of the next cells
 SPOTS, APART = 11, 3  # of a cell and its surroundings: so many to each side, pixels of the maps
 INNER = 26  # pixels of the middle of a cell in which its number stands
 LARGEST = 1.4  # a scale above which nothing more is seen
+INKED = 80  # the percentile of a card's cells whose number counts as ink on paper
 SHIFT = 2  # how far a number may be off its place, in pixels
 
 NAMES = (
@@ -35,6 +36,7 @@ NAMES = (
     "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
     "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
+    "black",
 )  # fmt: skip
 """What the first features are called, in their order."""
 SEEN = ("colour", "lighter", "unlike")
@@ -49,8 +51,8 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     """Measure the cells of a card; return a row of features for each, and how they are read.
 
     The second array has, for each cell, the correlation with the number that the card has there,
-    the best correlation with any other number of its column, and how black the number is: 1 for
-    ink on paper, less beneath a translucent chip or in glare.
+    the best correlation with any other number of its column, and how black the number is beside
+    the card's others: 1 for ink on paper, less beneath a translucent chip or in glare.
     """
     import cv2
     import numpy as np
@@ -130,11 +132,13 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     dye = shown[..., (2, 0)] - shown[..., 1:2]
     dye -= np.median(dye[RIM:-RIM:4, RIM:-RIM:4].reshape(-1, 2), 0)
     row += _plainly(np.dstack([dye, lighter]), (y, x), (strength, read[:, 0]))
-    named = np.stack(row, 1).astype(np.float32)
-    spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
     edge = (SIDE - INNER) // 2
     printed = _whole_cells(expected, rows, columns)[:, edge : edge + INNER, edge : edge + INNER]
     black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
+    black /= max(float(np.percentile(black, INKED)), 0.02)
+    row.append(black)
+    named = np.stack(row, 1).astype(np.float32)
+    spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
     return np.hstack([named, spots]), np.column_stack([read[:, :2], black])
 
 

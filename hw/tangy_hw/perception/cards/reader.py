@@ -27,7 +27,7 @@ NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
-WASHED, INKED = 0.45, 80  # how black a number must be beside that percentile of the card's
+WASHED = 0.45  # how black a number must be beside the card's others
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class CardReader:
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         parts = load_classifier().probabilities(features)
         # Glare can wash a translucent chip out and leave the number: then the ink is washed, too.
-        washed = read[:, 2] < WASHED * np.percentile(read[:, 2], INKED)
+        washed = read[:, 2] < WASHED
         parts[washed & (parts[:, UNMARKED] > parts[:, MARKED])] = UNCERTAIN
         grid = self.face.grid
         ends = [
