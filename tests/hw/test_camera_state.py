@@ -86,6 +86,20 @@ class TestStates:
         assert film.names[-1] == "OK"
         assert not film.watch.at(film.now).why
 
+    @pytest.mark.parametrize("why", ["", "it is unplugged"])
+    def test_one_that_comes_back_with_the_picture_it_left_with_is_not_frozen(
+        self, why: str
+    ) -> None:
+        film = Film()
+        film.show(FINE, 3)
+        if why:
+            film.watch.lost(why)
+        film.show(None, 5)
+        film.show(FINE, 0.2, same=True)
+        assert film.watch.at(film.now).unchanged < 0.2
+        film.show(FINE, 1)
+        assert film.names == ["OPENING", "OK", "DISCONNECTED", "OK"]
+
     def test_a_camera_that_never_gave_a_picture_is_disconnected_in_time(self) -> None:
         film = Film()
         film.show(None, 3)
@@ -162,8 +176,9 @@ class TestReadings:
     def test_an_age_of_hours_stays_in_range(self) -> None:
         film = Film()
         film.show(FINE, 1)
-        film.watch.saw(FINE._replace(stamp=90_000.0, fingerprint=10))
-        assert film.watch.at(90_000.0).reading("camera").facts["unchanged"] == 3600
+        for second in range(2, 3700):
+            film.watch.saw(FINE._replace(stamp=float(second), fingerprint=10))
+        assert film.watch.at(3699.0).reading("camera").facts["unchanged"] == 3600
 
     def test_before_the_first_picture_nothing_is_measured(self) -> None:
         assert Watch(0.0).at(0.7).reading("eye") == Reading("eye", 0.7, STALE)

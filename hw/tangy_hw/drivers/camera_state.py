@@ -116,8 +116,9 @@ class Watch:
     def saw(self, look: Look) -> None:
         """Take a picture's measures."""
         last = self._look
-        if last is None or last.fingerprint != look.fingerprint or self._each:
-            self._first_alike = look.stamp
+        other = last is None or last.fingerprint != look.fingerprint or self._each
+        if other or self._lost or (last is not None and look.stamp - last.stamp > self._gone):
+            self._first_alike = look.stamp  # while it was away it was not frozen
         self._look, self._lost = look, ""
         found = self._judge(look)
         if found == self._picture:
