@@ -37,7 +37,7 @@ FAINT, FAINT_CHOSEN = 5000, 6000  # seeds of frames with chips that are hard to 
 CLEAR, COVERED = 0.10, 0.45  # of a cell under a hand: it counts as seen, as hidden
 NETS = 3
 WRONG = 4.5e-4  # of the cells, at most, where the limit is chosen: they are harder than in rooms
-DOUBT = (0.35, 0.02)  # how probably hidden a cell may be that is told unmarked, marked
+DOUBT = (0.35, 0.02, 0.2)  # how probably hidden a cell may be that is told; see `Classifier`
 
 
 def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
@@ -150,7 +150,7 @@ def train(x: Real, y: Real, u: Real, v: Real, marks: Whole) -> dict[str, Any]:
     temperature = float(minimize_scalar(surprise, bounds=(0.5, 5), method="bounded").x)
     part = parts(temperature)
     told = part[:, :2].argmax(1)
-    in_sight = part[:, HIDDEN] <= np.array(DOUBT)[told]
+    in_sight = part[:, HIDDEN] <= np.array(DOUBT[:2])[told]
     best = np.where(in_sight, part[:, :2].max(1) / part[:, :2].sum(1), 0)
     seen = v[:, HIDDEN] == 0
     print(

@@ -113,9 +113,14 @@ def reading_of(
     return reader.told(card, rows)
 
 
-def test_what_may_be_a_finger_is_sooner_told_unmarked_than_marked(reader: CardReader) -> None:
-    reading = reading_of(reader, 3, {2: (0.92, 0.0, 0.08), 6: (0.0, 0.92, 0.08)})
-    assert (reading.marked, reading.hidden) == (0, 1 << 6)
+def test_what_may_be_a_finger_is_told_marked_only_where_there_is_no_hand(
+    reader: CardReader,
+) -> None:
+    unsure = {2: (0.92, 0.0, 0.08), 6: (0.0, 0.92, 0.08)}
+    reading = reading_of(reader, 3, unsure)
+    assert (reading.marked, reading.hidden) == (1 << 6, 0)
+    reading = reading_of(reader, 3, {**unsure, 7: (0.1, 0.1, 0.8)})
+    assert (reading.marked, reading.hidden) == (0, 1 << 6 | 1 << 7)
 
 
 def test_frames_are_fused_and_what_one_hides_another_shows(reader: CardReader) -> None:

@@ -27,8 +27,8 @@ class Classifier:
 
     `temperature` divides what they give, so that of a hundred cells that are 99 % sure one is
     wrong. A cell is told if it is at least `sure` either marked or unmarked, supposed that it is in
-    sight, and hidden with a probability of `doubt` at most: that of unmarked cells, of marked ones.
-    A finger may look like a chip, but hardly like print.
+    sight, and hidden with a probability of `doubt` at most: that of unmarked cells, of marked ones
+    on a card with a hand, and of others. A finger may look like a chip, but comes with its hand.
     """
 
     centre: Real
@@ -36,7 +36,7 @@ class Classifier:
     nets: tuple[Net, ...]
     temperature: float
     sure: float
-    doubt: tuple[float, float]
+    doubt: tuple[float, float, float]
 
     def probabilities(self, features: Real) -> Real:
         """Return for each row how probable each of `CLASSES` is: the mean of the nets."""
@@ -55,11 +55,12 @@ class Classifier:
             total += grown / grown.sum(1, keepdims=True)
         return total / len(self.nets)
 
-    def tells(self, part: Real) -> bool:
-        """Say whether a cell is told that has these probabilities."""
+    def tells(self, part: Real, hand: bool) -> bool:
+        """Say whether a cell is told that has these probabilities, on a card with a hand or not."""
         seen = float(part[UNMARKED] + part[MARKED])
         best = float(max(part[UNMARKED], part[MARKED]))
-        doubt = self.doubt[int(part[MARKED] > part[UNMARKED])]
+        unmarked, with_hand, without = self.doubt
+        doubt = unmarked if part[UNMARKED] >= part[MARKED] else with_hand if hand else without
         return float(part[HIDDEN]) <= doubt and best >= self.sure * seen
 
 
@@ -95,5 +96,5 @@ def read_classifier(told: dict[str, Any]) -> Classifier:
         ),
         float(told["temperature"]),
         float(told["sure"]),
-        (float(told["doubt"][UNMARKED]), float(told["doubt"][MARKED])),
+        (float(told["doubt"][0]), float(told["doubt"][1]), float(told["doubt"][2])),
     )

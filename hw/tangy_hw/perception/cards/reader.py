@@ -27,6 +27,7 @@ NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
+HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
 WASHED = 0.45  # how black a number must be beside the card's others
 
 
@@ -130,6 +131,7 @@ class CardReader:
     ) -> CardReading:
         """Say what is told of cells, and which cannot be told, from their probabilities."""
         classifier = load_classifier()
+        hand = bool(parts[:, HIDDEN].max() >= HAND)
         marked = hidden = 0
         confidence = 1.0
         for cell, part in enumerate(parts):
@@ -137,7 +139,7 @@ class CardReader:
                 marked |= 1 << cell
                 continue
             best = float(max(part[UNMARKED], part[MARKED]))
-            if not classifier.tells(part):
+            if not classifier.tells(part, hand):
                 hidden |= 1 << cell
                 continue
             confidence = min(confidence, best)
