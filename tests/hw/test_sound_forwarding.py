@@ -175,7 +175,7 @@ async def test_a_recording_is_sent_whole_and_waits_for_a_listener(path: Path) ->
 
 async def test_the_older_of_two_ends_and_does_not_fight_for_its_place(path: Path) -> None:
     listener = LaptopMicrophone("socket", path)
-    hearing = asyncio.ensure_future(take(listener, 4))
+    hearing = asyncio.ensure_future(take(listener, 2 * RATE + 4))
     older = Link(path)
     assert "Connected" in await older.said()
     newer = Link(path)
@@ -183,7 +183,7 @@ async def test_the_older_of_two_ends_and_does_not_fight_for_its_place(path: Path
     with pytest.raises(TakenOver, match="Another microphone has taken over"):
         await asyncio.wait_for(older.running, PATIENCE)
     await newer.spoken.say(b"new!")
-    assert await hearing == b"new!"
+    assert await hearing == bytes(2 * RATE) + b"new!"  # quiet is where the older one ended
     await newer.end()
     await listener.close()
 

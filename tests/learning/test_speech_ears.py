@@ -291,10 +291,21 @@ class TestOtherPhrases:
         await soon(lambda: "go to zoe" in here.listened_for)
         assert here.words == ["call number"]
 
+    async def test_what_is_said_meanwhile_is_not_lost(self, enter: Enter) -> None:
+        here = await enter(hands_free=True).ready("listening")
+        people = (*load_people(3), replace(load_people(4)[3], name="Zoe"))
+        here.ears.asking(True)  # ends what is listened for, as a dialog does
+        here.ears.understand_by(Phrasebook(load_activity("bingo"), people))
+        here.ears.asking(False)
+        await here.ready("starting")
+        for _ in range(3):
+            await here.source.feed(sound("c"), sound(" "))
+        await soon(lambda: len(here.words) == 3)
+
     async def test_the_same_phrases_disturb_nobody(self, enter: Enter) -> None:
         here = await enter().ready()
         before = here.decoder.wanted
-        here.ears.understand_by(BOOK)
+        here.ears.understand_by(Phrasebook(load_activity("bingo"), load_people(4)))
         await here.say(sound("c"))
         assert here.decoder.wanted is before
 

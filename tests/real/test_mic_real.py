@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 SOUND = np.random.default_rng(4).integers(-9_000, 9_000, 5 * RATE, np.int16).astype("<i2").tobytes()
 PIECE = 640  # bytes, 20 ms
+QUIET = bytes(2 * RATE)  # a second, where a stream has ended
 LISTEN = """
 import asyncio, sys
 from pathlib import Path
@@ -160,6 +161,7 @@ async def test_a_killed_mic_is_missed_and_the_next_one_is_heard(robot: Robot) ->
         assert await listener.hear(len(word)) == word
         mic.process.send_signal(signal.SIGKILL)
         await listener.until("has gone; waiting for it to come back")
+        assert await listener.hear(len(QUIET)) == QUIET
 
 
 async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> None:
@@ -171,7 +173,7 @@ async def test_of_two_the_newer_is_heard_and_the_older_ends(robot: Robot) -> Non
     assert "Another microphone has taken over" in await older.until("taken over")
     assert await older.status() == 1
     await newer.say(SOUND[:3_000])
-    assert await listener.hear(3_000) == SOUND[:3_000]
+    assert await listener.hear(len(QUIET) + 3_000) == QUIET + SOUND[:3_000]
     newer.process.send_signal(signal.SIGINT)
     assert await newer.status() == 0
 

@@ -31,9 +31,9 @@ def test_some_steps_are_typed_asked_about_and_kept() -> None:
 def test_a_program_that_never_asks_is_not_waited_for_for_ever(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(terminal, "PATIENCE", 0.5)
     with Terminal(["--version"]) as shown:
         shown.until(lambda screen: "tangy" in screen.text, "its version")
+    monkeypatch.setattr(terminal, "PATIENCE", 0.5)
     with (
         pytest.raises(TangyError, match="never showed the question"),
         Terminal(["doctor"]) as shown,

@@ -161,8 +161,9 @@ class Ears:
 
     def understand_by(self, phrasebook: Phrasebook) -> None:
         """Listen for these phrases, and match what is heard to them, from the next utterance on."""
-        if phrasebook is not self._phrasebook:
-            self._phrasebook, self._renew = phrasebook, True
+        before, self._phrasebook = self._phrasebook, phrasebook
+        if _sounds_of(before) != _sounds_of(phrasebook):
+            self._renew = True
             self._talks.set()
 
     def follow(self, events: Iterable[TeachingEvent]) -> None:
@@ -302,14 +303,14 @@ class Ears:
     async def _next(self, recogniser: Recogniser) -> Utterance | None:
         """Wait for the next utterance to listen to; None if the source is over."""
         while True:
+            if self.hands_free and (self._utterance is None or self._utterance.dropped):
+                self._utterance = None if self._ended else Utterance(found=True)
             if self._renew:
-                if self._utterance is None:
+                if self.hands_free or self._utterance is None:
                     self._now("starting")
                 await self._listen_for(recogniser)
                 continue
             if self.hands_free:
-                if self._utterance is None or self._utterance.dropped:
-                    self._utterance = None if self._ended else Utterance(found=True)
                 if self._utterance is not None:
                     self._now("listening")
                 return self._utterance
@@ -391,3 +392,8 @@ class Ears:
     def _told(self, sentence: str) -> None:
         if sentence:
             self.tell(sentence)
+
+
+def _sounds_of(phrasebook: Phrasebook) -> tuple[object, object]:
+    """What is to be heard of a phrasebook; two that have the same are listened for alike."""
+    return phrasebook.spoken(), phrasebook.pronunciations()
