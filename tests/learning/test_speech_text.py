@@ -235,6 +235,15 @@ class TestUnderstanding:
         assert found <= likelihood(less, many, margin)
         assert found <= likelihood(less, few, margin + 1)
 
+    @pytest.mark.parametrize(
+        ("words", "user"),
+        [("go to user to", "user2"), ("go to user for", "user4"), ("help user won", "user1")],
+    )
+    def test_a_number_is_one_however_it_is_spelt(self, words: str, user: str) -> None:
+        said = understand(evidence(words), BOOK, USUAL)
+        assert isinstance(said, Say) and said.commands and said.sure
+        assert dict(said.commands[0].arguments) == {"user": user}
+
     def test_other_speech_and_silence_are_nothing(self) -> None:
         for words in ("", "the soup was too salty", "the to a", "my sister lives in canada"):
             said = understand(evidence(words, margin=-0.5), BOOK, USUAL)

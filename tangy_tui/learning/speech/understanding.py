@@ -42,6 +42,7 @@ NO = ("no", "no thank you", "no do not", "no that is wrong")
 LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
+SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
 CRIES = frozenset(("stop", "halt"))
 BESIDE_CRIES = frozenset(
     (
@@ -96,10 +97,14 @@ def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -
 def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
     """Return what was said, and the margin of these words.
 
-    Mostly those are the words of the n-gram model. Where they are no phrase, but sound like the
+    Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
+    number makes a phrase of them, it was the number. Where they are no phrase, but sound like the
     one that the grammar has found, and that explains the sound better, it was the phrase.
     """
     words, phrase = evidence.words, evidence.phrase
+    begun, _, last = words.rpartition(" ")
+    if (numbered := f"{begun} {SOUND_ALIKE.get(last)}") in phrasebook.phrases:
+        words = numbered
     doubtful = phrase and words not in phrasebook.phrases and evidence.margin < SMALL_MARGIN
     if doubtful and SequenceMatcher(None, words, phrase).ratio() >= SAME_SOUND:
         return phrase, 0.0
