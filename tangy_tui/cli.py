@@ -7,8 +7,8 @@ Every verb prints one JSON document with `--json`. The exit status is 0 when don
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from typing import Annotated
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
 
 import typer
 
@@ -57,10 +57,14 @@ def program(
     data: Data = None,
     ascii_only: Ascii = False,
 ) -> None:
-    """Open the program, where no verb is given."""
+    """Open the program, where no verb is given; options before a verb are the verb's."""
     if version:
         print(f"tangy {__version__}")
         raise typer.Exit
+    given: dict[str, Any] = {} if data is None else {"data": str(data)}
+    if ascii_only:
+        given["ascii_only"] = True
+    context.default_map = _defaults(context.command, given)
     if context.invoked_subcommand is None:
         if not full_screen():
             from tangy_tui.ui.terminal import terminal_kind
@@ -72,6 +76,14 @@ def program(
 
         with open_house(data, "bingo", 4) as house:
             raise typer.Exit(run_program(house, ascii_only=ascii_only))
+
+
+def _defaults(command: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the defaults of a command, and of those below it, that were given before it."""
+    found = {option.name: given[option.name] for option in command.params if option.name in given}
+    for name, below in getattr(command, "commands", {}).items():
+        found[name] = _defaults(below, given)
+    return found
 
 
 VERBS: tuple[Callable[..., None], ...] = (

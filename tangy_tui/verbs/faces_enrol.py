@@ -44,7 +44,10 @@ def faces_enrol(
     seconds: Annotated[float, typer.Option(min=1, help="Look so long at most.")] = 60.0,
     consent: Annotated[
         str | None,
-        typer.Option(metavar="HOW", help="They have agreed: how, and who asked them."),
+        typer.Option(
+            metavar="HOW",
+            help="They have agreed: how, and who asked them. It stays in the log: no names.",
+        ),
     ] = None,
     add: Annotated[
         bool, typer.Option("--add", help="Add to the pictures that were enrolled before.")
@@ -70,10 +73,9 @@ def faces_enrol(
     tell: Tell = (lambda _: None) if as_json else (lambda line: print(plain(line), flush=True))
     with knowing(data, robot, write=True) as (house, reader, gallery):
         person, new = _find(house, name)
-        if not _agreed(house, person, new, consent):
+        agreed = _agreed(house, person, consent)
+        if agreed is None:
             raise TangyError(plain(f"{person.name} has not agreed: nothing is kept."))
-        if new:
-            tell(f"{person.name} does not play, and is known as {person.id}.")
         enrolment = Enrolment(reader)
         if add:
             enrolment.take(read_face(house.store, person.id, reader.kind))
@@ -92,14 +94,25 @@ def faces_enrol(
                     f"{LEAST} are needed, and {ADVISED} are better{_chief_reason(rows)}."
                 )
             )
+        _check_same(enrolment, gallery, person)
+        if agreed:
+            _note(house.store, person, new, agreed)
         keep_face(house.store, person.id, reader.kind, enrolment.vectors())
+        several = enrolment.several()
         like = _like_another(enrolment, gallery, person)
         if as_json:
             told = {"id": person.id, "name": person.name, "pictures": taken, "kind": reader.kind}
-            print_json({**told, "looks_like": like, "from": rows})
+            print_json({**told, "looks_like": like, "several": several, "from": rows})
             return
+        if new:
+            tell(f"{person.name} does not play, and is known as {person.id}.")
         few = f"; with {ADVISED} it is surer" if taken < ADVISED else ""
         tell(f"{person.name} is known by {taken} pictures of {len(rows)}{few}.")
+        if several:
+            tell(
+                "They may show more than one person: look them through. `tangy faces forget "
+                f"{person.id}` deletes what was kept."
+            )
         if like is not None:
             tell(f"They look like those of {house.store.names().get(like, like)} ({like}).")
 
@@ -121,8 +134,12 @@ def _find(house: House, wanted: str) -> tuple[Person, bool]:
     return Person(f"{GUEST}{max(numbers, default=0) + 1}", called), True
 
 
-def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
-    """Ask the person, unless they have agreed before, or somebody says how they did."""
+def _agreed(house: House, person: Person, how: str | None) -> str | None:
+    """Ask the person, unless they have agreed before, or somebody says how they did.
+
+    Returns:
+        How they agreed, "" if they had before; None if they have not.
+    """
     from tangy_hw.perception.faces.keeping import consent, consented
 
     store = house.store
@@ -130,10 +147,9 @@ def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
         if not how.strip():
             raise TangyError('--consent: say how they agreed, as in "in writing, asked by staff".')
         name = re.escape(person.name)  # names stay out of the log, where nothing is deleted
-        _note(store, person, new, re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200])
-        return True
+        return re.sub(rf"\b{name}\b", person.id, how, flags=re.I)[:200]
     if person.id in consented(store):
-        return True
+        return ""
     if not sys.stdin.isatty():
         raise TangyError(
             plain(
@@ -146,10 +162,29 @@ def _agreed(house: House, person: Person, new: bool, how: str | None) -> bool:
         f"this machine, in {store.folder}; `tangy faces forget` deletes them at any time."
     )
     if typer.confirm(plain(question), default=False, err=True):
-        _note(store, person, new, "asked on the terminal")
-        return True
+        return "asked on the terminal"
     consent(store, person.id, False, "asked on the terminal")
-    return False
+    return None
+
+
+def _check_same(enrolment: Enrolment, gallery: Gallery, person: Person) -> None:
+    """Refuse pictures of somebody who is known that show somebody else.
+
+    Raises:
+        TangyError: most of them do not look like the person as known.
+    """
+    if person.id not in gallery.people:
+        return
+    vectors = enrolment.added()
+    alike = sum(gallery.compare(vector).person == person.id for vector in vectors)
+    if 2 * alike < len(vectors):
+        raise TangyError(
+            plain(
+                f"{len(vectors) - alike} of {len(vectors)} pictures do not look like "
+                f"{person.name} as known: nothing was changed. If it is {person.name}, "
+                f"`tangy faces forget {person.id}` first."
+            )
+        )
 
 
 def _note(store: Store, person: Person, new: bool, how: str) -> None:

@@ -249,3 +249,19 @@ class TestKeeping:
         (store.folder / FOLDER).write_text("a file")
         with pytest.raises(FaceError, match="cannot be written"):
             keep_face(store, "user1", "hoglbp1", rows(1))
+
+
+def _like(person: np.ndarray[Any, Any], count: int, chance: np.random.Generator) -> list[Any]:
+    """Return features of pictures of a person, of length 1."""
+    rows = person + 0.03 * chance.normal(size=(count, len(person)))
+    return list(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize(("people", "several"), [(1, False), (2, True), (3, True)])
+def test_pictures_of_several_people_are_told_from_those_of_one(people: int, several: bool) -> None:
+    chance = np.random.default_rng(people)
+    enrolment = Enrolment(HaarReader())
+    for _ in range(people):
+        person = chance.normal(size=200)
+        enrolment.take(_like(person / np.linalg.norm(person), 4, chance))
+    assert enrolment.several() is several

@@ -71,6 +71,34 @@ def test_without_consent_nothing_is_kept(tangy: Tangy, album: Path, tmp_path: Pa
     assert not (tmp_path / "d" / "faces").exists()
 
 
+def test_somebody_who_is_known_is_not_made_somebody_else(
+    tangy: Tangy, album: Path, data: Path
+) -> None:
+    before = sorted((path.name, path.read_bytes()) for path in (data / "faces").iterdir())
+    done = tangy("faces", "enrol", "Rosa", "--from", album / "1", "--data", data)
+    assert done.returncode == 2 and "do not look like Rosa as known" in done.stderr
+    assert before == sorted((path.name, path.read_bytes()) for path in (data / "faces").iterdir())
+    assert tangy("faces", "enrol", "Rosa", "--from", album / "0", "--data", data).returncode == 0
+
+
+def test_where_nobody_was_seen_no_name_is_kept(tangy: Tangy, tmp_path: Path) -> None:
+    (tmp_path / "walls").mkdir()
+    for number in range(4):
+        wall = np.full((200, 200, 3), 90 + 20 * number, np.uint8)
+        cv2.imwrite(str(tmp_path / "walls" / f"{number}.png"), wall)
+    where = ("--from", tmp_path / "walls", "--consent", "Anna said so", "--data", tmp_path / "d")
+    assert tangy("faces", "enrol", "Mathilda", *where).returncode == 2
+    kept = b"".join(path.read_bytes() for path in (tmp_path / "d").rglob("*") if path.is_file())
+    assert b"Mathilda" not in kept and b"Anna" not in kept
+
+
+def test_options_before_a_verb_are_the_verbs(tangy: Tangy, data: Path) -> None:
+    shown = tangy("--data", data, "faces", "list")
+    assert shown.stdout == tangy("faces", "list", "--data", data).stdout
+    assert "Rosa" in shown.stdout
+    assert "Rosa" not in tangy("--data", data, "faces", "list", "--data", data / "other").stdout
+
+
 def test_several_faces_in_a_picture_are_each_told(tangy: Tangy, data: Path) -> None:
     side_by_side = np.hstack([drawn_face(1, 30), drawn_face(0, 30)])
     cv2.imwrite(str(data / "two.png"), side_by_side)

@@ -20,6 +20,12 @@ SECOND = 0.6  # of the size of the first: a second face that may be the one that
 SAME = 0.95  # similarity (a cosine) from which on two pictures are as good as one
 ODD = 5.0  # mean deviations below the median: not the person that the others show
 LEAST_ODD = 0.08
+FEWEST = 2  # pictures on one side, where they are divided in two
+APART = 0.06
+"""So much more alike (a cosine) within two sides than between them: it may be two people. Of ten
+people, half of whom this was set on, 6 to 16 pictures of one person were so in 3 % of draws (of the
+other half in none), those of two or three people mixed in 77 % (89 %).
+"""
 
 
 class Enrolment:
@@ -81,6 +87,34 @@ class Enrolment:
         spread = float(np.median(np.abs(own - middle)))
         low = middle - max(ODD * spread, LEAST_ODD)
         return [int(number) for number in np.flatnonzero(own < low)]
+
+    def several(self) -> bool:
+        """Say whether the pictures may show more than one person: whether they fall in two.
+
+        They are divided where they differ most; the sides are then less alike than each in itself.
+        """
+        import numpy as np
+
+        count = len(self._vectors)
+        if count < 2 * FEWEST:
+            return False
+        rows = np.array(self._vectors, np.float64)
+        similar = rows @ rows.T
+        centred = rows - rows.mean(axis=0)
+        side = np.linalg.eigh(centred @ centred.T)[1][:, -1] > 0
+        if min(side.sum(), count - side.sum()) < FEWEST:
+            return False
+        same = side[:, None] == side[None, :]
+        pairs = np.triu(np.ones_like(same), 1)
+        return bool(similar[pairs & same].mean() - similar[pairs & ~same].mean() > APART)
+
+    def added(self) -> list[Vector]:
+        """Return the features of the pictures that were offered, without those from before."""
+        return [
+            vector
+            for vector, offered in zip(self._vectors, self._offered, strict=True)
+            if offered >= 0
+        ]
 
     def vectors(self) -> Any:
         """Return the features, a row for each picture."""
