@@ -94,8 +94,9 @@ def read_card(
     if as_json and listed:
         print_json(listed)
     elif listed:
+        unseen = reader.state(reader.nothing(""), loaded.user_states, set())
         for row, (_, reading) in zip(listed, readings, strict=True):
-            print(plain(f"{row['file']}: {_told(row, reading)}"))
+            print(plain(f"{row['file']}: {_told(row, reading, unseen)}"))
             if reading.card is not None:
                 print("\n".join(f"  {line}" for line in _drawn(reading, reader)))
         _explain([reading for _, reading in readings])
@@ -192,8 +193,8 @@ def _row(
     return row
 
 
-def _told(row: dict[str, Any], reading: CardReading) -> str:
-    """Say in words what was read."""
+def _told(row: dict[str, Any], reading: CardReading, unseen: str) -> str:
+    """Say in words what was read; `unseen` is the state of a card that is not in view."""
     if row["card"] is None:
         told = reading.problem
     else:
@@ -201,7 +202,11 @@ def _told(row: dict[str, Any], reading: CardReading) -> str:
         if row["hidden"]:
             told += f", {len(row['hidden'])} not to be told"
         told += f", {min(row['confidence'], 0.999):.1%} sure"
-    return f"{told}; {row['label']}" if "state" in row else told
+    if "state" not in row:
+        return told
+    if row["card"] is not None and row["state"] == unseen:
+        return f"{told}; how the person is doing hangs on what is not to be told"
+    return f"{told}; {row['label']}"
 
 
 def _drawn(reading: CardReading, reader: CardReader) -> list[str]:

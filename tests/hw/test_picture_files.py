@@ -200,3 +200,17 @@ def test_what_a_camera_saw_is_confirmed_and_counted(tangy: Tangy, tmp_path: Path
         beside.write_text(json.dumps({**told, "label": True}))
     counted = json.loads(tangy("read-card", "--bench", kept, "--json").stdout)
     assert (counted["with_card"], counted["whole"], counted["wrong_cells"]) == (2, 2, 0)
+
+
+def test_what_a_state_hangs_on_is_not_called_out_of_view(
+    card: Image.Image, tangy: Tangy, tmp_path: Path
+) -> None:
+    wide, high = card.size
+    card.paste((120, 150, 210), (wide // 6, high // 4, wide // 3, high // 2))
+    card.save(tmp_path / "hand.png")
+    numbers = json.loads((tmp_path / "cards.json").read_text())["cards"][0]["numbers"]
+    [row] = json.loads(tangy("read-card", tmp_path / "hand.png", "--json").stdout)
+    line, column = row["hidden"][0]
+    done = tangy("read-card", tmp_path / "hand.png", "--called", numbers[line][column])
+    assert "card 42" in done.stdout
+    assert "hangs on what is not to be told" in done.stdout
