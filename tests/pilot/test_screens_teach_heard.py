@@ -341,13 +341,14 @@ async def test_a_recording_is_listened_to_only_when_a_command_is_due(
     ears = FakeEars(live=False)
     async with run(app=teaching(house, ears)) as pilot:
         ears.hear(ears.say("greet everyone"), ears.say("call number"))
-        await pilot.pause()
+        while not isinstance(pilot.app.screen, QuestionDialog):
+            await pilot.pause(0.02)
         pulled = ears.pulled
         for _ in range(4):
             await pilot.pause(0.03)
         assert ears.pulled == pulled
         await pilot.press("y")
-        while not isinstance(pilot.app.screen, QuestionDialog):
+        while ears.pulled == pulled or not isinstance(pilot.app.screen, QuestionDialog):
             await pilot.pause(0.02)
         assert ears.pulled == pulled + 1
         ears.end()
