@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -14,6 +14,10 @@ from tangy_profiles.reading import Table, nearest, read_toml
 
 LOOKS_AT = ("cards",)
 """What the profile can say that a camera looks at."""
+
+
+GAZES = ("card", "face")
+"""What the robot turns its eyes to."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +76,14 @@ class Device:
 
 
 @dataclass(frozen=True)
+class Driver:
+    """What drives a device: the `kind` of driver, and settings that are that driver's own."""
+
+    kind: str
+    settings: Mapping[str, str | float | bool]
+
+
+@dataclass(frozen=True)
 class FaceModels:
     """The two ONNX files by which faces are found and told apart, where a facility has them."""
 
@@ -83,8 +95,9 @@ class FaceModels:
 class Robot:
     """A robot's body: limbs, postures (joint angles in degrees by limb), speed in m/s, devices.
 
-    `faces` are its files for faces; without them it uses what comes with OpenCV. `file` is where
-    all this was read.
+    `faces` are its files for faces; without them it uses what comes with OpenCV. `drivers` drive
+    it when it is there in earnest, by the name of the device. `gaze` says which limb does what
+    (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
     """
 
     name: str
@@ -95,6 +108,8 @@ class Robot:
     devices: Mapping[str, Device]
     faces: FaceModels | None = None
     file: Path = Path()
+    drivers: Mapping[str, Driver] = field(default_factory=dict)
+    gaze: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -122,7 +137,15 @@ def load_robot(name: str = "tangy") -> Robot:
     if name not in shipped and not name.endswith(".toml"):
         raise ProfileError(f"There is no robot {name!r}: {nearest(name, shipped)}")
     path = shipped.get(name) or Path(name)
-    top = read_toml(path)
+    return read_robot(read_toml(path), path)
+
+
+def read_robot(top: Table, path: Path) -> Robot:
+    """Read a robot's profile, to which what it names relatively is relative.
+
+    Raises:
+        ProfileError: one line that says file, key, value and the nearest valid word.
+    """
     limbs: dict[str, Limb] = {}
     for entry in top.tables("limbs"):
         name_of_limb = entry.text("name")
@@ -147,15 +170,18 @@ def load_robot(name: str = "tangy") -> Robot:
                     )
         entry.close()
         postures[posture] = MappingProxyType(angles)
+    devices = _devices(top)
     robot = Robot(
         top.text("name"),
         top.text("title"),
         top.number("speed", 0.05, 3),
         MappingProxyType(limbs),
         MappingProxyType(postures),
-        MappingProxyType(_devices(top)),
+        MappingProxyType(devices),
         _face_models(top, path.parent),
         path,
+        MappingProxyType(_drivers(top, devices)),
+        MappingProxyType(_gaze(top, limbs)),
     )
     top.close()
     return robot
@@ -189,6 +215,37 @@ def _devices(top: Table) -> dict[str, Device]:
         facts.close()
         entry.close()
     return devices
+
+
+def _drivers(top: Table, devices: Mapping[str, Device]) -> dict[str, Driver]:
+    """Read what drives the devices; which kinds and settings there are, the drivers know."""
+    drivers: dict[str, Driver] = {}
+    table = top.table("drivers", optional=True)
+    for name, entry in table.items():
+        if name not in devices:
+            raise table.wrong(name, f"is no device of this robot; {nearest(name, devices)}")
+        settings = {key: entry.word_or_number(key) for key in entry if key != "kind"}
+        drivers[name] = Driver(entry.text("kind"), MappingProxyType(settings))
+    return drivers
+
+
+def _gaze(top: Table, limbs: Mapping[str, Limb]) -> dict[str, Mapping[str, tuple[float, ...]]]:
+    """Read what limbs do to look at a card and at a face, if the robot has to do anything."""
+    gaze: dict[str, Mapping[str, tuple[float, ...]]] = {}
+    table = top.table("gaze", optional=True)
+    for name in GAZES:
+        if name in table:
+            entry = table.table(name)
+            gaze[name] = MappingProxyType(
+                {
+                    limb: entry.numbers(limb, len(limbs[limb].joints), -360, 360)
+                    for limb in entry
+                    if limb in limbs
+                }
+            )
+            entry.close(also=limbs)
+    table.close(also=GAZES)
+    return gaze
 
 
 def _measure(facts: Table, name: str) -> Measure:
