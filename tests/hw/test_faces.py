@@ -30,7 +30,7 @@ from tangy_hw.perception.faces.keeping import (
 from tangy_hw.perception.faces.reader import Face, HaarReader
 from tangy_hw.perception.faces.voting import vote
 from tangy_profiles.store import Store
-from tests.hw.drawn_faces import drawn_face
+from tangy_sim.faces import drawn_face
 
 IDS = ("user1", "user2", "a-b", "b", ".", "..", "Zoë/../x")
 

@@ -1,4 +1,4 @@
-"""Faces that are drawn: enough like faces for the cascades, different from one another, nobody's.
+"""Drawn faces: enough like faces for the cascades, different from one another, and nobody's.
 
 A number makes a person; each picture of them has other light, another place and other noise.
 """
