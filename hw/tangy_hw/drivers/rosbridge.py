@@ -1,0 +1,354 @@
+"""The link to a robot by rosbridge v2: JSON over WebSocket, ROS 1 and ROS 2 alike.
+
+It connects by itself and again whenever it was lost. A connection says little: with a frozen bridge
+it stands for ever. What counts is the age of the newest data, which `reading` and each device tell.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import random
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import Any
+from urllib.parse import urlsplit
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import WebSocketException
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.drivers.rosbridge_parts import Fragments
+from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
+from tangy_profiles.health import OK, STALE, Reading
+from tangy_profiles.reading import plain
+
+Message = Mapping[str, Any]
+Hears = Callable[[Message], None]
+Tells = Callable[[str], None]
+
+LARGEST = 16 << 20  # bytes of a message that is taken
+FIRST_WAIT, LONGEST_WAIT = 0.25, 5.0  # s between two attempts to connect; they grow
+OPENING_SECONDS = 5.0  # for which a handshake is waited for
+PING_SECONDS, PONG_SECONDS = 5.0, 10.0  # after which a cable that was pulled is noticed
+CLOSING_SECONDS = 0.2  # for which last words and goodbyes are waited for
+QUEUED = 2_000  # texts that wait to be sent, at most
+SAYINGS = 50  # different things that are told of one link at most
+
+
+class Rosbridge:
+    """A rosbridge server's topics, services and actions; one connection, which devices share."""
+
+    name = "link"
+
+    def __init__(
+        self,
+        url: str,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        tell: Tells = lambda _: None,
+        ros: int = 1,
+    ) -> None:
+        """Name the server.
+
+        Args:
+            clock: the time by which ages are told.
+            tell: is told in one sentence each what a person may want to know.
+            ros: 1 or 2, how types and times are spelled.
+
+        Raises:
+            DeviceError: the address is none.
+        """
+        try:
+            parts = urlsplit(url)
+            good = parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0
+        except ValueError:
+            good = False
+        if not good:
+            raise DeviceError(plain(f"{url}: give ws://HOST:PORT, as in ws://192.168.1.20:9090."))
+        if ros not in (1, 2):
+            raise DeviceError(f"{plain(url)}: ros must be 1 or 2.")
+        self.url, self.ros = url, ros
+        self.clock = clock
+        self._tell = tell
+        self._told: set[str] = set()
+        self._task: asyncio.Task[None] | None = None
+        self._socket: ClientConnection | None = None
+        self._connected = asyncio.Event()
+        self._heard: float | None = None
+        self._began = clock()
+        self._hears: dict[str, list[Hears]] = {}
+        self._hello: dict[str, str] = {}
+        self._on_connect: list[Callable[[], None]] = []
+        self._urgent: dict[str, str] = {}
+        self._queue: deque[str] = deque()
+        self._wake = asyncio.Event()
+        self._idle = asyncio.Event()
+        self._waiting = Waiting()
+        self._fragments = Fragments()
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands, which a frozen robot's does too."""
+        return self._connected.is_set()
+
+    @property
+    def heard(self) -> float | None:
+        """When the newest message of any kind came, by the clock; None: never."""
+        return self._heard
+
+    async def start(self) -> None:
+        """Begin to connect, and go on with it until `close`."""
+        if self._task is None:
+            self._began = self.clock()
+            self._task = asyncio.create_task(self._live())
+
+    async def close(self) -> None:
+        """Say what is still to be said, and end for good."""
+        task, self._task = self._task, None
+        if task is not None:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._flushed(), CLOSING_SECONDS)
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+    async def wait_connected(self, seconds: float) -> bool:
+        """Wait for a connection, for so many s at most; say whether there is one."""
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._connected.wait(), seconds)
+        return self.connected
+
+    def reading(self) -> Reading:
+        """Return the age of the newest message of any kind: the last that says the robot lives."""
+        since = self._began if self._heard is None else self._heard
+        state = OK if self.connected and self._heard is not None else STALE
+        return Reading(self.name, max(self.clock() - since, 0.0), state)
+
+    def on_connect(self, does: Callable[[], None]) -> None:
+        """Have something done at each new connection, before anything else is said."""
+        self._on_connect.append(does)
+        if self.connected:
+            does()
+
+    def subscribe(self, topic: str, kind: str, hears: Hears, *, throttle: float = 0) -> None:
+        """Have something called with each message of a topic, from now on and after every loss.
+
+        Args:
+            kind: the type, as ROS 1 spells it.
+            throttle: s between two messages at least; the newest counts, none are queued.
+        """
+        topic = _full(topic)
+        self._hears.setdefault(topic, []).append(hears)
+        wire = {"op": "subscribe", "id": topic, "topic": topic, "type": self.spelled(kind)}
+        wish = {"throttle_rate": round(throttle * 1000), "queue_length": 1} if throttle else {}
+        self._greet(f"subscribe {topic}", {**wire, **wish})
+
+    def unsubscribe(self, topic: str, hears: Hears) -> None:
+        """Call this no more."""
+        topic = _full(topic)
+        with suppress(KeyError, ValueError):
+            self._hears[topic].remove(hears)
+            if not self._hears[topic]:
+                del self._hears[topic], self._hello[f"subscribe {topic}"]
+                self._send({"op": "unsubscribe", "id": topic, "topic": topic})
+
+    def advertise(self, topic: str, kind: str) -> None:
+        """Say that a topic will be published on, now and at every new connection."""
+        topic = _full(topic)
+        wire = {"op": "advertise", "id": f"publish {topic}", "topic": topic}
+        self._greet(f"advertise {topic}", {**wire, "type": self.spelled(kind)})
+
+    def publish(self, topic: str, message: Message, *, urgent: bool = False) -> None:
+        """Hand a message over; it never waits.
+
+        Args:
+            urgent: goes out ahead of all that waits, and in the place of what waits of this topic.
+
+        Raises:
+            DeviceError: there is no connection.
+        """
+        topic = _full(topic)
+        wire = {"op": "publish", "topic": topic, "msg": message}
+        if not self.connected:
+            raise DeviceError(f"{topic} cannot be published: {self._unreachable()}")
+        if urgent:
+            self._urgent[topic] = _encoded(wire)
+            self._stir()
+        else:
+            self._send(wire)
+
+    async def call(self, service: str, arguments: Message, seconds: float = 5.0) -> Message:
+        """Call a service and return its values.
+
+        Raises:
+            DeviceError: it refused, did not answer in so many s, or the connection was lost.
+        """
+        name = _full(service)
+        if not self.connected:
+            raise DeviceError(f"{name} cannot be called: {self._unreachable()}")
+        key, answer = self._waiting.call(name)
+        self._send({"op": "call_service", "id": key, "service": name, "args": arguments})
+        try:
+            return await asyncio.wait_for(answer, seconds)
+        except TimeoutError:
+            raise DeviceError(f"{name} did not answer within {seconds:g} s.") from None
+        finally:
+            self._waiting.forget(key)
+
+    def send_goal(self, action: str, kind: str, goal: Message, feeds: Hears | None = None) -> Goal:
+        """Send a goal to an action of ROS 2; how it goes is told by what is returned.
+
+        Raises:
+            DeviceError: there is no connection.
+        """
+        name = _full(action)
+        if not self.connected:
+            raise DeviceError(f"{name} cannot be begun: {self._unreachable()}")
+        sought = self._waiting.goal(name, feeds, self._send)
+        kind = kind if kind.count("/") == 2 else kind.replace("/", "/action/")
+        wire = {"op": "send_action_goal", "id": sought.key, "action": name, "action_type": kind}
+        self._send({**wire, "args": goal, "feedback": feeds is not None})
+        return sought
+
+    def spelled(self, kind: str) -> str:
+        """Return the name of a type as this ROS spells it: pkg/Kind, or pkg/msg/Kind."""
+        package, _, name = kind.partition("/")
+        name = name.removeprefix("msg/")
+        return f"{package}/{name}" if self.ros == 1 else f"{package}/msg/{name}"
+
+    def tell_once(self, sentence: str) -> None:
+        """Tell something unless it was told before."""
+        if sentence not in self._told and len(self._told) < SAYINGS:
+            self._told.add(sentence)
+            self._tell(plain(sentence))
+
+    async def _live(self) -> None:
+        wait = FIRST_WAIT
+        while True:
+            reason = "it ended the connection"
+            before = self._heard
+            try:
+                async with connect(
+                    self.url,
+                    compression=None,
+                    proxy=None,  # a robot is on this network, whatever the environment says
+                    max_size=LARGEST,
+                    open_timeout=OPENING_SECONDS,
+                    ping_interval=PING_SECONDS,
+                    ping_timeout=PONG_SECONDS,
+                    close_timeout=CLOSING_SECONDS,
+                ) as socket:
+                    await self._talk(socket)
+            except (OSError, WebSocketException, TimeoutError, ValueError) as error:
+                reason = str(error) or type(error).__name__
+            finally:
+                self._lose(reason)
+            wait = FIRST_WAIT if self._heard != before else min(2 * wait, LONGEST_WAIT)
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+
+    async def _talk(self, socket: ClientConnection) -> None:
+        self._urgent.clear()  # what was meant before a loss is not meant after it
+        self._queue.clear()
+        self._queue.extend(self._hello.values())
+        self._fragments = Fragments()
+        self._socket = socket
+        self._connected.set()
+        for does in self._on_connect:
+            does()
+        writing = asyncio.create_task(self._write(socket))
+        try:
+            async for text in socket:
+                self._hear(text)
+        finally:
+            writing.cancel()
+            await asyncio.gather(writing, return_exceptions=True)
+
+    async def _write(self, socket: ClientConnection) -> None:
+        with suppress(WebSocketException):
+            while True:
+                while self._urgent or self._queue:
+                    if self._urgent:
+                        text = self._urgent.pop(next(iter(self._urgent)))
+                    else:
+                        text = self._queue.popleft()
+                    await socket.send(text)
+                self._idle.set()
+                self._wake.clear()
+                await self._wake.wait()
+
+    def _stir(self) -> None:
+        self._idle.clear()
+        self._wake.set()
+
+    async def _flushed(self) -> None:
+        if self.connected:
+            await self._idle.wait()
+
+    def _lose(self, reason: str) -> None:
+        if self._connected.is_set():
+            self._tell(plain(f"The link to {self.url} was lost: {reason}"))
+        else:
+            self.tell_once(f"There is no link to {self.url}: {reason}")
+        self._socket = None
+        self._connected.clear()
+        self._waiting.lose(f"the link was lost: {reason}")
+
+    def _unreachable(self) -> str:
+        return plain(f"there is no link to {self.url}.")
+
+    def _greet(self, key: str, wire: Message) -> None:
+        fresh = _encoded(wire)
+        if self._hello.get(key) != fresh:
+            self._hello[key] = fresh
+            self._send(wire)
+
+    def _send(self, wire: Message) -> None:
+        """Queue something; without a connection it is forgotten."""
+        if self.connected:
+            if len(self._queue) >= QUEUED:
+                self._queue.popleft()
+            self._queue.append(_encoded(wire))
+            self._stir()
+
+    def _hear(self, text: str | bytes) -> None:
+        try:
+            message = json.loads(text)
+            if not isinstance(message, dict):
+                raise ValueError("it is no object")
+            whole = self._fragments.take(message) if message.get("op") == "fragment" else None
+        except (ValueError, RecursionError, KeyError, TypeError) as error:
+            self.tell_once(f"{self.url} sends what is no rosbridge message: {error}")
+            return
+        self._heard = self.clock()
+        if whole is not None:
+            self._hear(whole)
+            return
+        op = message.get("op")
+        if op == "publish":
+            self._published(message)
+        elif op in ("service_response", "action_result", "action_feedback"):
+            self._waiting.take(message)
+        elif op == "status":
+            if message.get("level") in ("error", "warning"):
+                self.tell_once(f"{self.url} says: {message.get('msg')}")
+        elif op != "fragment":
+            self.tell_once(f"{self.url} sends operation {op!r}, which is not heeded.")
+
+    def _published(self, message: Message) -> None:
+        topic = _full(str(message.get("topic", "")))
+        for hears in tuple(self._hears.get(topic, ())):
+            try:
+                hears(message["msg"])
+            except (KeyError, TypeError, ValueError, AttributeError, LookupError) as error:
+                wrong = f"{type(error).__name__}: {error}"
+                self.tell_once(f"A message of {topic} cannot be read: {wrong}")
+
+
+def _full(name: str) -> str:
+    return "/" + name.strip("/")
+
+
+def _encoded(wire: Message) -> str:
+    return json.dumps(wire, separators=(",", ":"), allow_nan=False)

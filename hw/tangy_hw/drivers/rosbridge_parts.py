@@ -1,0 +1,42 @@
+"""Messages that rosbridge sends in fragments, put together again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+OPEN = 16  # messages that may be incomplete at a time; the oldest is given up
+PIECES = 4_096  # fragments that a message may have
+LARGEST = 16 << 20  # characters of a whole message
+
+
+class Fragments:
+    """Fragments by their message, whatever order they come in."""
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self._open: dict[str, dict[int, str]] = {}
+
+    def take(self, fragment: Mapping[str, Any]) -> str | None:
+        """Take one fragment; return the whole text when it was the last that was missing.
+
+        Raises:
+            ValueError, KeyError, TypeError: it is none, or its message is too large.
+        """
+        key, number, total = str(fragment["id"]), fragment["num"], fragment["total"]
+        data = fragment["data"]
+        if not (isinstance(number, int) and isinstance(total, int) and isinstance(data, str)):
+            raise TypeError("a fragment's num and total are whole numbers, its data is a text")
+        if not 0 <= number < total <= PIECES:
+            raise ValueError(f"fragment {number} of {total}")
+        pieces = self._open.setdefault(key, {})
+        pieces[number] = data
+        if sum(map(len, pieces.values())) > LARGEST:
+            del self._open[key]
+            raise ValueError("a message in fragments is too large")
+        if len(pieces) >= total:
+            del self._open[key]
+            return "".join(pieces[place] for place in sorted(pieces))
+        while len(self._open) > OPEN:
+            del self._open[next(iter(self._open))]
+        return None

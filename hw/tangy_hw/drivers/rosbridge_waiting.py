@@ -1,0 +1,127 @@
+"""What was asked of a rosbridge server and is still to be answered: services and goals."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from itertools import count
+from typing import Any
+
+from tangy_hw.devices import DeviceError
+from tangy_profiles.reading import plain
+
+Message = Mapping[str, Any]
+
+SUCCEEDED, CANCELED = 4, 5  # as action_msgs/GoalStatus numbers them
+
+
+class Goal:
+    """A goal of an action of ROS 2, on its way."""
+
+    def __init__(
+        self,
+        key: str,
+        action: str,
+        feeds: Callable[[Message], None] | None,
+        cancels: Callable[[], None],
+    ) -> None:
+        """Know what to do with feedback, and how to cancel."""
+        self.key, self.action = key, action
+        self.feeds = feeds
+        self.given_up = False
+        self._cancels = cancels
+        self.over: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        """Its values; or what became of it, as a `DeviceError`."""
+        self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
+
+    def cancel(self) -> None:
+        """Ask the robot to give it up; that it did, `over` tells."""
+        if not self.over.done():
+            self.given_up = True
+            self._cancels()
+
+
+class Waiting:
+    """Answers that are awaited, by the id that both sides gave them."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._numbers = count(1)
+        self._calls: dict[str, tuple[str, asyncio.Future[Message]]] = {}
+        self._goals: dict[str, Goal] = {}
+
+    def call(self, service: str) -> tuple[str, asyncio.Future[Message]]:
+        """Return an id for a call, and what becomes of it."""
+        key = f"call {next(self._numbers)}"
+        future: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        self._calls[key] = service, future
+        return key, future
+
+    def goal(
+        self,
+        action: str,
+        feeds: Callable[[Message], None] | None,
+        send: Callable[[Message], None],
+    ) -> Goal:
+        """Return a new goal, which is cancelled by what `send` sends."""
+        key = f"goal {next(self._numbers)}"
+        cancel = {"op": "cancel_action_goal", "id": key, "action": action}
+        self._goals[key] = Goal(key, action, feeds, lambda: send(cancel))
+        return self._goals[key]
+
+    def forget(self, key: str) -> None:
+        """Await an answer no more."""
+        self._calls.pop(key, None)
+
+    def take(self, message: Message) -> None:
+        """Take an answer; one that nobody awaits is old."""
+        key, values = message.get("id"), message.get("values")
+        if not isinstance(key, str):
+            return
+        if message["op"] == "service_response" and key in self._calls:
+            service, future = self._calls.pop(key)
+            if future.done():
+                return
+            if message.get("result", True):
+                future.set_result(values if isinstance(values, Mapping) else {})
+            else:
+                future.set_exception(DeviceError(_says(f"{service} refused", values)))
+        elif message["op"] == "action_feedback" and key in self._goals:
+            feeds = self._goals[key].feeds
+            if feeds is not None and isinstance(values, Mapping):
+                with suppress(KeyError, TypeError, ValueError, AttributeError):
+                    feeds(values)
+        elif message["op"] == "action_result" and key in self._goals:
+            self._end(self._goals.pop(key), message)
+
+    def lose(self, reason: str) -> None:
+        """Answer all of them with the loss of the link."""
+        for name, future in self._calls.values():
+            if not future.done():
+                future.set_exception(DeviceError(plain(f"{name}: {reason}")))
+        for goal in self._goals.values():
+            if not goal.over.done():
+                goal.over.set_exception(DeviceError(plain(f"{goal.action}: {reason}")))
+        self._calls.clear()
+        self._goals.clear()
+
+    @staticmethod
+    def _end(goal: Goal, message: Message) -> None:
+        """Tell what became of a goal; some bridges say it inside the values, some not at all."""
+        values = message.get("values")
+        inside = values.get("status") if isinstance(values, Mapping) else None
+        status = message.get("status", inside)
+        if goal.over.done():
+            return
+        if status == SUCCEEDED or (status is None and message.get("result") and not goal.given_up):
+            goal.over.set_result(values if isinstance(values, Mapping) else {})
+            return
+        cancelled = status == CANCELED or (status is None and goal.given_up)
+        what = "was cancelled" if cancelled else "did not succeed"
+        goal.over.set_exception(DeviceError(_says(f"{goal.action} {what}", values)))
+
+
+def _says(what: str, values: object) -> str:
+    reason = values if isinstance(values, str) else ""
+    return plain(f"{what}: {reason}" if reason else f"{what}.")

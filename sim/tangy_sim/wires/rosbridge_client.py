@@ -1,0 +1,133 @@
+"""One client of a rosbridge server: what it subscribed to, and what is still to be said to it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from collections import deque
+from contextlib import suppress
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
+
+BACKLOG = 4 << 20  # characters that wait for a slow client before its oldest messages are lost
+EARLY_SECONDS = 1e-6  # by which a throttled message may come early: clocks round
+
+
+def full_name(name: str) -> str:
+    """Return a topic's or service's name with the slash that it may be written without."""
+    return "/" + name.strip("/")
+
+
+def encoded(message: object) -> str:
+    """Return a message as JSON; arrays become lists, and what is not finite null."""
+    try:
+        return _ENCODER.encode(message)
+    except ValueError:  # infinity and not-a-number are none of JSON's
+        return _ENCODER.encode(_finite(message))
+
+
+class Client:
+    """A connection with its subscriptions, goals, and the queue of what it is to be told."""
+
+    def __init__(self, connection: ServerConnection) -> None:
+        """Know its connection."""
+        self.connection = connection
+        self.topics: dict[str, dict[str, tuple[float, int]]] = {}
+        """Throttle in s and largest message by subscription, by topic."""
+        self.goals: dict[str, asyncio.Future[Any]] = {}
+        self.held: list[dict[str, Any]] = []
+        """What it said in a pause."""
+        self.unsaid: list[str] = []
+        """What it would have been answered in a pause."""
+        self._queue: deque[tuple[bool, str]] = deque()
+        self._size = 0
+        self._last: dict[str, float] = {}
+        self._wake = asyncio.Event()
+        self._fragmented = 0
+
+    def subscribe(self, topic: str, key: str, throttle: float, largest: int) -> None:
+        """Remember a subscription; one of the same key is replaced."""
+        self.topics.setdefault(topic, {})[key] = throttle, largest
+
+    def unsubscribe(self, topic: str, key: object = None) -> None:
+        """Forget one subscription to a topic, or all of them."""
+        kept = self.topics.get(topic, {})
+        kept.pop(str(key), None)
+        if key is None or not kept:
+            self.topics.pop(topic, None)
+
+    def is_due(self, topic: str, now: float) -> bool:
+        """Whether a message of a topic is to be sent now; it counts as sent then."""
+        if topic not in self.topics:
+            return False
+        throttle = min(seconds for seconds, _ in self.topics[topic].values())
+        if throttle and now - self._last.get(topic, -math.inf) < throttle - EARLY_SECONDS:
+            return False
+        self._last[topic] = now
+        return True
+
+    def largest(self, topic: str) -> int:
+        """Return how many characters a message of a topic may have in one piece; 0: any."""
+        return min((size for _, size in self.topics[topic].values() if size), default=0)
+
+    def say(self, text: str, *, loses: bool = False, largest: int = 0) -> None:
+        """Queue a text, in fragments where it is larger than it may be.
+
+        Args:
+            loses: whether it may be lost when the client reads too slowly.
+        """
+        if largest and len(text) > largest:
+            self._fragmented += 1
+            parts = [text[place : place + largest] for place in range(0, len(text), largest)]
+            for number, part in enumerate(parts):
+                whole = {"id": str(self._fragmented), "num": number, "total": len(parts)}
+                self._put(loses, encoded({"op": "fragment", "data": part, **whole}))
+        else:
+            self._put(loses, text)
+
+    async def write(self) -> None:
+        """Send what is queued, for as long as the connection stands."""
+        with suppress(ConnectionClosed):
+            while True:
+                while self._queue:
+                    _, text = self._queue.popleft()
+                    self._size -= len(text)
+                    await self.connection.send(text)
+                self._wake.clear()
+                await self._wake.wait()
+
+    def _put(self, loses: bool, text: str) -> None:
+        self._queue.append((loses, text))
+        self._size += len(text)
+        if self._size > BACKLOG:
+            kept: deque[tuple[bool, str]] = deque()
+            while self._queue and self._size > BACKLOG // 2:
+                lost, oldest = self._queue.popleft()
+                if lost:
+                    self._size -= len(oldest)
+                else:
+                    kept.append((lost, oldest))
+            self._queue.extendleft(reversed(kept))
+        self._wake.set()
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is nothing that JSON has")
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return _finite(value.tolist()) if hasattr(value, "tolist") else value
+
+
+_ENCODER = json.JSONEncoder(separators=(",", ":"), allow_nan=False, default=_plain)
