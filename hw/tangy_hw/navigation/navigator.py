@@ -1,0 +1,310 @@
+"""The navigator: where the robot is, where it is to go, and how to drive now.
+
+It has neither wires nor a clock of its own: whoever holds it tells it some ten times a second what
+the wheels and the laser say, and sends the twist that comes back to the base.
+"""
+
+from __future__ import annotations
+
+from math import hypot, pi
+from typing import Literal
+
+import numpy as np
+from numpy.random import Generator
+
+from tangy_hw.devices import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.navigation.localisation import Estimate, Localisation
+from tangy_hw.navigation.obstacles import Obstacles
+from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.planning import RADIUS, Path, PlanError, check_goal, plan
+from tangy_hw.navigation.poses import HERE, Floats, between, lengths
+from tangy_hw.navigation.pursuit import Limits, Pursuit
+from tangy_profiles.health import OK, Fact, Reading
+
+State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
+"""Nothing to do; on its way; turning to find itself; on another way; no way just now; there; there
+can never be a way."""
+
+PATIENCE = 1.0  # seconds something may stand in the way until another way is looked for
+AGAIN = 1.0  # seconds between two looks for a way while there is none
+NO_WAY = 2.0  # seconds without a way until it is said that there is none
+PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
+SPIN = 0.5  # rad/s while it looks around
+ASTRAY = 0.5  # metres off its path at which it looks for another
+LOOK_AHEAD = 50  # points of the path that are watched for obstacles: 2.5 m
+SLOW = 0.1  # m/s: a robot that drives faster stops before it takes another way
+SLIPS = 0.3  # metres of disagreement from which on the wheels do not grip
+
+
+class Navigator:
+    """Drives a robot to goals on a map."""
+
+    def __init__(
+        self,
+        map_: OccupancyMap,
+        rng: Generator,
+        start: Pose | None = None,
+        *,
+        limits: Limits | None = None,
+        radius: float = RADIUS,
+        laser: Pose = HERE,
+        people: Floats | None = None,
+    ) -> None:
+        """Begin at a pose.
+
+        Args:
+            map_: what is there.
+            rng: where chance comes from.
+            start: where the robot is, within some 10 cm; None: it may be anywhere.
+            limits: how it may drive.
+            radius: how near its middle may come to anything, in metres.
+            laser: where the scanner sits on the robot.
+            people: where people may be (n, 2), near whom it drives gently.
+        """
+        self.map = map_
+        self.limits = limits or Limits()
+        self.people = np.zeros((0, 2)) if people is None else people
+        self.state: State = "idle"
+        self.why = ""
+        """Why it failed or is blocked: one sentence."""
+        self.goal: Pose | None = None
+        self.path: Path | None = None
+        self.slip = 0.0
+        self.still = 0.0
+        self._radius, self._laser = radius, laser
+        self._localisation = Localisation(map_, rng, start, laser)
+        self._obstacles = Obstacles(map_, laser)
+        self._disagreement = Disagreement(laser)
+        self._pursuit: Pursuit | None = None
+        self._given_up: Floats | None = None
+        self._way = "clear"
+        self._estimate: Estimate | None = None
+        self._odometry: Pose | None = None
+        self._told = STILL
+        self._turned = self._turn_to = 0.0
+        self._waited = self._without = self._since_plan = 0.0
+        self._mark: tuple[float, float] | None = None
+        self._marked = 0.0
+
+    # ------------------------------------------------------------------ what it is told to do
+    def go(self, goal: Pose) -> None:
+        """Drive to a pose; another goal takes the place of the one before.
+
+        What is wrong with a goal is told by `state` (failed) and `why`.
+        """
+        self.cancel()
+        self.goal = goal
+        try:
+            check_goal(self.map, (goal.x, goal.y), self._radius)
+        except PlanError as error:
+            self.state, self.why = "failed", str(error)
+            return
+        self.state = "driving"
+        self._since_plan = AGAIN
+        self._without = 0.0
+
+    def spin(self, angle: float = 2 * pi) -> None:
+        """Turn on the spot by an angle, slowly, so that the robot finds itself."""
+        if self.state != "spinning":
+            self.cancel()
+        self.state = "spinning"
+        self._turned, self._turn_to = 0.0, angle
+
+    def cancel(self) -> None:
+        """Stand still, and forget the goal."""
+        self.state, self.why, self.goal = "idle", "", None
+        self._stop_following()
+        self._way = "clear"
+
+    def place(self, pose: Pose | None) -> None:
+        """Take it that the robot is at a pose now (None: anywhere), as staff say."""
+        self._localisation.place(pose)
+        self._obstacles.forget()
+        self._stop_following()
+
+    # ------------------------------------------------------------------ what it knows
+    @property
+    def estimate(self) -> Estimate | None:
+        """Where it thinks it is; None before the first scan."""
+        return self._estimate
+
+    @property
+    def obstacles(self) -> Floats:
+        """What it sees and the map does not have (n, 2)."""
+        return self._obstacles.points
+
+    @property
+    def particles(self) -> Floats:
+        """The poses it thinks possible (n, 3)."""
+        return self._localisation.particles
+
+    def facts(self) -> dict[str, Fact]:
+        """Return path, fit, spread, slip and still, as the diagnosis knows them."""
+        estimate = self._estimate
+        return {
+            "path": self._way,
+            "fit": estimate.fit if estimate else 1.0,
+            "spread": estimate.spread if estimate else 0.0,
+            "slip": self.slip,
+            "still": self.still,
+        }
+
+    def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
+        """Return the readings of the devices "localisation" and "navigator"."""
+        facts = self.facts()
+        place = {"fit": facts["fit"], "spread": facts["spread"]}
+        return (
+            Reading("localisation", age, OK, place),
+            Reading("navigator", age, OK, {"path": facts["path"]}),
+        )
+
+    # ------------------------------------------------------------------ driving
+    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+        """Take in the newest of wheels and laser, and return how to drive for the next `dt` s.
+
+        Without a scan the robot stands still, because it does not see where it would drive.
+        """
+        self._note_still(odometry, dt)
+        if scan is None:
+            self._told = STILL
+            return STILL
+        estimate = self._estimate = self._localisation.update(odometry.pose, scan)
+        self.slip = self._disagreement.update(odometry.pose, scan)
+        if estimate.spread < 0.3:
+            self._obstacles.see(estimate.pose, scan, dt)
+        self._told = self._command(estimate, odometry, scan, dt)
+        return self._told
+
+    def _note_still(self, odometry: Odometry, dt: float) -> None:
+        before, self._odometry = self._odometry, odometry.pose
+        if before is None or (abs(self._told.forward) < 0.02 and abs(self._told.turn) < 0.05):
+            self.still = 0.0
+            return
+        step = between(before, odometry.pose)
+        moved = (
+            hypot(step.x, step.y) > 0.1 * abs(self._told.forward) * dt + 1e-6
+            or abs(step.heading) > 0.1 * abs(self._told.turn) * dt + 1e-6
+        )
+        self.still = 0.0 if moved else self.still + dt
+
+    def _command(self, estimate: Estimate, odometry: Odometry, scan: Scan, dt: float) -> Twist:
+        if self.state == "spinning":
+            return self._spin(estimate, odometry, dt)
+        if self.goal is None or self.state in ("idle", "arrived", "failed"):
+            return STILL
+        if estimate.lost:
+            self._turned, self._turn_to = 0.0, 2 * pi
+            self.state = "spinning"
+            self._stop_following()
+            self._obstacles.forget()
+            return STILL
+        self._since_plan += dt
+        if self._pursuit is None:
+            self._find_way(estimate.pose, self.goal, dt)
+        if self._pursuit is None:
+            return STILL
+        return self._follow(self._pursuit, self.goal, estimate.pose, odometry, scan, dt)
+
+    def _spin(self, estimate: Estimate, odometry: Odometry, dt: float) -> Twist:
+        self._turned += abs(odometry.twist.turn) * dt
+        found = self.goal is not None and not estimate.lost and self._turned > pi / 2
+        if found or self._turned >= abs(self._turn_to):
+            if self.goal is not None and estimate.lost:
+                self._turned = 0.0
+            else:
+                self.state = "idle" if self.goal is None else "driving"
+                self._since_plan = AGAIN
+                return STILL
+        return Twist(0.0, SPIN if self._turn_to > 0 else -SPIN)
+
+    def _find_way(self, pose: Pose, goal: Pose, dt: float) -> None:
+        """Look for a way now and then; say so if there is none for a while."""
+        self._without += dt
+        if self._since_plan >= AGAIN:
+            self._since_plan = 0.0
+            path = self._plan(pose, goal)
+            if path is not None:
+                self._take(path, goal)
+                return
+        if self._without >= NO_WAY:
+            self._block("Something stands in every way there.")
+
+    def _plan(self, pose: Pose, goal: Pose) -> Path | None:
+        return plan(self.map, (pose.x, pose.y), (goal.x, goal.y), self.obstacles, self._radius)
+
+    def _take(self, path: Path, goal: Pose) -> None:
+        """Follow a way; if another was given up for it, say that it is another."""
+        if self._given_up is not None and _leaves(path.points, self._given_up):
+            self._way = "replanned"
+        elif self._way == "none":
+            self._way = "clear"
+        self.state = "replanned" if self._way == "replanned" else "driving"
+        self.why = ""
+        self.path = path
+        self._pursuit = Pursuit(path.points, goal.heading, self.limits, self._laser)
+        self._given_up = None
+        self._waited = self._without = 0.0
+
+    def _block(self, why: str) -> None:
+        self.state, self._way, self.why = "blocked", "none", why
+
+    def _stop_following(self) -> None:
+        self.path = self._pursuit = self._given_up = None
+        self._waited = self._without = self._marked = 0.0
+        self._mark = None
+
+    def _follow(
+        self, pursuit: Pursuit, goal: Pose, pose: Pose, odometry: Odometry, scan: Scan, dt: float
+    ) -> Twist:
+        ahead = pursuit.ahead
+        if lengths(ahead[:1] - (pose.x, pose.y))[0] > ASTRAY:  # it found itself elsewhere
+            self._pursuit = None
+            return STILL
+        obstacles = self.obstacles
+        wary_of = np.vstack((self.people, obstacles))
+        twist = pursuit.command(pose, odometry.twist, scan, dt, wary_of)
+        if pursuit.state == "arrived":
+            self.state, self._way = "arrived", "clear"
+            self._stop_following()
+            return STILL
+        stands = pursuit.state == "waiting"
+        if stands or _touches(ahead[:LOOK_AHEAD], obstacles, self._radius - 0.05):
+            self._waited += dt
+        else:
+            self._waited = 0.0
+        if self._waited >= PATIENCE and self._since_plan >= AGAIN:
+            self._since_plan = 0.0
+            path, self._given_up = self._plan(pose, goal), ahead
+            if path is not None:
+                self._take(path, goal)
+                return twist if twist.forward < SLOW else STILL
+            if stands:
+                self._pursuit = None
+        if not self._progressed(pose, dt):
+            self._pursuit, self._given_up, self._since_plan = None, ahead, -AGAIN
+            self._mark = None
+            self._block("It comes no further.")
+            return STILL
+        return twist
+
+    def _progressed(self, pose: Pose, dt: float) -> bool:
+        """Say whether it comes forward; wheels that do not grip are not the way's fault."""
+        far = self._mark is None or hypot(pose.x - self._mark[0], pose.y - self._mark[1]) > PROGRESS
+        if far or self.still > 0.5 or self.slip > SLIPS:
+            self._mark, self._marked = (pose.x, pose.y), 0.0
+        self._marked += dt
+        return self._marked < PROGRESS_SECONDS
+
+
+def _touches(path: Floats, obstacles: Floats, radius: float) -> bool:
+    """Say whether any of the obstacles stands in a path."""
+    if not len(path) or not len(obstacles):
+        return False
+    return bool((((path[::2, None] - obstacles[None]) ** 2).sum(axis=2) < radius**2).any())
+
+
+def _leaves(path: Floats, other: Floats, by: float = 0.3) -> bool:
+    """Say whether a path goes another way than another one did."""
+    apart = ((path[::4, None] - other[None, ::2]) ** 2).sum(axis=2)
+    return bool(apart.min(axis=1).max() > by**2)

@@ -1,0 +1,68 @@
+"""What the laser sees and the map does not have: chairs that were moved, bags, people."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tangy_hw.devices import Pose, Scan
+from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, wrap
+
+OFF = 0.2  # metres from everything on the map at which a thing is not on it
+RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
+SURE = 3  # scans in which a cell was hit until it counts
+KEPT = 15.0  # seconds after which what is not seen any more is forgotten
+BEHIND = 0.15  # metres by which a beam goes past a thing until that has gone
+
+
+class Obstacles:
+    """Remembers what is in the way for a while, cell by cell of the map."""
+
+    def __init__(self, map_: OccupancyMap, laser: Pose = HERE) -> None:
+        self._map = map_
+        self._laser = laser
+        self._new = map_.seen_distance > OFF
+        self._hits = np.zeros(map_.shape, dtype=np.int16)
+        self._age = np.zeros(map_.shape, dtype=np.float32)
+
+    def see(self, pose: Pose, scan: Scan, dt: float) -> None:
+        """Take in a scan from a pose, `dt` seconds after the one before."""
+        there = self._hits > 0
+        if there.any():
+            self._age[there] += dt
+            self._clear(pose, scan)
+        points = placed(endpoints(scan, RANGE, self._laser), pose)
+        rows, columns = self._map.cells_of(points)
+        hit = np.zeros(self._map.shape, dtype=np.bool_)
+        hit[rows, columns] = True
+        hit &= self._new
+        self._hits[hit] = np.minimum(self._hits[hit] + 1, 20)
+        self._age[hit] = 0.0
+
+    def _clear(self, pose: Pose, scan: Scan) -> None:
+        """Forget what is old, and what a beam goes through now."""
+        rows, columns = np.nonzero(self._hits)
+        map_, eye = self._map, compose(pose, self._laser)
+        x = map_.origin[0] + (columns + 0.5) * map_.resolution - eye.x
+        y = map_.origin[1] + (rows + 0.5) * map_.resolution - eye.y
+        beam = np.round((wrap(np.arctan2(y, x) - eye.heading) - scan.first) / scan.step)
+        seen = (beam >= 1) & (beam < len(scan.ranges) - 1)
+        beam = np.where(seen, beam, 1).astype(np.intp)
+        # the beams beside it must go past it as well: it may be thin
+        past = np.minimum(scan.ranges[beam], scan.ranges[beam - 1])
+        past = np.minimum(past, scan.ranges[beam + 1])
+        past = np.where(np.isfinite(past), past, 0.0)  # of such a beam nothing is known
+        gone = seen & (past > np.hypot(x, y) + BEHIND)
+        self._hits[rows[gone], columns[gone]] -= 2
+        self._hits[(self._hits < 0) | (self._age > KEPT)] = 0
+
+    @property
+    def points(self) -> Floats:
+        """Where something is that is not on the map (n, 2)."""
+        rows, columns = np.nonzero(self._hits >= SURE)
+        middles = np.column_stack((columns + 0.5, rows + 0.5))
+        return middles * self._map.resolution + self._map.origin
+
+    def forget(self) -> None:
+        """Forget all of it, as when the robot was somewhere else than it thought."""
+        self._hits[:] = 0

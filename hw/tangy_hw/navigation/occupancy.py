@@ -1,0 +1,132 @@
+"""Occupancy maps: which parts of the floor are free, which are not, and which nobody has seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+
+from tangy_hw.navigation.poses import Floats
+from tangy_profiles.room import Point, Room
+
+Cells: TypeAlias = NDArray[np.int8]
+Mask: TypeAlias = NDArray[np.bool_]
+
+FREE, OCCUPIED, UNKNOWN = 0, 100, -1
+"""What a cell can be, in the numbers of nav_msgs/OccupancyGrid."""
+
+MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors end on the map
+LEG = 0.06  # metres: a table's leg, square
+LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyMap:
+    """A grid over the floor.
+
+    `cells` (rows, columns) holds what a laser sees there: FREE, OCCUPIED or UNKNOWN; row 0 is the
+    lowest y, column 0 the lowest x. `origin` is the outer corner of that first cell, in metres.
+    `keep_out` (rows, columns) marks what a laser does not see and the robot must not touch all the
+    same: a table has legs at the height of a laser, and a top at the height of the robot.
+    """
+
+    cells: Cells
+    resolution: float
+    origin: tuple[float, float]
+    keep_out: Mask = field(default_factory=lambda: np.zeros((0, 0), dtype=np.bool_))
+
+    def __post_init__(self) -> None:
+        if self.keep_out.size == 0:
+            object.__setattr__(self, "keep_out", np.zeros(self.cells.shape, dtype=np.bool_))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.cells.shape[0], self.cells.shape[1]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and depth in metres."""
+        return self.shape[1] * self.resolution, self.shape[0] * self.resolution
+
+    @cached_property
+    def obstacles(self) -> Mask:
+        """What the robot must not touch: walls, what is kept out of, and the unknown."""
+        return np.asarray((self.cells != FREE) | self.keep_out)
+
+    @cached_property
+    def seen_distance(self) -> NDArray[np.float32]:
+        """Metres from each cell to the nearest one that a laser sees occupied."""
+        occupied = self.cells == OCCUPIED
+        if not occupied.any():
+            return np.full(self.shape, np.float32(max(self.size)))
+        distance = distance_transform_edt(~occupied, sampling=self.resolution)
+        return np.asarray(distance, dtype=np.float32)
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """Return the row and column of a point; they may lie outside the map."""
+        column = int(np.floor((x - self.origin[0]) / self.resolution))
+        return int(np.floor((y - self.origin[1]) / self.resolution)), column
+
+    def point(self, row: int, column: int) -> tuple[float, float]:
+        """Return the middle of a cell in metres."""
+        return (
+            self.origin[0] + (column + 0.5) * self.resolution,
+            self.origin[1] + (row + 0.5) * self.resolution,
+        )
+
+    def inside(self, row: int, column: int) -> bool:
+        """Say whether there is such a cell."""
+        return 0 <= row < self.shape[0] and 0 <= column < self.shape[1]
+
+    def cells_of(self, points: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return the rows and columns of those points (n, 2) that lie on the map."""
+        columns, rows = np.floor((points - self.origin) / self.resolution).astype(np.intp).T
+        on = (rows >= 0) & (columns >= 0) & (rows < self.shape[0]) & (columns < self.shape[1])
+        return rows[on], columns[on]
+
+    def free_points(self) -> Floats:
+        """Return the middles of all free cells (n, 2)."""
+        rows, columns = np.nonzero((self.cells == FREE) & ~self.keep_out)
+        return np.column_stack((columns + 0.5, rows + 0.5)) * self.resolution + self.origin
+
+
+def table_legs(room: Room) -> list[Point]:
+    """Return where the legs of a room's table stand: near its corners."""
+    left, near, right, far = room.table
+    return [
+        Point(x, y)
+        for x in (left + LEG_INSET, right - LEG_INSET)
+        for y in (near + LEG_INSET, far - LEG_INSET)
+    ]
+
+
+def map_of_room(room: Room, resolution: float = 0.05, seats: bool = True) -> OccupancyMap:
+    """Draw the map of a room from its profile.
+
+    A laser sees the walls and the legs of the table. The top of the table is kept out of, and so
+    are the seats (.25 m around each) unless `seats` is False: people and chairs come and go, so
+    they are not on the part of the map by which the robot finds its place.
+    """
+    side = max(1, round(MARGIN / resolution))
+    columns, rows = round(room.width / resolution) + 1, round(room.depth / resolution) + 1
+    cells = np.full((rows + 2 * side, columns + 2 * side), UNKNOWN, dtype=np.int8)
+    cells[side : side + rows, side : side + columns] = OCCUPIED
+    cells[side + 1 : side + rows - 1, side + 1 : side + columns - 1] = FREE
+    corner = -(side + 0.5) * resolution  # so that a wall runs through the middle of its cells
+    drawn = OccupancyMap(cells, resolution, (corner, corner))
+    xs = corner + (np.arange(cells.shape[1]) + 0.5) * resolution
+    ys = corner + (np.arange(cells.shape[0]) + 0.5) * resolution
+    for leg in table_legs(room):
+        half = max(LEG / 2, resolution / 2)
+        across = np.abs(xs - leg.x) <= half + 1e-9
+        cells[np.ix_(np.abs(ys - leg.y) <= half + 1e-9, across)] = OCCUPIED
+    left, near, right, far = room.table
+    drawn.keep_out[np.ix_((ys >= near) & (ys <= far), (xs >= left) & (xs <= right))] = True
+    for seat in room.seats if seats else ():
+        drawn.keep_out[np.hypot(xs[None, :] - seat.x, ys[:, None] - seat.y) <= 0.25] = True
+    return drawn

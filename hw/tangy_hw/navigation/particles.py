@@ -1,0 +1,107 @@
+"""Particles: poses (n, 3) that are moved, counted, resampled and summed up, all at once."""
+
+from __future__ import annotations
+
+from math import atan2, hypot, pi, sqrt
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from tangy_hw.devices import Pose
+from tangy_hw.navigation.poses import Floats, wrap
+
+ALPHA = 0.2  # all four of the odometry motion model: squared error for each squared unit moved
+FEWEST, MOST = 300, 2000
+BIN, BIN_ANGLE = 0.5, pi / 18  # of the histogram that says how many particles are needed
+ERROR, QUANTILE = 0.05, 2.33  # at most so far (KL) from the truth, with probability .99
+CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a guess that belong to it
+
+
+def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) -> Floats:
+    """Move each by the step of the wheels, and by its own error of it (Thrun et al., table 5.6)."""
+    distance = hypot(step.x, step.y)
+    first = atan2(step.y, step.x) if distance > 0.01 else 0.0
+    last = wrap(step.heading - first)
+    # driving backwards is not a turn by pi and another one
+    turned = min(abs(first), abs(wrap(first - pi))) ** 2
+    turned_last = min(abs(last), abs(wrap(last - pi))) ** 2
+    n, square = len(particles), distance**2
+    noise = rng.standard_normal((3, n))
+    way = distance + sqrt(alpha * (square + turned + turned_last)) * noise[0]
+    heading = particles[:, 2] + first + sqrt(alpha * (turned + square)) * noise[1]
+    ends = heading + last + sqrt(alpha * (turned_last + square)) * noise[2]
+    return np.column_stack(
+        (
+            particles[:, 0] + way * np.cos(heading),
+            particles[:, 1] + way * np.sin(heading),
+            wrap(ends),
+        )
+    )
+
+
+def around(
+    pose: Pose, deviations: tuple[float, float, float], count: int, rng: Generator
+) -> Floats:
+    """Draw particles around a pose, with standard deviations in x, y (metres) and heading."""
+    drawn: Floats = np.asarray(pose) + rng.standard_normal((count, 3)) * np.asarray(deviations)
+    drawn[:, 2] = wrap(drawn[:, 2])
+    return drawn
+
+
+def anywhere(points: Floats, resolution: float, count: int, rng: Generator) -> Floats:
+    """Draw particles evenly over cells, whose middles are given (n, 2), facing anywhere."""
+    chosen = points[rng.integers(len(points), size=count)]
+    chosen = chosen + rng.uniform(-resolution / 2, resolution / 2, (count, 2))
+    return np.column_stack((chosen, rng.uniform(-pi, pi, count)))
+
+
+def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
+    cells = np.floor(particles / (width, width, angle)).astype(np.int64)
+    cells -= cells.min(axis=0)
+    _, columns, headings = (int(n) + 1 for n in cells.max(axis=0))
+    return np.asarray((cells[:, 0] * columns + cells[:, 1]) * headings + cells[:, 2])
+
+
+def needed(particles: Floats) -> int:
+    """Return how many particles stand for as many places (KLD sampling; D. Fox, 2003)."""
+    k = len(np.unique(_bins(particles, BIN, BIN_ANGLE)))
+    if k < 2:
+        return FEWEST
+    a = 2.0 / (9.0 * (k - 1))
+    return int(np.clip((k - 1) / (2 * ERROR) * (1 - a + sqrt(a) * QUANTILE) ** 3, FEWEST, MOST))
+
+
+def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> Floats:
+    """Draw so many in proportion to their weights, which sum to 1, with one random number."""
+    if count == 0:
+        return particles[:0]
+    at = (np.arange(count) + rng.random()) / count
+    chosen = np.searchsorted(np.cumsum(weights), at)
+    return particles[np.minimum(chosen, len(particles) - 1)]
+
+
+def mean(particles: Floats, weights: Floats) -> Pose:
+    """Return the weighted mean."""
+    total = weights.sum()
+    x, y = weights @ particles[:, :2] / total
+    heading = atan2(weights @ np.sin(particles[:, 2]), weights @ np.cos(particles[:, 2]))
+    return Pose(float(x), float(y), heading)
+
+
+def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
+    """Return the mean of the likeliest cluster, and its covariance (3, 3)."""
+    bins = _bins(particles, BIN, pi / 6)
+    heaviest = int(np.argmax(np.bincount(np.unique(bins, return_inverse=True)[1], weights)))
+    inside = bins == np.unique(bins)[heaviest]
+    guess = mean(particles[inside], weights[inside])
+    for _ in range(2):
+        off = np.hypot(particles[:, 0] - guess.x, particles[:, 1] - guess.y)
+        inside = (off < CLUSTER) & (np.abs(wrap(particles[:, 2] - guess.heading)) < CLUSTER_ANGLE)
+        if not inside.any():
+            break
+        guess = mean(particles[inside], weights[inside])
+    offs = particles[inside] - np.asarray(guess)
+    offs[:, 2] = wrap(offs[:, 2])
+    share = weights[inside] / weights[inside].sum() if inside.any() else weights[inside]
+    return guess, np.asarray((offs * share[:, None]).T @ offs)

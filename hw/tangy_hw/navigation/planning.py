@@ -1,0 +1,196 @@
+"""Ways across a map: costs that keep off what must not be touched, and the cheapest way.
+
+Obstacles are inflated by their Euclidean distance; the cheapest way over the grid is found by
+Dijkstra's algorithm in its geometric form (`skimage.graph.MCP_Geometric`: the cost of a step is its
+length times the mean of the costs at its ends), and is then straightened where that costs nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+from skimage.graph import MCP_Geometric
+
+from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.poses import Floats, lengths
+from tangy_profiles.errors import TangyError
+
+RADIUS = 0.32  # metres: what stands nearer to the robot's middle than this would be touched
+COMFORT = 0.25  # metres over which the cost of being near something falls to a third
+DISLIKE = 4.0  # how much dearer a metre is right beside something than far off it
+STEP = 0.05  # metres between the points of a path
+OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
+
+
+class PlanError(TangyError):
+    """A goal that can never be reached; one sentence that says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Costs:
+    """What a metre costs in each cell (rows, columns); inf where the robot would touch something.
+
+    `distance` is how far the nearest obstacle is, in metres.
+    """
+
+    map: OccupancyMap
+    cost: Floats
+    distance: Floats
+
+    def at(self, x: float, y: float) -> float:
+        """Return the cost at a point; inf outside the map."""
+        row, column = self.map.cell(x, y)
+        return float(self.cost[row, column]) if self.map.inside(row, column) else inf
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A way: points (n, 2) some centimetres apart, its length in metres and what it costs."""
+
+    points: Floats
+    length: float
+    cost: float
+
+
+def inflate(map_: OccupancyMap, blocked: Floats | None = None, radius: float = RADIUS) -> Costs:
+    """Return what each cell costs, with more obstacles at the points `blocked` (n, 2)."""
+    free = ~map_.obstacles
+    if blocked is not None and len(blocked):
+        free[map_.cells_of(blocked)] = False
+    if free.all():
+        distance = np.full(map_.shape, max(map_.size))
+    else:
+        distance = np.asarray(distance_transform_edt(free, sampling=map_.resolution))
+    cost = 1.0 + DISLIKE * np.exp((radius - distance) / COMFORT)
+    cost[distance < radius] = inf
+    return Costs(map_, cost, distance)
+
+
+def nearest_free(costs: Costs, x: float, y: float, within: float = inf) -> tuple[float, float]:
+    """Return the point nearest to another at which the robot can stand.
+
+    Raises:
+        PlanError: there is none so near.
+    """
+    rows, columns = np.nonzero(np.isfinite(costs.cost))
+    if len(rows):
+        map_ = costs.map
+        xs = map_.origin[0] + (columns + 0.5) * map_.resolution
+        ys = map_.origin[1] + (rows + 0.5) * map_.resolution
+        off = np.hypot(xs - x, ys - y)
+        best = int(np.argmin(off))
+        if off[best] <= within:
+            return float(xs[best]), float(ys[best])
+    raise PlanError(f"There is no room for the robot near ({x:.2f}, {y:.2f}).")
+
+
+def plan(
+    map_: OccupancyMap,
+    start: tuple[float, float],
+    goal: tuple[float, float],
+    blocked: Floats | None = None,
+    radius: float = RADIUS,
+) -> Path | None:
+    """Find the cheapest way from one point to another; None if there is none.
+
+    A robot that stands nearer to something than it should first gets away from it. A goal that only
+    the obstacles of `blocked` (n, 2) take away is no error: there is no way to it just now.
+
+    Raises:
+        PlanError: the goal lies outside the map, or where the map says that something is.
+    """
+    check_goal(map_, goal, radius)
+    costs = inflate(map_, blocked, radius)
+    if not np.isfinite(costs.at(*goal)):
+        return None
+    try:
+        begin = nearest_free(costs, *start, within=OUT)
+    except PlanError:
+        return None
+    found = cheapest(costs, map_.cell(*begin), map_.cell(*goal))
+    if found is None:
+        return None
+    cells, cost = found
+    points: Floats = (cells[:, ::-1] + 0.5) * map_.resolution + map_.origin
+    points[-1] = goal
+    if np.isfinite(costs.at(*start)):
+        points[0] = start
+    else:
+        points = np.vstack((start, points))
+    points = resample(straighten(costs, points))
+    return Path(points, float(lengths(np.diff(points, axis=0)).sum()), cost)
+
+
+def check_goal(map_: OccupancyMap, goal: tuple[float, float], radius: float = RADIUS) -> None:
+    """Make sure that the map has room for the robot at a goal.
+
+    Raises:
+        PlanError: it has not.
+    """
+    row, column = map_.cell(*goal)
+    told = f"({goal[0]:.2f}, {goal[1]:.2f})"
+    if not map_.inside(row, column):
+        raise PlanError(f"The goal {told} lies outside the map.")
+    costs = inflate(map_, None, radius)
+    if np.isfinite(costs.cost[row, column]):
+        return
+    near = nearest_free(costs, *goal)
+    how = "inside an obstacle" if map_.obstacles[row, column] else f"within {radius:.2f} m of one"
+    raise PlanError(f"The goal {told} lies {how}; the nearest free point is "
+                    f"({near[0]:.2f}, {near[1]:.2f}).")  # fmt: skip
+
+
+def cheapest(
+    costs: Costs, start: tuple[int, int], goal: tuple[int, int]
+) -> tuple[NDArray[np.intp], float] | None:
+    """Return the cells (n, 2: row, column) of the cheapest way over the grid, and its cost."""
+    search = MCP_Geometric(np.where(np.isfinite(costs.cost), costs.cost, -1.0))
+    total, _ = search.find_costs([start], [goal])
+    cost = float(total[goal])
+    if not np.isfinite(cost):
+        return None
+    return np.asarray(search.traceback(goal), dtype=np.intp), cost * costs.map.resolution
+
+
+def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
+    """Return what the straight line between two points costs; inf if it touches something."""
+    length = hypot(*(end - start))
+    count = max(2, ceil(length / (costs.map.resolution / 2)) + 1)
+    points = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
+    rows, columns = costs.map.cells_of(points)
+    return float(costs.cost[rows, columns].mean()) * length if len(rows) == count else inf
+
+
+def straighten(costs: Costs, points: Floats, slack: float = 1.001) -> Floats:
+    """Leave out the points of a way that a straight line can do without at no more cost."""
+    steps = np.array([line_cost(costs, a, b) for a, b in pairwise(points)])
+    spent = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 1e6))))
+    kept, here, last = [0], 0, len(points) - 1
+    while here < last:
+        reach, stride = here + 1, 1
+        while reach + stride <= last:  # gallop ahead, and more carefully after a miss
+            there = reach + stride
+            worth = (spent[there] - spent[here]) * slack
+            if line_cost(costs, points[here], points[there]) <= worth:
+                reach, stride = there, stride * 2
+            elif stride == 1:
+                break
+            else:
+                stride = max(1, stride // 4)
+        kept.append(reach)
+        here = reach
+    return points[kept]
+
+
+def resample(points: Floats, step: float = STEP) -> Floats:
+    """Return points (n, 2) at even distances along a way, with both its ends."""
+    along = np.concatenate(([0.0], np.cumsum(lengths(np.diff(points, axis=0)))))
+    if along[-1] < 1e-9:
+        return points[[0, -1]]
+    at = np.linspace(0.0, along[-1], max(2, ceil(along[-1] / step) + 1))
+    return np.column_stack((np.interp(at, along, points[:, 0]), np.interp(at, along, points[:, 1])))

@@ -1,0 +1,192 @@
+"""Driving along a path: pure pursuit with limits, turns on the spot, and a stop for obstacles.
+
+The base is round and turns on the spot, so that turning is always possible; it drives forwards
+only, because that is where its laser looks. The steering law is that of R. Coulter, "Implementation
+of the pure pursuit path tracking algorithm", 1992: curvature = 2 y / L^2, where y is how far to the
+left a point of the path at the distance L lies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, hypot, inf, sqrt
+from typing import Literal
+
+import numpy as np
+
+from tangy_hw.devices import STILL, Pose, Scan, Twist
+from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
+
+State = Literal["driving", "turning", "waiting", "arrived"]
+"""Along the path; on the spot; for an obstacle to go away; there."""
+
+NEAREST, PER_SPEED, FURTHEST = 0.3, 0.6, 0.8  # metres looked ahead: at least, per m/s, at most
+AIM = 0.6  # radians off the path beyond which the robot first turns towards it
+AIMED = 0.1  # radians off at which it begins to drive
+THERE, FACING = 0.05, 0.04  # metres and radians off the goal at which it has arrived
+PASSED = 0.15  # metres from the goal from which on it is not driven after any more
+CREEP = 0.03  # m/s: slower than this is standing
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
+
+    `radius` is the robot's own, `gap` what it always keeps free ahead. Within `wary` of people it
+    drives at no more than `gentle`.
+    """
+
+    speed: float = 0.5
+    turn: float = 1.0
+    gain: float = 0.5
+    brake: float = 0.6
+    spin_up: float = 2.0
+    radius: float = 0.25
+    gap: float = 0.12
+    wary: float = 1.2
+    gentle: float = 0.25
+
+
+def free_ahead(points: Floats, curvature: float, half: float) -> float:
+    """Return how many metres a robot's middle can go on an arc until it touches one of the points.
+
+    Args:
+        points: what is around (n, 2), in the robot's frame.
+        curvature: of the arc, 1/m, positive to the left.
+        half: half the width that must be free, in metres.
+    """
+    if not len(points):
+        return inf
+    x, y = points[:, 0], points[:, 1]
+    if abs(curvature) < 0.02:
+        hit = (np.abs(y) < half) & (x > 0)
+        off, along = y[hit], x[hit]
+    else:
+        centre = 1.0 / curvature
+        away = np.hypot(x, y - centre) - abs(centre)
+        angle = np.arctan2(x, np.sign(curvature) * (centre - y))
+        hit = (np.abs(away) < half) & (angle > 0) & (angle < 2.0)
+        off, along = away[hit], angle[hit] * abs(centre)
+    if not len(along):
+        return inf
+    return float(np.min(along - np.sqrt(half**2 - off**2)))
+
+
+class Pursuit:
+    """Follows one path to its end, and there turns to the final heading."""
+
+    def __init__(
+        self,
+        path: Floats,
+        heading: float | None = None,
+        limits: Limits | None = None,
+        laser: Pose = HERE,
+    ) -> None:
+        """Begin.
+
+        Args:
+            path: points (n, 2) some centimetres apart, as `planning.plan` returns them.
+            heading: which way the robot faces at the end; None: as it comes.
+            limits: how it may drive.
+            laser: where the scanner sits on the robot.
+        """
+        self.path = path
+        self.heading = heading
+        self.limits = limits or Limits()
+        self.laser = laser
+        self.state: State = "turning"
+        self._at = 0
+        steps = lengths(np.diff(path, axis=0))
+        self._left = np.concatenate((np.cumsum(steps[::-1])[::-1], [0.0]))
+        self._close = False
+        self._aiming = True
+
+    @property
+    def left(self) -> float:
+        """Metres of the path that are left."""
+        return float(self._left[self._at])
+
+    @property
+    def ahead(self) -> Floats:
+        """The points of the path that are left (n, 2)."""
+        return self.path[self._at :]
+
+    def command(
+        self, pose: Pose, twist: Twist, scan: Scan, dt: float, wary_of: Floats | None = None
+    ) -> Twist:
+        """Return how to drive for the next `dt` seconds.
+
+        Args:
+            pose: where the robot is, in the frame of the path.
+            twist: how fast it drives now.
+            scan: what the laser sees now.
+            dt: seconds until the next command.
+            wary_of: where people may be (n, 2), in the frame of the path.
+        """
+        if self.state == "arrived":
+            return STILL
+        self._advance(pose)
+        goal = between(pose, Pose(float(self.path[-1, 0]), float(self.path[-1, 1]), 0.0))
+        off = hypot(goal.x, goal.y)
+        if off < THERE or (off < PASSED and (self._close or goal.x < 0)):
+            self._close = off < PASSED
+            return self._face(pose, twist, dt)
+        return self._drive(pose, twist, scan, dt, wary_of)
+
+    def _advance(self, pose: Pose) -> None:
+        """Go along the path to the point nearest to the robot, never back."""
+        window = self.path[self._at : self._at + 40]
+        self._at += int(np.argmin(lengths(window - (pose.x, pose.y))))
+
+    def _face(self, pose: Pose, twist: Twist, dt: float) -> Twist:
+        off = 0.0 if self.heading is None else wrap(self.heading - pose.heading)
+        if abs(off) < FACING and abs(twist.turn) < 0.2:
+            self.state = "arrived"
+            return STILL
+        self.state = "turning"
+        return self._turn(off, twist, dt)
+
+    def _drive(
+        self, pose: Pose, twist: Twist, scan: Scan, dt: float, wary_of: Floats | None
+    ) -> Twist:
+        limits = self.limits
+        look = min(FURTHEST, NEAREST + PER_SPEED * abs(twist.forward))
+        gone = self.left - self._left[self._at :]
+        beyond = int(np.searchsorted(gone, look))
+        target = self.path[min(self._at + beyond, len(self.path) - 1)]
+        seen = between(pose, Pose(float(target[0]), float(target[1]), 0.0))
+        off = atan2(seen.y, seen.x)
+        if abs(off) > AIM or (self._aiming and abs(off) > AIMED):
+            self._aiming = True
+            self.state = "turning"
+            return self._turn(off, twist, dt)
+        self._aiming = False
+        far = max(hypot(seen.x, seen.y), 0.1)
+        curvature = 2 * seen.y / far**2
+        left = max(self.left, hypot(self.path[-1][0] - pose.x, self.path[-1][1] - pose.y))
+        most = min(limits.speed, sqrt(2 * limits.brake * left) * 0.8, left * 1.5 + CREEP)
+        if abs(curvature) > 0.01:
+            most = min(most, limits.turn / abs(curvature))
+        points = endpoints(scan, laser=self.laser)
+        free = free_ahead(points, curvature, limits.radius + 0.02) - limits.gap
+        if free < left:  # what stands behind the goal is none of this way's business
+            most = min(most, sqrt(2 * limits.brake * max(0.0, free)))
+        if wary_of is not None and len(wary_of):
+            near = float(lengths(wary_of - (pose.x, pose.y)).min())
+            most = min(most, limits.gentle) if near < limits.wary else most
+        if most < CREEP:
+            self.state = "waiting"
+            return STILL
+        self.state = "driving"
+        forward = min(most, max(0.0, twist.forward) + limits.gain * dt)
+        return Twist(forward, float(np.clip(curvature * forward, -limits.turn, limits.turn)))
+
+    def _turn(self, off: float, twist: Twist, dt: float) -> Twist:
+        """Turn on the spot by an angle, as fast as it can be braked."""
+        limits = self.limits
+        if abs(twist.forward) > 2 * CREEP:  # first stand
+            return Twist(max(0.0, twist.forward - limits.brake * dt), 0.0)
+        fast = min(limits.turn, sqrt(limits.spin_up * abs(off)) * 0.7, 2.5 * abs(off))
+        fast = max(fast, min(0.15, abs(off) / max(dt, 1e-3)))
+        fast = min(fast, abs(twist.turn) + limits.spin_up * dt)
+        return Twist(0.0, fast if off > 0 else -fast)
