@@ -25,7 +25,9 @@ METHODS = ("tags", "paper")
 
 
 def read_card(
-    files: Annotated[list[Path] | None, typer.Argument(help="Pictures of cards.")] = None,
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="Pictures of cards, or folders of them.")
+    ] = None,
     called: Annotated[
         str | None,
         typer.Option(help="What was called, as in 5,17,62: say how the person is doing."),
@@ -84,12 +86,13 @@ def read_card(
         else:
             print("\n".join(counted.lines()))
         return
-    readings, refused = _readings(files or [], read, reader, draw)
+    files = _pictures(files or [])
+    readings, refused = _readings(files, read, reader, draw)
     if together and readings:
         one = reader.fuse([reading for _, reading in readings])
         readings = [(" + ".join(name for name, _ in readings), one)]
         if as_json:
-            readings = [(str((files or [Path()])[0]), one)]
+            readings = [(str(files[0]), one)]
     listed = [_row(name, reading, reader, loaded, numbers) for name, reading in readings]
     if as_json and listed:
         print_json(listed)
@@ -102,6 +105,30 @@ def read_card(
         _explain([reading for _, reading in readings])
     if refused:
         raise typer.Exit(2)
+
+
+def _pictures(paths: list[Path]) -> list[Path]:
+    """Put the pictures in folders, by their names, in the place of these.
+
+    A folder without any stays, to be refused as no picture.
+
+    Raises:
+        TangyError: a folder cannot be opened.
+    """
+    from tangy_hw.perception.pictures import ENDINGS
+
+    endings = {ending for several in ENDINGS.values() for ending in several}
+    pictures: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            pictures.append(path)
+            continue
+        try:
+            inside = sorted(one for one in path.iterdir() if one.suffix.lower() in endings)
+        except OSError as error:
+            raise TangyError(plain(f"{path}: cannot be opened ({error.strerror}).")) from None
+        pictures += inside or [path]
+    return pictures
 
 
 def _readings(

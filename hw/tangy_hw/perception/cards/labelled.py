@@ -89,7 +89,11 @@ def labelled(folder: Path, deck: Deck) -> list[Label]:
     labels = []
     for beside in sorted(folder.glob("*.json")):
         told = _json(beside)
-        label = told.get("label") if isinstance(told, dict) else None
+        if not isinstance(told, dict):
+            raise TangyError(
+                f"{plain(str(beside))}: must be what `tangy capture` writes, an object."
+            )
+        label = told.get("label")
         if label is None:
             continue
         seen = told.get("seen") if label is True else label
