@@ -1,0 +1,316 @@
+"""A laser scanner that speaks SCIP 2.0, over TCP or a serial port."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_hw.devices import DeviceError, Scan, Stamped
+from tangy_hw.drivers.scip_codec import (
+    Optics,
+    Reply,
+    ScipError,
+    decode,
+    decode_all,
+    joined,
+    named,
+    optics,
+    parse,
+    split,
+    trouble,
+)
+from tangy_hw.drivers.scip_link import Link, open_link
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Reading
+
+NEAR = 0.15
+"""A hand's breadth in m: beams that end within it see what covers the scanner."""
+
+WINDOW = 1.0
+"""Seconds within which beams change, unless the scanner is covered."""
+
+SEEN = 0.8
+"""Share of that time after which it can be told."""
+
+ANSWER_SECONDS = 1.0  # for a command; scanners answer within 10 ms
+SILENT_SECONDS = 2.0  # without a scan, after which the connection is made anew
+AGAIN_SECONDS = (0.1, 0.25, 0.5, 1.0)  # until it is tried again; the last for ever
+CLOCK = 1 << 24  # ms after which the scanner's clock begins again
+NEVER = 3600.0
+
+
+class _Refusal(DeviceError):
+    """The scanner itself says that it cannot measure."""
+
+
+class ScipLaser:
+    """A scanner that is asked to measure on and on; it is found again when it was gone.
+
+    Scans count from 1 on, in the order in which they came. `missed` is how many the scanner took
+    and we never got (as its own clock tells), `spoilt` how many replies came damaged, `connected`
+    how often a connection began to give scans.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        *,
+        name: str = "laser",
+        clock: Callable[[], float] = time.monotonic,
+        stale_after: float = 0.25,
+        turned: float = 0.0,
+        flipped: bool = False,
+        skip: int = 0,
+        baud: int = 115_200,
+    ) -> None:
+        """Prepare a scanner; nothing is opened before `start`.
+
+        Args:
+            address: `tcp://host:port`, or the path of a serial port.
+            name: what the robot's profile calls it.
+            clock: gives the time of the stamps, in s.
+            stale_after: s after which a scan is too old.
+            turned: by how much it looks to the left of where the robot faces, in radians.
+            flipped: it is mounted upside down.
+            skip: scans that are left out after each, 0 to 9.
+            baud: the speed of a serial port.
+        """
+        self.name = name
+        self.address = address
+        self.optics: Optics | None = None
+        self.about: Mapping[str, str] = MappingProxyType({})
+        """What it says of itself: its maker, firmware, serial number (VV)."""
+        self.missed = self.spoilt = self.connected = 0
+        self._clock = clock
+        self._stale_after = stale_after
+        self._turned, self._flipped, self._skip, self._baud = turned, flipped, skip, baud
+        self._link: Link | None = None
+        self._rest = b""
+        self._replies: deque[bytes] = deque()
+        self._scan: Stamped[Scan] | None = None
+        self._seen: deque[tuple[float, NDArray[np.int64]]] = deque()
+        self._facts: tuple[int, Mapping[str, Fact]] = (0, MappingProxyType({}))
+        self._arrived = asyncio.Event()
+        self._ticks: int | None = None
+        self._warned = -math.inf
+        self._refused = False  # by its own words, not by silence
+        self._why = "It was not started."
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def scan(self) -> Stamped[Scan] | None:
+        """The newest scan; None: there was none yet."""
+        return self._scan
+
+    @property
+    def why(self) -> str:
+        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        return self._why
+
+    async def start(self) -> None:
+        """Begin to look for it and to measure."""
+        if self._task is None:
+            self._why = f"{self.name} at {self.address} has not answered yet."
+            self._task = asyncio.create_task(self._run(), name=f"scip {self.name}")
+
+    async def close(self) -> None:
+        """End for good: its laser is switched off, where it can still be told to."""
+        task, self._task = self._task, None
+        if task is None:
+            return
+        task.cancel()
+        await asyncio.wait({task})
+
+    async def after(self, seq: int) -> Stamped[Scan]:
+        """Wait for a scan of a higher number than `seq`, and return the newest."""
+        while self._scan is None or self._scan.seq <= seq:
+            self._arrived.clear()
+            await self._arrived.wait()
+        return self._scan
+
+    def reading(self) -> Reading:
+        """Return its state, the age of its newest scan, and what is told of what it sees.
+
+        `near_share` is the share of beams that end within `NEAR`; `variety` the share that changed
+        within a second, told when a second was seen.
+        """
+        now = self._clock()
+        age = NEVER if self._scan is None else min(max(0.0, now - self._scan.stamp), NEVER)
+        if self._refused:
+            return Reading(self.name, age, ERROR)
+        if self._scan is None or age > self._stale_after:
+            return Reading(self.name, age, STALE)
+        return Reading(self.name, age, WARN if now - self._warned < WINDOW else OK, self._told())
+
+    def _told(self) -> Mapping[str, Fact]:
+        assert self._scan is not None  # noqa: S101
+        seq, facts = self._facts
+        if seq != self._scan.seq:
+            told: dict[str, Fact] = {"near_share": float(np.mean(self._scan.value.ranges < NEAR))}
+            if self._seen[-1][0] - self._seen[0][0] >= SEEN * WINDOW:
+                taken = np.stack([ranges for _, ranges in self._seen])
+                told["variety"] = float(np.mean(taken.min(0) != taken.max(0)))
+            facts = MappingProxyType(told)
+            self._facts = self._scan.seq, facts
+        return facts
+
+    async def _run(self) -> None:
+        tries = 0
+        while True:
+            before = self.connected
+            try:
+                self._link = await open_link(self.address, self._baud)
+                self._rest, self._ticks = b"", None
+                self._replies.clear()
+                await self._begin()
+                await self._measure()
+            except DeviceError as error:
+                self._refused = isinstance(error, _Refusal)
+                self._why = f"{self.name} at {self.address} {error}."
+            except (OSError, ScipError) as error:
+                self._refused = False
+                self._why = f"{self.name} at {self.address} broke off ({error})."
+            finally:
+                await self._hang_up()
+            tries = 0 if self.connected > before else tries + 1
+            await asyncio.sleep(AGAIN_SECONDS[min(tries, len(AGAIN_SECONDS) - 1)])
+
+    async def _hang_up(self) -> None:
+        link, self._link = self._link, None
+        if link is None:
+            return
+        with contextlib.suppress(OSError, TimeoutError):
+            async with asyncio.timeout(0.2):
+                await link.write(b"QT\n")
+        await asyncio.sleep(0)  # a moment in which it can leave
+        link.close()
+
+    async def _begin(self) -> None:
+        """Bring the scanner to rest, ask what it is, light its laser."""
+        # It may be measuring still for whoever had it before, or hold half a command of theirs.
+        await self._ask(b"QT", tries=2)
+        await self._ask(b"SCIP2.0", also=("0", "0E", "0F", "0J"))
+        self.optics = optics(named((await self._ask(b"PP")).lines))
+        self.about = MappingProxyType(dict(named((await self._ask(b"VV")).lines)))
+        await self._ask(b"BM", also=("02",))
+
+    async def _ask(self, command: bytes, *, also: tuple[str, ...] = (), tries: int = 1) -> Reply:
+        """Send a command and return its answer; answers to anything else are passed over.
+
+        Raises:
+            DeviceError: it does not answer, or refuses.
+        """
+        assert self._link is not None  # noqa: S101
+        for last in range(tries - 1, -1, -1):
+            await self._link.write(command + b"\n")
+            try:
+                async with asyncio.timeout(ANSWER_SECONDS):
+                    while True:
+                        reply = await self._next()
+                        if reply.echo == command:
+                            break
+                break
+            except TimeoutError:
+                if not last:
+                    raise DeviceError("does not answer") from None
+        if reply.status not in also and (problem := trouble(reply.status, command.decode())):
+            raise _Refusal(f"cannot measure: {problem}")
+        return reply
+
+    async def _next(self) -> Reply:
+        """Return the next sound reply.
+
+        Raises:
+            OSError: the connection has ended.
+        """
+        while True:
+            while not self._replies:
+                came = await self._link.read() if self._link is not None else b""
+                if not came:
+                    raise ConnectionResetError("the connection has ended")
+                whole, self._rest = split(self._rest + came)
+                self._replies.extend(whole)
+            try:
+                return parse(self._replies.popleft())
+            except ScipError:
+                self._damaged()
+
+    async def _measure(self) -> None:
+        """Take scans until there are none any more."""
+        assert self.optics is not None and self._link is not None  # noqa: S101
+        command = b"MD%04d%04d01%d00" % (self.optics.first, self.optics.last, self._skip)
+        await self._link.write(command + b"\n")
+        heard, self._why = self._clock(), ""
+        while True:
+            try:
+                async with asyncio.timeout(ANSWER_SECONDS):
+                    reply = await self._next()
+            except TimeoutError:
+                # On a bench that stands still no time has passed, and nothing is wrong.
+                if self._clock() - heard >= SILENT_SECONDS:
+                    raise DeviceError("sends nothing any more") from None
+                continue
+            if reply.echo != command:
+                continue
+            if reply.status == "99":
+                try:
+                    self._take(reply)
+                except ScipError:
+                    self._damaged()
+                    continue
+                heard = self._clock()
+            elif reply.status == "0M":
+                self._warned = self._clock()
+            elif problem := trouble(reply.status):
+                raise _Refusal(f"cannot measure: {problem}")
+
+    def _take(self, reply: Reply) -> None:
+        """Make a scan of a measurement.
+
+        Raises:
+            ScipError: it is damaged, or not as long as it should be.
+        """
+        assert self.optics is not None  # noqa: S101
+        have = joined(reply.lines[1:])
+        ticks = decode(joined(reply.lines[:1]))
+        measured = decode_all(have, 3)
+        if len(measured) != self.optics.last - self.optics.first + 1:
+            raise ScipError("not as many distances as were asked for")
+        nearest, farthest = self.optics.nearest * 1000, self.optics.farthest * 1000
+        # Below and beyond its limits stand the scanner's reasons why nothing was measured.
+        measured[(measured < nearest) | (measured > farthest)] = 0
+        ranges = np.where(measured > 0, measured / 1000, np.inf)
+        first = (self.optics.first - self.optics.front) * self.optics.step
+        if self._flipped:
+            ranges, first = ranges[::-1].copy(), -first - (len(ranges) - 1) * self.optics.step
+        ranges.flags.writeable = False
+        scan = Scan(first + self._turned, self.optics.step, ranges, self.optics.farthest)
+        self._count(ticks)
+        stamp = self._clock()
+        self._seen.append((stamp, measured))
+        while self._seen[0][0] < stamp - WINDOW:
+            self._seen.popleft()
+        self._scan = Stamped(scan, stamp, 1 if self._scan is None else self._scan.seq + 1)
+        self._refused, self._why = False, ""
+        self._arrived.set()
+
+    def _count(self, ticks: int) -> None:
+        """Count the scans that the scanner took since the last and that never came."""
+        assert self.optics is not None  # noqa: S101
+        if self._ticks is None:
+            self.connected += 1
+        else:
+            turns = (ticks - self._ticks) % CLOCK * self.optics.rate / 1000
+            self.missed += max(0, round(turns / (self._skip + 1)) - 1)
+        self._ticks = ticks
+
+    def _damaged(self) -> None:
+        self.spoilt += 1
+        self._warned = self._clock()

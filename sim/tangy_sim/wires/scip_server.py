@@ -1,0 +1,249 @@
+"""A laser scanner on the network or on a serial port, in whose place a bench measures."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import tty
+from collections.abc import Iterator
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_sim.wires.scip_session import CLOCK, URG, Scanner, Session
+
+MOST_UNSENT = 1 << 18
+"""Bytes that wait for a client that is slow; then it misses scans, as it would with a scanner."""
+
+
+class _Wire(Protocol):
+    session: Session
+
+    @property
+    def unsent(self) -> int: ...
+
+    def cut(self) -> None: ...
+
+
+class ScipServer:
+    """Answers as a SCIP 2.0 scanner does, and gives each scan to every client that measures.
+
+    Faults: while `silent` nothing is said, and what is asked is lost; while `closed` connections
+    are cut and new ones are cut at once; `fault` is the status of a scanner that is broken
+    ("0L", or "70" when its motor stalls), given instead of scans.
+    """
+
+    def __init__(self, scanner: Scanner = URG) -> None:
+        self.scanner = scanner
+        self.silent = False
+        self.fault = ""
+        self.sent = 0
+        """Scans that at least one client got."""
+        self.port = 0
+        self._closed = False
+        self._now = 0
+        self._wires: set[_Wire] = set()
+        self._server: asyncio.Server | None = None
+        self._ready = asyncio.Event()
+
+    @property
+    def url(self) -> str:
+        """Its address."""
+        return f"tcp://127.0.0.1:{self.port}"
+
+    @property
+    def closed(self) -> bool:
+        """Whether it lets nobody in."""
+        return self._closed
+
+    @closed.setter
+    def closed(self, so: bool) -> None:
+        self._closed = so
+        if so:
+            for wire in tuple(self._wires):
+                wire.cut()
+
+    @property
+    def measuring(self) -> int:
+        """How many clients wait for scans."""
+        return sum(wire.session.measuring for wire in self._wires)
+
+    async def start(self, host: str = "127.0.0.1", port: int = 0) -> None:
+        """Listen; at a free port if none is given."""
+        loop = asyncio.get_running_loop()
+        self._server = await loop.create_server(lambda: _Connection(self), host, port)
+        self.port = self._server.sockets[0].getsockname()[1]
+
+    def serve_serial(self, path: str = "") -> str:
+        """Answer on a serial port, too; without one, on a new pseudo-terminal.
+
+        When it is `closed`, it is pulled out, and does not come back.
+
+        Returns:
+            The port that a client opens: the other end of a new one, else what was given.
+        """
+        if path:
+            near = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+            far = path
+            self._wires.add(_Port(self, near))
+        else:
+            near, other = os.openpty()
+            tty.setraw(other)
+            os.set_blocking(near, False)
+            far = os.ttyname(other)
+            self._wires.add(_Port(self, near, held=other))  # so that it stays when a client goes
+            return far
+        tty.setraw(near)
+        return far
+
+    def send(self, ranges: NDArray[np.float64], stamp_ms: int) -> int:
+        """Give a scan to everybody who measures.
+
+        Args:
+            ranges: metres, one for each beam; inf or beyond the scanner's reach: nothing is there.
+            stamp_ms: the scanner's time in ms.
+
+        Returns:
+            How many clients got it.
+        """
+        if len(ranges) != self.scanner.beams:
+            raise ValueError(f"{len(ranges)} ranges for {self.scanner.beams} beams")
+        self._now = stamp_ms
+        distances = in_millimetres(self.scanner, ranges)
+        got = 0
+        for wire in tuple(self._wires):
+            wire.session.fault = self.fault
+            if not self.silent and wire.unsent < MOST_UNSENT:
+                got += wire.session.offer(distances, stamp_ms % CLOCK)
+        self.sent += got > 0
+        return got
+
+    async def somebody(self, count: int = 1) -> None:
+        """Wait until so many clients measure."""
+        while self.measuring < count:
+            self._ready.clear()
+            await self._ready.wait()
+
+    async def close(self) -> None:
+        """End, with all connections."""
+        for wire in tuple(self._wires):
+            wire.cut()
+        if self._server is not None:
+            self._server.close()
+            await self._server.wait_closed()
+
+    def _joined(self, wire: _Wire) -> None:
+        self._wires.add(wire)
+
+    def _left(self, wire: _Wire) -> None:
+        self._wires.discard(wire)
+
+    def _heard(self, wire: _Wire, came: bytes) -> None:
+        if not self.silent:
+            wire.session.fault = self.fault
+            wire.session.feed(came)
+            self._ready.set()
+
+
+def in_millimetres(scanner: Scanner, ranges: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return distances as a scanner writes them, in mm: what is out of its reach is `nothing`."""
+    with np.errstate(invalid="ignore"):
+        reached = (ranges >= scanner.nearest) & (ranges <= scanner.farthest)
+    whole = np.rint(np.where(reached, ranges, 0.0) * 1000).astype(np.int64)
+    return np.where(reached, whole, scanner.nothing)
+
+
+class _Connection(asyncio.Protocol):
+    """A client on the network."""
+
+    def __init__(self, server: ScipServer) -> None:
+        self._server = server
+        self._transport: asyncio.Transport | None = None
+        self.session = Session(server.scanner, self._send)
+
+    @property
+    def unsent(self) -> int:
+        return self._transport.get_write_buffer_size() if self._transport is not None else 0
+
+    def cut(self) -> None:
+        self._server._left(self)
+        if self._transport is not None:
+            self._transport.abort()
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)  # noqa: S101
+        self._transport = transport
+        if self._server.closed:
+            transport.abort()
+        else:
+            self._server._joined(self)
+
+    def data_received(self, data: bytes) -> None:
+        self._server._heard(self, data)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        self._server._left(self)
+
+    def _send(self, answer: bytes) -> None:
+        if self._transport is not None:
+            self._transport.write(answer)
+
+
+class _Port:
+    """A client at a serial port."""
+
+    def __init__(self, server: ScipServer, port: int, held: int | None = None) -> None:
+        self._server, self._port, self._held = server, port, held
+        self._waiting = bytearray()
+        self._gone = False
+        self._loop = asyncio.get_running_loop()
+        self._loop.add_reader(port, self._receive)
+        self.session = Session(server.scanner, self._send)
+
+    @property
+    def unsent(self) -> int:
+        return len(self._waiting)
+
+    def cut(self) -> None:
+        if self._gone:
+            return
+        self._gone = True
+        self._server._left(self)
+        self._loop.remove_reader(self._port)
+        self._loop.remove_writer(self._port)
+        for port in (self._port, self._held):
+            if port is not None:
+                os.close(port)
+
+    def _receive(self) -> None:
+        with self._cut_at_need():
+            came = os.read(self._port, 4096)
+            if not came:  # the other end was pulled out
+                self.cut()
+            self._server._heard(self, came)
+
+    def _send(self, answer: bytes) -> None:
+        self._waiting += answer
+        self._flush()
+
+    def _flush(self) -> None:
+        if self._gone:
+            return
+        self._loop.remove_writer(self._port)
+        with self._cut_at_need():
+            try:
+                while self._waiting:
+                    del self._waiting[: os.write(self._port, self._waiting)]
+            except BlockingIOError:
+                self._loop.add_writer(self._port, self._flush)
+
+    @contextlib.contextmanager
+    def _cut_at_need(self) -> Iterator[None]:
+        try:
+            yield
+        except BlockingIOError:
+            pass
+        except OSError:
+            self.cut()

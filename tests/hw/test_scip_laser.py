@@ -1,0 +1,290 @@
+"""A laser scanner is read over its own wire, and says of itself what the diagnosis must know."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import AsyncIterator
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tangy_hw.drivers import scip
+from tangy_hw.drivers.scip import ScipLaser
+from tangy_sim.wires.scip_server import ScipServer
+from tangy_sim.wires.scip_session import URG, UTM, Scanner
+from tests.hw.waiting import PATIENCE, until
+
+ROOM = np.linspace(0.3, 4.0, URG.beams)
+
+
+class Bench:
+    """A scanner and what reads it, on a clock that stands still unless it is told."""
+
+    def __init__(self) -> None:
+        self.server = ScipServer(URG)
+        self.now = 100.0
+        self.turns = 0
+        self.laser: ScipLaser
+
+    async def attach(self, **settings: float | bool) -> None:
+        self.laser = ScipLaser(self.server.url, clock=lambda: self.now, **settings)  # type: ignore[arg-type]
+        await self.laser.start()
+        await self.measuring()
+
+    async def measuring(self) -> None:
+        async with asyncio.timeout(PATIENCE):
+            await self.server.somebody()
+
+    async def turn(self, ranges: NDArray[np.float64], *, lost: int = 0) -> NDArray[np.float64]:
+        """Let the scanner turn, a tenth of a second later; return what was read."""
+        self.turns += 1 + lost
+        self.now += 0.1 * (1 + lost)
+        seq = self.laser.scan.seq if self.laser.scan else 0
+        assert self.server.send(ranges, 100 * self.turns) == 1
+        async with asyncio.timeout(PATIENCE):
+            return (await self.laser.after(seq)).value.ranges
+
+    async def state(self, wanted: str) -> None:
+        """Wait until it is in a state."""
+        await until(lambda: self.laser.reading().state == wanted)
+
+
+@pytest.fixture
+async def bench() -> AsyncIterator[Bench]:
+    made = Bench()
+    await made.server.start()
+    yield made
+    await made.laser.close()
+    await made.server.close()
+
+
+class TestScans:
+    async def test_distances_come_as_they_were_measured(self, bench: Bench) -> None:
+        await bench.attach()
+        assert bench.laser.scan is None and bench.laser.reading().state == "STALE"
+        read = await bench.turn(ROOM)
+        scan = bench.laser.scan
+        assert scan is not None
+        assert np.abs(read - ROOM).max() <= 0.0005
+        assert (scan.seq, scan.stamp) == (1, bench.now)
+        assert scan.value.first == pytest.approx(-math.radians(120))
+        assert scan.value.step == pytest.approx(math.tau / 540)
+        assert scan.value.farthest == 5.6
+        assert bench.laser.reading().state == "OK"
+        assert bench.laser.about["PROT"] == "SCIP 2.0"
+
+    async def test_what_is_not_known_is_endless(self, bench: Bench) -> None:
+        await bench.attach()
+        ranges = ROOM.copy()
+        ranges[:4] = [math.inf, 5.7, 0.019, math.nan]
+        read = await bench.turn(ranges)
+        assert np.isinf(read[:4]).all() and np.isfinite(read[4:]).all()
+
+    async def test_they_cannot_be_written_to(self, bench: Bench) -> None:
+        await bench.attach()
+        read = await bench.turn(ROOM)
+        with pytest.raises(ValueError, match="read-only"):
+            read[0] = 1.0
+
+    async def test_scans_that_never_came_are_counted(self, bench: Bench) -> None:
+        await bench.attach()
+        for lost in (0, 0, 3, 0, 1):
+            await bench.turn(ROOM, lost=lost)
+        assert bench.laser.missed == 4
+        assert bench.laser.scan is not None and bench.laser.scan.seq == 5
+
+    async def test_the_scanners_clock_may_begin_again(self, bench: Bench) -> None:
+        await bench.attach()
+        bench.turns = (1 << 24) // 100 - 2
+        for _ in range(5):
+            await bench.turn(ROOM)
+        assert bench.laser.missed == 0
+
+    async def test_one_that_hangs_upside_down_sees_the_other_way_round(self, bench: Bench) -> None:
+        await bench.attach(flipped=True, turned=math.pi)
+        read = await bench.turn(ROOM)
+        scan = bench.laser.scan
+        assert scan is not None
+        assert np.abs(read - ROOM[::-1]).max() <= 0.0005
+        # The beam that was straight ahead still is, behind the robot.
+        ahead = round((math.pi - scan.value.first) / scan.value.step)
+        assert read[ahead] == pytest.approx(ROOM[URG.front], abs=0.0005)
+
+    @pytest.mark.parametrize("scanner", [URG, UTM])
+    async def test_angles_are_those_of_the_scanner(self, scanner: Scanner) -> None:
+        server = ScipServer(scanner)
+        await server.start()
+        laser = ScipLaser(server.url)
+        await laser.start()
+        async with asyncio.timeout(PATIENCE):
+            await server.somebody()
+            server.send(np.full(scanner.beams, 1.0), 0)
+            scan = (await laser.after(0)).value
+        assert scan.first == pytest.approx(scanner.first)
+        assert scan.step == pytest.approx(scanner.step)
+        assert scan.farthest == scanner.farthest
+        await laser.close()
+        await server.close()
+
+
+class TestFacts:
+    async def test_a_share_of_beams_is_near(self, bench: Bench) -> None:
+        await bench.attach()
+        ranges = ROOM.copy()
+        ranges[:90] = 0.06
+        await bench.turn(ranges)
+        assert bench.laser.reading().facts["near_share"] == pytest.approx(0.25)
+
+    async def test_variety_is_told_when_a_second_was_seen(self, bench: Bench) -> None:
+        await bench.attach()
+        rng = np.random.default_rng(1)
+        for turn in range(12):
+            ranges = ROOM.copy()
+            ranges[180:] += rng.normal(0, 0.01, 180)
+            await bench.turn(ranges)
+            if turn in (7, 9):
+                assert ("variety" in bench.laser.reading().facts) == (turn == 9)
+        assert bench.laser.reading().facts["variety"] == pytest.approx(0.5, abs=0.02)
+
+    async def test_a_covered_scanner_has_no_variety_whatever_its_reasons(
+        self, bench: Bench
+    ) -> None:
+        await bench.attach()
+        rng = np.random.default_rng(1)
+        for _ in range(12):
+            # Below its nearest distance it writes why nothing was measured, and that flickers.
+            await bench.turn(rng.uniform(0, 0.019, URG.beams))
+        assert bench.laser.reading().facts["variety"] == 0
+
+    async def test_what_changed_is_forgotten_after_a_second(self, bench: Bench) -> None:
+        await bench.attach()
+        await bench.turn(ROOM + 0.1)
+        for _ in range(11):
+            await bench.turn(ROOM)
+        assert bench.laser.reading().facts["variety"] == 0
+
+
+class TestFaults:
+    async def test_a_scan_grows_old(self, bench: Bench) -> None:
+        await bench.attach()
+        await bench.turn(ROOM)
+        bench.now += 0.3
+        reading = bench.laser.reading()
+        assert reading.state == "STALE" and reading.age == pytest.approx(0.3)
+        assert not reading.facts
+
+    async def test_one_whose_cable_is_pulled_out_is_found_again(self, bench: Bench) -> None:
+        await bench.attach()
+        await bench.turn(ROOM)
+        bench.server.closed = True
+        await until(lambda: bool(bench.laser.why))
+        bench.server.closed = False
+        await bench.measuring()
+        await bench.turn(ROOM)
+        assert (bench.laser.reading().state, bench.laser.why) == ("OK", "")
+        assert bench.laser.connected == 2
+        assert bench.laser.scan is not None and bench.laser.scan.seq == 2
+
+    async def test_one_that_says_nothing_any_more_is_asked_again(
+        self, bench: Bench, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(scip, "ANSWER_SECONDS", 0.05)
+        await bench.attach()
+        await bench.turn(ROOM)
+        bench.server.silent = True
+        await asyncio.sleep(0.2)
+        assert not bench.laser.why  # the clock stands still: so may the scanner
+        bench.now += 3
+        await until(lambda: "does not answer" in bench.laser.why)
+        assert bench.laser.reading().state == "STALE"
+        bench.server.silent = False
+        await bench.measuring()
+        await bench.turn(ROOM)
+        assert (bench.laser.reading().state, bench.laser.why) == ("OK", "")
+
+    @pytest.mark.parametrize("status", ["0L", "70"])
+    async def test_one_whose_motor_stalls_says_so_and_comes_back(
+        self, bench: Bench, status: str
+    ) -> None:
+        await bench.attach()
+        await bench.turn(ROOM)
+        bench.server.fault = status
+        bench.server.send(ROOM, 200)
+        await bench.state("ERROR")
+        assert "cannot measure" in bench.laser.why
+        bench.server.fault = ""
+        await bench.measuring()
+        await bench.turn(ROOM)
+        assert (bench.laser.reading().state, bench.laser.why) == ("OK", "")
+
+    async def test_one_that_is_not_there_is_waited_for(self) -> None:
+        server = ScipServer()
+        await server.start()
+        port = server.port
+        await server.close()
+        laser = ScipLaser(f"tcp://127.0.0.1:{port}")
+        await laser.start()
+        await until(lambda: "nobody listens" in laser.why)
+        async with asyncio.timeout(PATIENCE):
+            await server.start(port=port)
+            await server.somebody()
+            server.send(ROOM, 0)
+            await laser.after(0)
+        await laser.close()
+        await server.close()
+
+    @pytest.mark.parametrize("address", ["tcp://", "udp://a:1", "tcp://x:y", "/dev/no-such-port"])
+    async def test_an_address_that_is_none_is_told(self, address: str) -> None:
+        laser = ScipLaser(address)
+        await laser.start()
+        await until(lambda: "not answered yet" not in laser.why)
+        assert laser.reading().state == "STALE"
+        assert address in laser.why and laser.why.endswith(".")
+        await laser.close()
+
+    async def test_damaged_scans_are_left_out_and_told(self) -> None:
+        """A cable that spoils every third reply, and cuts and glues the others as it likes."""
+        server = ScipServer()
+        await server.start()
+        tasks: set[asyncio.Task[None]] = set()
+
+        async def cable(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            there, back = await asyncio.open_connection("127.0.0.1", server.port)
+
+            async def ask() -> None:
+                while came := await reader.read(100):
+                    back.write(came)
+
+            tasks.add(asyncio.create_task(ask()))
+            scans, held = 0, b""
+            while came := await there.read(777):
+                held += came
+                *whole, held = held.split(b"\n\n")
+                out = b""
+                for one in whole:
+                    scans += b"\n99b\n" in one
+                    if b"\n99b\n" in one and scans % 3 == 0:
+                        one = one[:-30] + b"\x7f" + one[-29:]
+                    out += one + b"\n\n"
+                for begin in range(0, len(out), 333):
+                    writer.write(out[begin : begin + 333])
+                    await writer.drain()
+
+        between = await asyncio.start_server(cable, "127.0.0.1", 0)
+        port = between.sockets[0].getsockname()[1]
+        laser = ScipLaser(f"tcp://127.0.0.1:{port}")
+        await laser.start()
+        async with asyncio.timeout(PATIENCE):
+            await server.somebody()
+            for turn in range(9):
+                server.send(ROOM, 100 * turn)
+        await until(lambda: laser.spoilt == 3 and laser.scan is not None and laser.scan.seq == 6)
+        assert laser.reading().state == "WARN"
+        assert laser.missed == 2  # the ninth, too, was spoilt, but no scan came after it
+        await laser.close()
+        between.close()
+        await server.close()
+        for task in tasks:
+            task.cancel()

@@ -1,0 +1,22 @@
+"""Waiting for what others do in their own time."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+PATIENCE = 10.0
+"""Seconds after which something that should happen is missed."""
+
+
+async def until(so: Callable[[], bool], patience: float = PATIENCE) -> None:
+    """Wait until something is so.
+
+    Raises:
+        AssertionError: it is not so in time.
+    """
+    for _ in range(round(patience * 100)):
+        if so():
+            return
+        await asyncio.sleep(0.01)
+    raise AssertionError("it did not come about in time")
