@@ -200,6 +200,16 @@ class Sensors:
             return await self._cameras[device].frame(after=after, wait=FRAME_SECONDS, fit=fit)
         return None
 
+    async def frame(self, device: str, *, after: int = -1) -> Frame | None:
+        """Return a camera's newest picture as it is, of a higher number than `after`.
+
+        None: none came within a second.
+
+        Raises:
+            CameraError: none will come any more.
+        """
+        return await self._cameras[device].frame(after=after, wait=FRAME_SECONDS)
+
     @contextmanager
     def reading_cards(self) -> Iterator[None]:
         """Read cards as long as somebody is in it."""

@@ -52,6 +52,8 @@ class RequestSource:
         self.seats = seats
         self.tell: Callable[[str], None] = _nobody
         """Is called with a sentence when something must be said about the source."""
+        self.looks = 0
+        """How many pictures it has looked at, where it looks at pictures."""
         self._people = tuple(people)
         self._asks: dict[int, Ask] = {}
         self._changed = asyncio.Event()

@@ -173,6 +173,7 @@ class Signs(RequestSource):
                 self._ask(seat, sure, frame.stamp)
             for seat in set(self._asks) - set(asks):
                 self._withdraw(seat)
+            self.looks += 1
             if not self.camera.source.each:
                 await asyncio.sleep(max(0.0, PAUSE - (time.monotonic() - frame.stamp)))
 

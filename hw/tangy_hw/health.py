@@ -1,0 +1,75 @@
+"""Watchdogs (III-C): what each device says of itself, how old that is, and whether it may drive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
+from tangy_profiles.robot import Robot
+
+Report = Callable[[], Reading]
+"""Gives the newest reading of a device."""
+
+DRIVES_BY = ("link", "stop_button", "base", "laser", "localisation", "navigator")
+"""The devices that must be well for the robot to drive, as far as it has them."""
+
+DARK = 0.6
+"""Share of beams that end at once from which a laser scanner is covered (robot notes)."""
+
+
+class Watchdogs:
+    """The health of a robot: one report for each device of its profile."""
+
+    def __init__(self, robot: Robot, reports: Mapping[str, Report]) -> None:
+        """Watch a robot's devices.
+
+        Args:
+            robot: whose devices they are.
+            reports: how each of them tells; a device without one is not there, so that nothing
+                can be wrong with it.
+        """
+        self._robot = robot
+        self._reports = dict(reports)
+        self._silenced: dict[str, str] = {}
+
+    def health(self) -> Health:
+        """Return the newest reading of every device."""
+        return tuple(self._reading(name) for name in self._robot.devices)
+
+    def fail(self, device: str, state: str = ERROR) -> None:
+        """Take a device for broken, whatever it says; "OK" takes that back."""
+        if state == OK:
+            self._silenced.pop(device, None)
+        else:
+            self._silenced[device] = state
+
+    def hazard(self) -> str:
+        """Say why the robot must not drive now, "" if it may."""
+        for name in DRIVES_BY:
+            if name not in self._reports:
+                continue
+            reading = self._reading(name)
+            state = self.state(reading)
+            if state in (ERROR, STALE):
+                said = "says nothing" if state == STALE else "has an error"
+                return f"{self._robot.devices[name].label} {said}"
+            if reading.facts.get("latched"):
+                return f"{self._robot.devices[name].label} is pressed"
+            near = reading.facts.get("near_share", 0.0)
+            if isinstance(near, float) and near > DARK:
+                return f"{self._robot.devices[name].label} is covered"
+        return ""
+
+    def state(self, reading: Reading) -> str:
+        """Return the state of a device: STALE where its data is older than its profile allows."""
+        if reading.state == ERROR:
+            return ERROR
+        device = self._robot.devices.get(reading.device)
+        fresh = device is None or reading.age <= device.stale_after
+        return reading.state if fresh else STALE
+
+    def _reading(self, name: str) -> Reading:
+        report = self._reports.get(name)
+        reading = Reading(name) if report is None else report()
+        silenced = self._silenced.get(name)
+        return reading if silenced is None else reading._replace(state=silenced)

@@ -1,0 +1,70 @@
+"""How time passes for a robot: in ticks, at each of which it looks, decides and drives.
+
+On a machine's clock ticks come by themselves. On a bench in a hurry they come only while somebody
+waits for time to pass: what takes real time (a picture, a face) takes none of the robot's.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from tangy_hw.devices import Clock
+
+TICK = 0.05
+"""Seconds between two ticks: a base wants a command ten times a second, and staleness is to stop
+it within .35 s."""
+
+
+class PassingTime:
+    """The ticks of a robot: `run` lets them come, `until` waits for what comes about with them."""
+
+    def __init__(self, clock: Clock, tick: Callable[[], None], *, stepped: bool = False) -> None:
+        """Prepare.
+
+        Args:
+            clock: the robot's time.
+            tick: is called at each tick.
+            stepped: time stands still while nobody waits for it.
+        """
+        self.clock = clock
+        self._tick = tick
+        self._stepped = stepped
+        self._waiting = 0
+        self._wanted = asyncio.Event()
+        self._next: asyncio.Future[None] | None = None
+
+    async def run(self) -> None:
+        """Tick until it is cancelled."""
+        while True:
+            if self._stepped and not self._waiting:
+                self._wanted.clear()
+                await self._wanted.wait()
+            await self.clock.sleep(TICK)
+            self._tick()
+            come, self._next = self._next, None
+            if come is not None:
+                come.set_result(None)
+            if self._stepped:
+                await asyncio.sleep(0)  # whoever waited goes on, and may wait again, before
+                await asyncio.sleep(0)  # more time passes
+
+    async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Let time pass until something holds; return whether it does, after at most so many s."""
+        deadline = self.clock.now() + seconds
+        self._waiting += 1
+        self._wanted.set()
+        try:
+            while not condition():
+                if self.clock.now() >= deadline:
+                    return False
+                if self._next is None:
+                    self._next = asyncio.get_running_loop().create_future()
+                await asyncio.shield(self._next)
+            return True
+        finally:
+            self._waiting -= 1
+
+    async def sleep(self, seconds: float) -> None:
+        """Let so much time pass."""
+        await self.until(lambda: False, seconds)

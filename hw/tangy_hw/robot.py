@@ -1,0 +1,384 @@
+"""The robot itself, as the robot process holds it: it drives, speaks, shows, looks, and stops.
+
+Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
+how, and tells the base. What it must not do it does not do, whatever the program wants: while an
+emergency stop is pressed, a device that it drives by is silent, or the program is, it stands still.
+A stop waits behind nothing and latches; only `release` takes it back.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from tangy_hw.devices import (
+    STILL,
+    Arms,
+    Base,
+    ChestScreen,
+    Clock,
+    Device,
+    DeviceError,
+    Laser,
+    Picture,
+    Pose,
+    StopButton,
+    Twist,
+    Voice,
+)
+from tangy_hw.health import Report, Watchdogs
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.planning import plan
+from tangy_hw.passing_time import PassingTime
+from tangy_hw.perception.requests.asking import Ask, RequestSource
+from tangy_hw.senses import Senses
+from tangy_profiles.health import WARN, Fact, Health, Reading
+from tangy_profiles.robot import Robot
+from tangy_profiles.state import FRONT
+
+DRIVE_SECONDS = 180.0  # for one drive; ten metres with three detours take 60
+SPIN_SECONDS = 60.0
+SPEECH_SECONDS = 60.0  # for one line
+POSE_SECONDS = 1.5  # in which arms are where they should be
+POSE_PATIENCE = 6.0
+BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
+KEPT_SECONDS = 3.0  # for which a drive that was broken off still says why
+BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
+
+
+class BrokenOff(DeviceError):
+    """Something was not done to its end, because the robot has to stand still."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """The devices of a robot that are there; what it has not is None."""
+
+    base: Base
+    laser: Laser
+    stop_button: StopButton | None = None
+    arms: Arms | None = None
+    voice: Voice | None = None
+    screen: ChestScreen | None = None
+    others: tuple[Device, ...] = ()
+    """What else is opened and closed: a link that several of them share."""
+
+    @property
+    def all(self) -> tuple[Device, ...]:
+        """All of them, those first through which others are reached."""
+        own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
+        return (*self.others, *(device for device in own if device is not None))
+
+
+class LiveRobot:
+    """A robot that is switched on. `start` it, and `close` it at the end, which stops it."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        body: Body,
+        navigator: Navigator,
+        clock: Clock,
+        *,
+        senses: Senses | None = None,
+        requests: RequestSource | None = None,
+        stepped: bool = False,
+    ) -> None:
+        """Put it together.
+
+        Args:
+            robot: its profile.
+            body: its devices.
+            navigator: what finds its place and its way.
+            clock: its time.
+            senses: what reads its pictures.
+            requests: who asks for help.
+            stepped: its time stands still while nothing is done.
+        """
+        self.robot = robot
+        self.navigator = navigator
+        self.senses = senses
+        self.requests = requests
+        self.alone: Callable[[], str] = str
+        """Says why nobody holds the reins any more, "" as long as somebody does."""
+        self.stopped = ""
+        """Why it was stopped, until it is released."""
+        self.going = ""
+        """Where it is driving to."""
+        self.passing = PassingTime(clock, self._tick, stepped=stepped)
+        self._body = body
+        self._clock = clock
+        self._hand: tuple[Twist, float] | None = None
+        self._driven = STILL
+        self._sent: asyncio.Task[None] | None = None
+        self._gaze = ""
+        self._blocked: Pose | None = None
+        self._kept: tuple[Mapping[str, Fact], float] = {}, 0.0
+        self._ticked = clock.now()
+        self._watchdogs = Watchdogs(robot, self._reports())
+        self._ticking: asyncio.Task[None] | None = None
+
+    # ------------------------------------------------------------------------ on and off
+
+    async def start(self) -> None:
+        """Switch its devices on."""
+        for device in self._body.all:
+            await device.start()
+        if self.requests is not None:
+            await self.requests.start()
+        self._ticking = asyncio.create_task(self.passing.run())
+
+    async def close(self) -> None:
+        """Stop it, and switch its devices off."""
+        with suppress(Exception):
+            await self._body.base.stop()
+        if self._ticking is not None:
+            self._ticking.cancel()
+            await asyncio.wait([self._ticking])
+        if self.requests is not None:
+            await self.requests.close()
+        for device in reversed(self._body.all):
+            with suppress(Exception):  # the others are to be closed as well
+                await device.close()
+
+    # ------------------------------------------------------------------------ what it knows
+
+    def health(self) -> Health:
+        """Return the newest reading of every device."""
+        return self._watchdogs.health()
+
+    @property
+    def pose(self) -> Pose:
+        """Where it believes to be."""
+        estimate = self.navigator.estimate
+        return Pose(0.0, 0.0, 0.0) if estimate is None else estimate.pose
+
+    @property
+    def asking(self) -> tuple[Ask, ...]:
+        """Who asks for help, the one who has waited longest first."""
+        return () if self.requests is None else self.requests.asking
+
+    @property
+    def hazard(self) -> str:
+        """Why it stands still, "" if it may drive."""
+        return self.stopped or self.alone() or self._watchdogs.hazard()
+
+    # ------------------------------------------------------------------------ what it does
+
+    async def perform(
+        self,
+        *,
+        text: str = "",
+        picture: Picture | None = None,
+        posture: Mapping[str, Sequence[float]] | None = None,
+    ) -> dict[str, bool]:
+        """Say, show and gesture at once; return which of it was done.
+
+        What cannot be done is left out: its device says so in its reading.
+
+        Raises:
+            BrokenOff: it was stopped meanwhile.
+        """
+        doing: dict[str, Coroutine[Any, Any, None]] = {}
+        if self._body.voice is not None and text:
+            doing["said"] = self._body.voice.say(text)
+        if self._body.screen is not None and picture is not None:
+            doing["shown"] = self._body.screen.show(picture)
+        if self._body.arms is not None and posture:
+            doing["posed"] = self._body.arms.pose(posture, POSE_SECONDS)
+            self._gaze = ""
+        tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
+        try:
+            await self.passing.until(
+                lambda: bool(self.stopped) or all(task.done() for task in tasks.values()),
+                SPEECH_SECONDS,
+            )
+        finally:
+            for task in tasks.values():
+                task.cancel()
+            await asyncio.gather(*tasks.values(), return_exceptions=True)
+        if self.stopped:
+            raise BrokenOff(self.stopped)
+        return {
+            what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
+        }
+
+    async def go(self, goal: Pose, name: str = "") -> bool:
+        """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).
+
+        Raises:
+            BrokenOff: it has to stand still, and why.
+        """
+        self.going = name or FRONT
+        self._blocked = None
+        self._kept = {}, 0.0
+        try:
+            self.navigator.go(goal)
+            arrived = await self._drive(DRIVE_SECONDS)
+            self._blocked = None if arrived else goal
+            return arrived
+        finally:
+            self.going = ""
+
+    async def spin(self) -> bool:
+        """Turn on the spot to find its place; return whether it has.
+
+        Raises:
+            BrokenOff: it has to stand still, and why.
+        """
+        self.navigator.spin()
+        return await self._drive(SPIN_SECONDS)
+
+    async def look_at(self, what: str) -> None:
+        """Turn the eyes to a card or a face, as the robot's profile says how."""
+        angles = self.robot.gaze.get(what)
+        if angles and self._body.arms is not None and self._gaze != what:
+            await self.perform(posture=angles)
+            self._gaze = what
+
+    def replan(self) -> None:
+        """Look whether there is a way again to where there was none."""
+        goal, here = self._blocked, self.pose
+        if goal is not None:
+            seen = self.navigator.obstacles
+            if plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen) is not None:
+                self._blocked = None
+
+    def drive_by_hand(self, twist: Twist) -> None:
+        """Drive as somebody says who holds a key; it holds for a moment, and not where it must
+        not drive."""
+        self.navigator.cancel()
+        self._hand = twist, self._clock.now() + BY_HAND_SECONDS
+
+    async def stop(self, why: str) -> None:
+        """Stand still now, and be quiet; it latches."""
+        self.stopped = self.stopped or why
+        self._hand = None
+        self._driven = STILL
+        await self._body.base.stop()
+        self.navigator.cancel()
+        if self._body.voice is not None:
+            await self._body.voice.hush()
+
+    def release(self) -> None:
+        """Let it move again."""
+        self.stopped = ""
+        self._blocked = None
+
+    def fail(self, device: str, state: str) -> None:
+        """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
+        self._watchdogs.fail(device, state)
+
+    async def restart(self, device: str) -> None:
+        """Switch a device off and on again."""
+        for one in self._body.all:
+            if one.name == device:
+                await one.close()
+                await one.start()
+
+    async def relax(self) -> None:
+        """Let the arms hang without torque."""
+        if self._body.arms is not None:
+            await self._body.arms.relax()
+
+    # ------------------------------------------------------------------------ in each tick
+
+    async def _drive(self, seconds: float) -> bool:
+        """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
+        navigator, since = self.navigator, [self._clock.now()]
+
+        def over() -> bool:
+            now = self._clock.now()
+            if navigator.state != "blocked":
+                since[0] = now
+            return (
+                bool(self.hazard)
+                or navigator.state in ("arrived", "failed", "idle")
+                or now - since[0] > BLOCKED_SECONDS
+            )
+
+        await self.passing.until(over, seconds)
+        arrived = navigator.state == "arrived"
+        hazard = self.hazard
+        if not arrived:
+            # What showed only while it drove is evidence for a moment longer.
+            facts = {name: navigator.facts()[name] for name in ("still", "slip")}
+            self._kept = facts, self._clock.now() + KEPT_SECONDS
+            navigator.cancel()
+            await self._body.base.stop()
+        if hazard and not arrived:
+            raise BrokenOff(hazard)
+        return arrived
+
+    def _tick(self) -> None:
+        """Look, decide, and tell the base."""
+        base, laser = self._body.base, self._body.laser
+        now = self._clock.now()
+        passed, self._ticked = now - self._ticked, now
+        odometry, scan = base.odometry, laser.scan
+        command = STILL
+        if odometry is not None:
+            seen = None if scan is None else scan.value
+            command = self.navigator.tick(odometry.value, seen, passed)
+        if self._hand is not None:
+            twist, until = self._hand
+            command = twist if now < until else STILL
+            if now >= until:
+                self._hand = None
+        if self.hazard:
+            command = STILL
+        if command != STILL or self._driven != STILL:
+            self._send(command)
+
+    def _send(self, command: Twist) -> None:
+        """Tell the base; a command that could not be handed over is followed by the next."""
+        halting = command == STILL and self._driven != STILL
+        if not halting and self._sent is not None and not self._sent.done():
+            return
+        self._driven = command
+        work = self._body.base.stop() if command == STILL else self._body.base.drive(command)
+        self._sent = asyncio.create_task(_quietly(work))
+
+    # ------------------------------------------------------------------------ its devices
+
+    def _reports(self) -> dict[str, Report]:
+        reports: dict[str, Report] = {device.name: device.reading for device in self._body.all}
+        reports["base"] = self._base_reading
+        reports["localisation"] = self._localisation_reading
+        reports["navigator"] = self._navigator_reading
+        if self.requests is not None:
+            reports["requests"] = self.requests.reading
+        if self.senses is not None:
+            for name in self.senses.sensors.cameras:
+                reports[name] = partial(self._camera_reading, name)
+        return reports
+
+    def _camera_reading(self, name: str) -> Reading:
+        assert self.senses is not None  # noqa: S101 - or nobody would ask
+        readings = self.senses.sensors.health()
+        return next((r for r in readings if r.device == name), Reading(name, state=WARN))
+
+    def _base_reading(self) -> Reading:
+        facts, own = self.navigator.facts(), self._body.base.reading()
+        kept, until = self._kept
+        told = {name: facts[name] for name in ("still", "slip")}
+        if self._clock.now() < until:
+            told |= kept
+        return own._replace(facts={**own.facts, **told})
+
+    def _localisation_reading(self) -> Reading:
+        return self.navigator.readings()[0]
+
+    def _navigator_reading(self) -> Reading:
+        reading = self.navigator.readings()[1]
+        return reading._replace(facts={"path": "none"}) if self._blocked is not None else reading
+
+
+async def _quietly(work: Coroutine[Any, Any, None]) -> None:
+    with suppress(DeviceError):  # its reading tells
+        await work
+

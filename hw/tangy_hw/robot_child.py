@@ -1,0 +1,312 @@
+"""The robot process: `python -P -m tangy_hw.robot_child`, spoken to by JSON lines over its pipes.
+
+The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "do": "go", ...} is
+answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
+broken off}; several may be under way. {"beat": n} says that the program lives, without an answer.
+By itself it says {"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
+
+Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
+nothing comes through it for a while it stops, and says so when it is asked again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from tangy_hw.devices import DeviceError, Picture, Pose, Twist
+from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.wiring import Wired, wire
+from tangy_profiles.errors import TangyError
+from tangy_profiles.health import Health
+
+BEAT_SECONDS = 0.1
+SILENT_SECONDS = 0.35
+"""For so long the program may say nothing while the robot drives: it then stops within .6 s."""
+SILENT_STEPPED = 20.0
+"""On a bench in a hurry nothing moves by itself, and the program may be busy."""
+MOST_PARTICLES = 60  # that are told, of those by which it finds its place
+LONGEST_LINE = 1 << 22
+MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
+
+Asked = dict[str, Any]
+Answer = dict[str, Any]
+
+
+class RobotProcess:
+    """Does what the lines ask for, and tells of the robot."""
+
+    def __init__(self, wired: Wired, say: Callable[[Answer], None], *, stepped: bool) -> None:
+        """Take charge of a robot that is wired up; `say` writes a line."""
+        self.robot: LiveRobot = wired.robot
+        self._wired = wired
+        self._say = say
+        self._patience = SILENT_STEPPED if stepped else SILENT_SECONDS
+        self._stepped = stepped
+        self._heard = time.monotonic()
+        self._unheard = ""
+        self._doing: dict[int, asyncio.Task[None]] = {}
+        self.robot.alone = self._why_alone
+        self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
+            "perform": self._perform,
+            "go": self._go,
+            "spin": self._spin,
+            "card": self._card,
+            "face": self._face,
+            "wait": self._wait,
+            "settle": self._settle,
+            "replan": self._replan,
+            "answered": self._answered,
+            "restart": self._restart,
+            "relax": self._relax,
+            "place": self._place,
+            "fail": self._fail,
+        }
+
+    # ---------------------------------------------------------------------- the lines
+
+    async def take(self, line: bytes) -> None:
+        """Take a line of the program."""
+        self._heard = time.monotonic()
+        try:
+            asked = json.loads(line)
+            do = asked.get("do")
+        except (ValueError, AttributeError):
+            self._say({"failed": "That line is no JSON object."})
+            return
+        if "beat" in asked:
+            return
+        if do == "stop":  # it waits behind nothing
+            await self.robot.stop(str(asked.get("why", "stopped")))
+            self._break_off(str(asked.get("why", "stopped")))
+        elif do == "release":
+            self.robot.release()
+            self._unheard = ""
+        elif do == "cancel":
+            self.robot.navigator.cancel()
+            self._break_off(str(asked.get("why", "called off")))
+        elif do == "drive":
+            self.robot.drive_by_hand(Twist(float(asked["forward"]), float(asked["turn"])))
+        elif do in self._deeds:
+            task = asyncio.create_task(self._do(asked))
+            self._doing[asked["id"]] = task
+            task.add_done_callback(lambda _: self._doing.pop(asked["id"], None))
+            return
+        else:
+            self._answer(asked, failed=f"It cannot do {do!r}.")
+            return
+        self._answer(asked, done={})
+
+    def _answer(self, asked: Asked, **what: Any) -> None:
+        if "id" in asked:
+            self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
+
+    async def _do(self, asked: Asked) -> None:
+        try:
+            done = await self._deeds[asked["do"]](asked)
+        except BrokenOff as error:
+            self._answer(asked, failed=str(error), broken=True)
+        except asyncio.CancelledError:
+            self._answer(asked, failed=self._broken or "called off", broken=True)
+        except TangyError as error:
+            self._answer(asked, failed=str(error))
+        except (KeyError, TypeError, ValueError) as error:
+            self._answer(asked, failed=f"It was not asked rightly ({error!r}).")
+        else:
+            self._answer(asked, done=done or {})
+
+    _broken = ""
+
+    def _break_off(self, why: str) -> None:
+        self._broken = why
+        for task in self._doing.values():
+            task.cancel()
+
+    # ---------------------------------------------------------------------- what it does
+
+    async def _perform(self, asked: Asked) -> Answer:
+        picture = asked.get("picture")
+        return dict(
+            await self.robot.perform(
+                text=asked.get("text", ""),
+                picture=None if picture is None else _picture(picture),
+                posture=asked.get("posture"),
+            )
+        )
+
+    async def _go(self, asked: Asked) -> Answer:
+        arrived = await self.robot.go(Pose(*asked["to"]), asked.get("name", ""))
+        return {"arrived": arrived, "pose": list(self.robot.pose)}
+
+    async def _spin(self, _: Asked) -> Answer:
+        return {"found": await self.robot.spin()}
+
+    async def _card(self, asked: Asked) -> Answer:
+        senses = self.robot.senses
+        if senses is None:
+            raise DeviceError("No camera looks at cards.")
+        await self.robot.look_at("card")
+        if asked.get("after"):
+            await self.robot.passing.sleep(float(asked["after"]))
+        seen = await senses.read_card(set(asked["called"]), int(asked.get("pictures", 5)))
+        return seen.to_json()
+
+    async def _face(self, _: Asked) -> Answer:
+        senses = self.robot.senses
+        if senses is None:
+            raise DeviceError("No camera looks at faces.")
+        await self.robot.look_at("face")
+        vote = await senses.who()
+        return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
+
+    async def _wait(self, asked: Asked) -> None:
+        """Let time pass; with "asks" only until somebody asks who did not."""
+        there = {ask.seat for ask in self.robot.asking}
+        heed = bool(asked.get("asks"))
+        await self.robot.passing.until(
+            lambda: heed and {ask.seat for ask in self.robot.asking} - there != set(),
+            float(asked["seconds"]),
+        )
+
+    async def _settle(self, _: Asked) -> None:
+        """Wait until what is there now has been seen, where time stands still meanwhile."""
+        if self._stepped:
+            await self._wired.settle()
+
+    async def _replan(self, _: Asked) -> None:
+        self.robot.replan()
+
+    async def _answered(self, asked: Asked) -> None:
+        if self.robot.requests is not None:
+            self.robot.requests.answered(int(asked["seat"]))
+
+    async def _restart(self, asked: Asked) -> None:
+        await self.robot.restart(str(asked["device"]))
+
+    async def _relax(self, _: Asked) -> None:
+        await self.robot.relax()
+
+    async def _place(self, asked: Asked) -> None:
+        self.robot.navigator.place(Pose(*asked["at"]))
+
+    async def _fail(self, asked: Asked) -> None:
+        self.robot.fail(str(asked["device"]), str(asked["state"]))
+
+    # ---------------------------------------------------------------------- what it tells
+
+    def _why_alone(self) -> str:
+        """Say whether the program has fallen silent; it stays so until somebody releases it."""
+        if time.monotonic() - self._heard > self._patience:
+            self._unheard = "the program says nothing"
+        return self._unheard
+
+    async def beat(self) -> None:
+        """Tell how it is, again and again."""
+        number = 0
+        while True:
+            number += 1
+            self._say({"beat": self._state(number)})
+            await asyncio.sleep(BEAT_SECONDS)
+
+    def _state(self, number: int) -> Answer:
+        robot, navigator = self.robot, self.robot.navigator
+        path = () if navigator.path is None else navigator.path.points
+        return {
+            "number": number,
+            "time": robot.passing.clock.now(),
+            "health": _health(robot.health()),
+            "pose": [round(value, 3) for value in robot.pose],
+            "going": robot.going,
+            "path": [[round(x, 2), round(y, 2)] for x, y in path],
+            "particles": _thinned(navigator.particles),
+            "obstacles": [[round(x, 2), round(y, 2)] for x, y in navigator.obstacles],
+            "asks": [[ask.seat, ask.since] for ask in robot.asking],
+            "hazard": robot.hazard,
+            "stopped": robot.stopped,
+        }
+
+
+def _picture(told: dict[str, Any]) -> Picture:
+    return Picture(
+        str(told.get("text", "")),
+        str(told.get("number", "")),
+        tuple(map(str, told.get("before", ()))),
+        str(told.get("asks", "")),
+    )
+
+
+def _health(health: Health) -> list[list[Any]]:
+    return [[r.device, min(r.age, 1e6), r.state, dict(r.facts)] for r in health]
+
+
+def _thinned(particles: Any) -> list[list[float]]:
+    apart = max(1, len(particles) // MOST_PARTICLES)
+    return [[round(float(x), 2), round(float(y), 2)] for x, y, *_ in particles[::apart]]
+
+
+async def _lines() -> asyncio.StreamReader:
+    reader = asyncio.StreamReader(limit=LONGEST_LINE)
+    await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
+    )
+    return reader
+
+
+class _Lines(asyncio.Protocol):
+    """Lines to the program; where it takes none, beats are left out and nothing waits."""
+
+    transport: asyncio.WriteTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take what is written to."""
+        assert isinstance(transport, asyncio.WriteTransport)  # noqa: S101 - it is a pipe
+        self.transport = transport
+
+    def write(self, answer: Answer) -> None:
+        """Write a line."""
+        transport = self.transport
+        if transport is None or transport.is_closing():
+            return
+        if "beat" in answer and transport.get_write_buffer_size() > MOST_UNREAD:
+            return
+        transport.write(json.dumps(answer, separators=(",", ":")).encode() + b"\n")
+
+
+async def run() -> int:
+    """Be the robot process until the program ends."""
+    lines = await _lines()
+    _, out = await asyncio.get_running_loop().connect_write_pipe(_Lines, sys.stdout)
+    try:
+        setup = RobotSetup.from_json(await lines.readline())
+        wired = wire(setup)
+    except TangyError as error:
+        out.write({"failed": str(error)})
+        await asyncio.sleep(0.1)  # until it is written
+        return 2
+    process = RobotProcess(wired, out.write, stepped=setup.stepped)
+    async with wired:
+        out.write({"ready": True})
+        beating = asyncio.create_task(process.beat())
+        try:
+            while line := await lines.readline():
+                await process.take(line)
+        except ValueError:  # a line without an end
+            pass
+        finally:
+            beating.cancel()
+            await wired.robot.stop("the program has ended")
+    return 0
+
+
+def main() -> None:
+    """Run it."""
+    sys.exit(asyncio.run(run()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,298 @@
+"""The program's end of the robot process: it is started, asked, heard, and told that we live.
+
+It may be used from any thread. A reader's thread takes what the process says; another one tells it
+ten times a second that the program lives, so that a program that hangs has the robot stop.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as TooLate
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from tangy_hw.devices import DeviceError, Pose
+from tangy_hw.robot import BrokenOff
+from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.health import STALE, Health, Reading
+from tangy_profiles.worker_log import open_log
+
+CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_child")
+BEAT_SECONDS = 0.1
+SILENT_SECONDS = 0.3
+"""Without a word from it for so long, the robot process hangs or is dead."""
+START_SECONDS = 30.0
+ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itself before
+END_SECONDS = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
+
+    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it.
+    """
+
+    number: int = 0
+    time: float = 0.0
+    health: Health = ()
+    pose: Pose = Pose(0.0, 0.0, 0.0)
+    going: str = ""
+    path: tuple[tuple[float, float], ...] = ()
+    particles: tuple[tuple[float, float], ...] = ()
+    obstacles: tuple[tuple[float, float], ...] = ()
+    asks: tuple[tuple[int, float], ...] = ()
+    hazard: str = ""
+    stopped: str = ""
+
+    @classmethod
+    def from_json(cls, body: dict[str, Any]) -> RobotState:
+        """Read what a beat of the robot process tells."""
+        return cls(
+            body["number"],
+            body["time"],
+            tuple(Reading(name, age, state, facts) for name, age, state, facts in body["health"]),
+            Pose(*body["pose"]),
+            body["going"],
+            tuple((x, y) for x, y in body["path"]),
+            tuple((x, y) for x, y in body["particles"]),
+            tuple((x, y) for x, y in body["obstacles"]),
+            tuple((int(seat), since) for seat, since in body["asks"]),
+            body["hazard"],
+            body["stopped"],
+        )
+
+
+@dataclass
+class _Told:
+    """What the reader's thread has heard."""
+
+    state: RobotState = field(default_factory=RobotState)
+    time: float = 0.0
+    heard: float = 0.0
+    ended: str = ""
+
+
+class RobotLink:
+    """A robot process. `start` it, `ask` it for things, `stop` the robot, and `close` it."""
+
+    def __init__(self, setup: RobotSetup, *, log: Path | None = None) -> None:
+        """Prepare it; `log` takes what it writes beside its lines."""
+        self.setup = setup
+        self.changed: Callable[[], None] = _nothing
+        """Is called, from the reader's thread, when the robot has told something."""
+        self._log = log
+        self._process: subprocess.Popen[bytes] | None = None
+        self._told = _Told()
+        self._asked: dict[int, Future[dict[str, Any]]] = {}
+        self._number = 0
+        self._lock = threading.Lock()
+        self._said = threading.Condition()
+        self._closing = threading.Event()
+        self._threads: list[threading.Thread] = []
+
+    # ------------------------------------------------------------------------- its process
+
+    def start(self) -> None:
+        """Start the process, and wait until the robot is switched on.
+
+        Raises:
+            DeviceError: it cannot be started, or says what is wrong with its setup.
+        """
+        self._closing.clear()
+        self._told = _Told()
+        log: IO[bytes] | int = subprocess.DEVNULL
+        if self._log is not None:
+            with suppress(OSError):
+                log = open_log(self._log)
+        try:
+            self._process = subprocess.Popen(
+                CHILD,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise DeviceError(f"The robot process cannot be started ({error}).") from None
+        finally:
+            if not isinstance(log, int):
+                log.close()
+        ready: Future[dict[str, Any]] = Future()
+        self._asked[0] = ready
+        self._threads = [
+            threading.Thread(target=self._listen, args=(self._process,), daemon=True),
+            threading.Thread(target=self._beat, args=(self._process,), daemon=True),
+        ]
+        self._write(self.setup.to_json())
+        for thread in self._threads:
+            thread.start()
+        try:
+            ready.result(START_SECONDS)
+        except TooLate:
+            self.close()
+            raise DeviceError("The robot process does not begin.") from None
+
+    def restart(self) -> None:
+        """End the process, however it is, and start another."""
+        self.close()
+        self.start()
+
+    def close(self) -> None:
+        """Let the process stop the robot and end; it is ended where it does not."""
+        process, self._process = self._process, None
+        self._closing.set()
+        if process is None:
+            return
+        with suppress(OSError):
+            assert process.stdin is not None  # noqa: S101 - it was asked for
+            process.stdin.close()
+        try:
+            process.wait(END_SECONDS)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        for thread in self._threads:
+            if thread is not threading.current_thread():
+                thread.join()
+
+    # ------------------------------------------------------------------------- what it says
+
+    @property
+    def state(self) -> RobotState:
+        """What the robot said of itself last."""
+        return self._told.state
+
+    @property
+    def time(self) -> float:
+        """The robot's time, in s, as it was told last: with an answer, or else with a beat."""
+        return self._told.time
+
+    @property
+    def silent(self) -> str:
+        """Why nothing is heard from the robot process, "" as long as it is."""
+        told = self._told
+        if told.ended:
+            return told.ended
+        quiet = time.monotonic() - told.heard
+        return "the robot process does not answer" if quiet > SILENT_SECONDS else ""
+
+    def health(self) -> Health:
+        """Return the newest reading of each device; all are stale where the process is silent."""
+        health = self._told.state.health
+        if not self.silent:
+            return health
+        quiet = time.monotonic() - self._told.heard
+        return tuple(r._replace(age=r.age + quiet, state=STALE) for r in health)
+
+    # ------------------------------------------------------------------------- what it is told
+
+    def ask(self, do: str, **what: Any) -> Future[dict[str, Any]]:
+        """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
+        asked: Future[dict[str, Any]] = Future()
+        with self._lock:
+            self._number += 1
+            number = self._number
+            self._asked[number] = asked
+        if not self._write(json.dumps({"id": number, "do": do, **what})):
+            self._asked.pop(number, None)
+            asked.set_exception(BrokenOff(self.silent or "the robot process has ended"))
+        return asked
+
+    def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
+        """Wait a moment for an answer; return whether it is there."""
+        with suppress(TooLate):
+            asked.exception(seconds)
+        return asked.done()
+
+    def beat(self) -> RobotState:
+        """Wait until the robot has said once more how it is, and return that."""
+        last, until = self.state.number, time.monotonic() + START_SECONDS
+        while self.state.number == last and not self._told.ended and time.monotonic() < until:
+            with self._said:
+                self._said.wait(BEAT_SECONDS)
+        return self.state
+
+    def do(self, do: str, **what: Any) -> dict[str, Any]:
+        """Ask the robot for something, and wait for it.
+
+        Raises:
+            BrokenOff: it was broken off, because the robot had to stand still.
+            DeviceError: it could not be done.
+        """
+        try:
+            return self.ask(do, **what).result(ANSWER_SECONDS)
+        except TooLate:
+            raise DeviceError(f"The robot process does not answer ({do}).") from None
+
+    def stop(self, why: str) -> None:
+        """Stop the robot now; it waits behind nothing, and latches until `release`."""
+        self.ask("stop", why=why)
+
+    def release(self) -> None:
+        """Let the robot move again."""
+        self.ask("release")
+
+    # ------------------------------------------------------------------------- the threads
+
+    def _write(self, line: str) -> bool:
+        process = self._process
+        if process is None or process.stdin is None:
+            return False
+        with self._lock:
+            try:
+                process.stdin.write(line.encode() + b"\n")
+                process.stdin.flush()
+            except (OSError, ValueError):
+                return False
+        return True
+
+    def _beat(self, process: subprocess.Popen[bytes]) -> None:
+        number = 0
+        while not self._closing.wait(BEAT_SECONDS) and process.poll() is None:
+            number += 1
+            self._write(f'{{"beat":{number}}}')
+
+    def _listen(self, process: subprocess.Popen[bytes]) -> None:
+        assert process.stdout is not None  # noqa: S101 - it was asked for
+        for line in process.stdout:
+            with suppress(ValueError, KeyError, TypeError):
+                self._take(json.loads(line))
+        process.stdout.close()
+        self._told.ended = "the robot process has ended"
+        for asked in list(self._asked.values()):
+            if not asked.done():
+                asked.set_exception(BrokenOff(self._told.ended))
+        self._asked.clear()
+        self.changed()
+
+    def _take(self, said: dict[str, Any]) -> None:
+        self._told.heard = time.monotonic()
+        self._told.time = max(self._told.time, said.get("at", 0.0))
+        if "beat" in said:
+            self._told.state = RobotState.from_json(said["beat"])
+            self._told.time = max(self._told.time, self._told.state.time)
+            with self._said:
+                self._said.notify_all()
+            self.changed()
+            return
+        asked = self._asked.pop(said.get("id", 0), None)
+        if asked is None or asked.done():
+            return
+        if "failed" in said:
+            kind = BrokenOff if said.get("broken") else DeviceError
+            asked.set_exception(kind(said["failed"]))
+        else:
+            asked.set_result(said.get("done", {}))
+
+
+def _nothing() -> None:
+    """Do nothing."""
