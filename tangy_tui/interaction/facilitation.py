@@ -204,9 +204,10 @@ class Facilitation:
             return [self.question]
         behaviour = self._activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
+        acted = self._act(state, decision, behaviour, target)
         with self._store.transaction():
-            done = self._act(state, decision, behaviour, target, "")
-        return self._told(done)
+            ended = self._log(acted, "")
+        return self._told(acted, ended)
 
     @property
     def asks(self) -> bool:
@@ -263,13 +264,15 @@ class Facilitation:
         question, self.question = self.question, None
         state, decision = question.state, question.decision
         if question.fault and decision.sure and behaviour.name != decision.behaviour:
+            acted = self._act(state, decision, behaviour, target)
             with self._store.transaction():
-                done = self._act(state, decision, behaviour, target, teacher)
-            first, *rest = self._told(done)
+                ended = self._log(acted, teacher)
+            first, *rest = self._told(acted, ended)
             return [first, DoneOnce(teacher, decision.behaviour), *rest]
+        acted = self._act(state, decision, behaviour, target)
         with self._store.transaction():
-            done = self._act(state, decision, behaviour, target, teacher)
-            acted, response, _ = done
+            ended = self._log(acted, teacher)
+            response = acted.outcome.response
             # What follows where a person did not do it is no effect to be expected from now on.
             did = acted.outcome.completed and (response is None or response.followed)
             shown = Step(behaviour.name, target, state, acted.after, completed=did)
@@ -277,7 +280,7 @@ class Facilitation:
                 self.policy, shown, teacher=teacher, seed=self._seed, people=self.world.people
             )
         self.policy = lesson.policy
-        first, *rest = self._told(done)
+        first, *rest = self._told(acted, ended)
         return [first, Taught(teacher, lesson), *rest]
 
     def give_up(self) -> list[GameEvent]:
@@ -291,10 +294,10 @@ class Facilitation:
         """End a game that is going on because whoever watches it leaves."""
         return self.stop("It was left before its end.")
 
-    def _told(self, done: tuple[Acted, Response | None, GameEnded | None]) -> list[GameEvent]:
+    def _told(self, acted: Acted, ended: GameEnded | None) -> list[GameEvent]:
         """Tell what was done, and let the beliefs grow now that the response is in the log."""
-        acted, response, ended = done
         events: list[GameEvent] = [acted]
+        response = acted.outcome.response
         if response is not None:
             events.append(Learnt(response, self.persuasion.update(response)))
         if ended is not None:
@@ -307,8 +310,8 @@ class Facilitation:
         decision: Decision,
         behaviour: Behaviour,
         target: str | None,
-        teacher: str,
-    ) -> tuple[Acted, Response | None, GameEnded | None]:
+    ) -> Acted:
+        """Do it, which takes its time in a real world: nothing of the log is held meanwhile."""
         activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
@@ -319,7 +322,7 @@ class Facilitation:
         self.steps += 1
         expected = activity.expected.get(state.situation, behaviour.name)
         name = self._names.get(target, target) if target is not None else ""
-        acted = Acted(
+        return Acted(
             self.steps,
             state,
             decision,
@@ -332,21 +335,25 @@ class Facilitation:
             activity.fill(action.image, name, outcome.numbers),
             outcome.completed and expected == behaviour.name,
         )
+
+    def _log(self, acted: Acted, teacher: str) -> GameEnded | None:
+        """Log a step and how a person responded; return how the game ended, if it has."""
+        action, outcome, choice = acted.action, acted.outcome, acted.choice
         self._store.append(
             STEP,
             {
                 "game": self._game,
-                "behaviour": behaviour.name,
-                "target": target,
+                "behaviour": action.behaviour.name,
+                "target": action.target,
                 "strategy": action.strategy,
-                "share": decision.share,
+                "share": acted.decision.share,
                 "teacher": teacher,
                 "draws": choice and dict(choice.draws),
                 "numbers": list(outcome.numbers),
                 "completed": outcome.completed,
                 "seconds": outcome.seconds,
-                "state": state.to_json(),
-                "after": after.to_json(),
+                "state": acted.state.to_json(),
+                "after": acted.after.to_json(),
             },
         )
         if outcome.response is not None:
@@ -354,8 +361,7 @@ class Facilitation:
         elif choice is not None and outcome.completed:  # what they did may be known later
             body = {"game": self._game}
             self._store.append(AWAITED, body, person=choice.person, strategy=choice.strategy)
-        ended = self._end(None) if self.world.over and not self.looked_over else None
-        return acted, outcome.response, ended
+        return self._end(None) if self.world.over and not self.looked_over else None
 
     def _log_response(self, response: Response) -> None:
         self._store.append(
