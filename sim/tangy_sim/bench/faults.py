@@ -1,0 +1,76 @@
+"""What is wrong on the bench: the kinds of `tangy_sim.injection`, brought about in devices.
+
+Here it is only kept what is wrong, with whom and since when; each room of the bench asks for its
+own kinds and does what follows. What cannot be brought about here is kept all the same and told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tangy_sim.injection import KINDS, Kind
+
+MUTE = ("voice-dead", "screen-dead")
+"""What is put right together when a robot is neither heard nor seen."""
+COMES_BACK = 0.5
+"""P(a device comes back when it is started again)."""
+
+
+@dataclass
+class Fault:
+    """A fault that is there: since when (s), with whom, and whether it has shown."""
+
+    kind: Kind
+    since: float
+    person: str = ""
+    shown: bool = False
+
+
+class Faults:
+    """The faults of one game."""
+
+    def __init__(self) -> None:
+        self.present: dict[str, Fault] = {}
+        self.lifted: list[Fault] = []
+        """What was put right since somebody last looked; who acts on it empties it."""
+
+    def __contains__(self, kind: str) -> bool:
+        return kind in self.present
+
+    def clear(self) -> None:
+        """Put everything right."""
+        for kind in list(self.present):
+            self.lift(kind)
+
+    def inject(self, kind: str, now: float) -> Fault:
+        """Bring about a fault.
+
+        Raises:
+            KeyError: there is no such kind.
+        """
+        return self.present.setdefault(kind, Fault(KINDS[kind], now))
+
+    def lift(self, kind: str) -> bool:
+        """Put a fault right; say whether it was there."""
+        fault = self.present.pop(kind, None)
+        if fault is not None:
+            self.lifted.append(fault)
+        return fault is not None
+
+    def of(self, code: str) -> list[str]:
+        """Return the kinds that are there of which a diagnosis is right."""
+        kinds = [name for name, fault in self.present.items() if fault.kind.code == code]
+        return kinds or [kind for kind in MUTE if code == "mute" and kind in self.present]
+
+    def helped(self, code: str) -> list[str]:
+        """Return the kinds that are there, and that people at the table can put right."""
+        return [kind for kind in self.of(code) if KINDS[kind].helped]
+
+    def concerns(self, kind: str, person: str) -> bool:
+        """Say whether somebody is the one whom a fault is about; the first one asked becomes it."""
+        fault = self.present.get(kind)
+        if fault is None:
+            return False
+        if not fault.person:
+            fault.person = person
+        return fault.person == person

@@ -1,0 +1,108 @@
+"""What people make of the robot's words: which behaviour it was, how it was put, and to whom.
+
+They know the sentences that the activity has for each behaviour and persuasive strategy, and those
+with which the robot asks for help when something is wrong. Anything else they do not react to.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from string import Formatter
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.person import Person
+from tangy_profiles.robot import Robot
+
+BEGINS, EACH = 1.0, 0.06  # s before the first word, and for each letter
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A sentence that was understood.
+
+    Of a behaviour: how it was put (`strategy`), to whom (an id, or "" where nobody is named), with
+    which numbers. Of a call for help: the code of the `fault`, and whom it is about.
+    """
+
+    behaviour: Behaviour | None = None
+    strategy: str = ""
+    person: str = ""
+    numbers: tuple[int, ...] = ()
+    fault: str = ""
+
+
+@dataclass(frozen=True)
+class _Pattern:
+    pattern: re.Pattern[str]
+    behaviour: Behaviour | None
+    strategy: str
+    fault: str
+
+
+class Hearing:
+    """The ears of a group that plays an activity with a robot."""
+
+    def __init__(self, activity: Activity, robot: Robot, people: Sequence[Person]) -> None:
+        self._people = {_plain(p.name): p.id for p in reversed(people)}
+        deck = activity.deck
+        self._numbers = {_plain(deck.label(number)): number for number in deck.numbers}
+        label = "|".join(re.escape(one) for one in sorted(self._numbers, key=len, reverse=True))
+        names = "|".join(re.escape(one) for one in sorted(self._people, key=len, reverse=True))
+        slots = {
+            "name": f"(?P<name>{names})",
+            "call": f"(?P<call>{label})",
+            "numbers": f"(?P<numbers>(?:{label})(?:, (?:{label}))*)",
+            "object": re.escape(_plain(activity.object)),
+            "why": ".*",
+        }
+        self._patterns: list[_Pattern] = []
+        for behaviour in activity.behaviours.values():
+            for strategy, text in behaviour.speech.items():
+                self._patterns.append(_Pattern(_pattern(text, slots), behaviour, strategy, ""))
+        for rule in load_faults(robot).rules:
+            if rule.aloud:
+                self._patterns.append(_Pattern(_pattern(rule.aloud, slots), None, "", rule.code))
+
+    def hear(self, text: str) -> Heard | None:
+        """Understand a sentence; None: it is none that people know."""
+        plain = _plain(text)
+        for one in self._patterns:
+            found = one.pattern.fullmatch(plain)
+            if found is None:
+                continue
+            groups = found.groupdict()
+            said = groups.get("numbers") or groups.get("call") or ""
+            return Heard(
+                one.behaviour,
+                one.strategy,
+                self._people.get(groups.get("name") or "", ""),
+                tuple(self._numbers[label] for label in said.split(", ") if label),
+                one.fault,
+            )
+        return None
+
+
+def speaking_seconds(text: str) -> float:
+    """Return how long the robot takes to say a text."""
+    return BEGINS + EACH * len(text)
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.casefold().split())
+
+
+def _pattern(template: str, slots: dict[str, str]) -> re.Pattern[str]:
+    """Make a pattern of a sentence with slots; what stands in it twice is the same both times."""
+    parts: list[str] = []
+    known: set[str] = set()
+    for words, slot, _, _ in Formatter().parse(_plain(template)):
+        parts.append(re.escape(words))
+        if slot is None:
+            continue
+        parts.append(f"(?P={slot})" if slot in known and slots[slot][:3] == "(?P" else slots[slot])
+        known.add(slot)
+    return re.compile("".join(parts))

@@ -1,0 +1,61 @@
+"""The bench's joints: they move towards their goals, as fast as they were told and they can."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import degrees, radians
+
+from tangy_profiles.robot import Robot
+
+FASTEST = 2.5  # rad/s
+
+
+class Joints:
+    """The joints of a robot by name, "limb/joint", in radians; they begin at zero."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.names = tuple(
+            f"{limb.name}/{joint}" for limb in robot.limbs.values() for joint in limb.joints
+        )
+        self.positions = dict.fromkeys(self.names, 0.0)
+        self.speeds = dict.fromkeys(self.names, 0.0)
+        self._limits: Mapping[str, tuple[float, float]] = {
+            f"{limb.name}/{joint}": (radians(low), radians(high))
+            for limb in robot.limbs.values()
+            for joint, low, high in zip(limb.joints, limb.low, limb.high, strict=True)
+        }
+        self._goals: dict[str, tuple[float, float]] = {}
+
+    def move(self, names: Sequence[str], positions: Sequence[float], seconds: float) -> None:
+        """Take goals in radians, to be reached within so many s; names that are not there are not.
+
+        Goals beyond a joint's limits end at the limit.
+        """
+        for name, goal in zip(names, positions, strict=False):
+            if name in self.positions:
+                low, high = self._limits[name]
+                goal = max(low, min(high, float(goal)))
+                far = abs(goal - self.positions[name])
+                speed = far / seconds if seconds > 0 else FASTEST
+                self._goals[name] = (goal, max(1e-6, min(FASTEST, speed)))
+
+    def step(self, seconds: float, broken: Iterable[str] = ()) -> None:
+        """Move on for so many s; joints of `broken` limbs stay where they are."""
+        out = tuple(f"{limb}/" for limb in broken)
+        for name, (goal, speed) in list(self._goals.items()):
+            if out and name.startswith(out):
+                self.speeds[name] = 0.0
+                continue
+            here = self.positions[name]
+            most = speed * seconds
+            if abs(goal - here) <= most:
+                self.positions[name] = goal
+                self.speeds[name] = 0.0
+                del self._goals[name]
+            else:
+                self.positions[name] = here + (most if goal > here else -most)
+                self.speeds[name] = speed if goal > here else -speed
+
+    def angle(self, name: str) -> float:
+        """Return where a joint is, in degrees; 0 where there is none of that name."""
+        return degrees(self.positions.get(name, 0.0))

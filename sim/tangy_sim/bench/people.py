@@ -1,0 +1,348 @@
+"""The bench's people: they hear calls, mark cards, slip, put signs up, and do what they are asked.
+
+They play as those of `tangy_sim.world` do, by the same rates, but in continuous time: whatever they
+do, they do some seconds after they had reason to. Rates are per call; how long a robot takes for a
+call is its own business, so people's time goes on with what they hear: by one call for each
+behaviour before the group, by `away_calls` for each at somebody's seat. Random streams are seeded
+apart, as in the world: cards, users, compliance, and the moments at which things are done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from random import Random
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.card_face import LAST_CARD, USUAL_SEED, numbers_of
+from tangy_profiles.person import Person
+from tangy_profiles.state import FRONT, Response
+from tangy_sim.bench.agenda import Agenda
+from tangy_sim.bench.faults import Faults
+from tangy_sim.bench.hearing import Heard
+from tangy_sim.compliance import Preferences, preferences_in_turn, respond
+from tangy_sim.faulty import HELPS
+from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
+
+MARKS = (1.5, 5.0)  # s after a call in which it is marked
+SLIPS = (1.0, 8.0)  # s after a call in which another number is
+ASKS = (0.5, 2.0)  # s from having a reason to ask to having the sign up
+TURNS_DOWN = (0.4, 1.2)  # s from being helped to having it down
+HELPS_AFTER = (3.0, 8.0)  # s from a robot's asking everybody for help to its being given
+AFTER_PATIENCE = 1.0  # s: nobody does anything so near the window's end that nobody could tell
+HIDES = ("away", "edge", "sheet")
+"""How a card is out of view: not there, mostly beyond the picture's edge, under a sheet."""
+
+_CORRECTS = ("clear wrong marks", "set missing marks")
+
+
+@dataclass
+class Sitter:
+    """One of the people, with a card on the table and a sign for asking.
+
+    `asks_since` is when (s) the sign was put up, None while it is down; `hides` how the card is
+    out of the robot's view, "" while it is not; `moved` counts how often the card was laid anew.
+    """
+
+    player: Player
+    card: int
+    asks_since: float | None = None
+    hides: str = ""
+    moved: int = 0
+
+    @property
+    def id(self) -> str:
+        """The person's id."""
+        return self.player.id
+
+
+@dataclass
+class Game:
+    """What happened in a game so far, as everybody in the room knows it."""
+
+    opened: bool = False
+    over: bool = False
+    called: list[int] = field(default_factory=list)
+    responses: list[Response] = field(default_factory=list)
+    spoken: list[str] = field(default_factory=list)
+    """Who said aloud that they would like help, because signs cannot be seen."""
+
+
+class People:
+    """The group at the table. `begin` deals; `hear`, `meet`, `leave`: what the robot does."""
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[Person],
+        faults: Faults,
+        *,
+        seed: int,
+        users: UserModel | None = None,
+        preferences: Preferences | None = None,
+    ) -> None:
+        self.activity = activity
+        self.ids = tuple(person.id for person in people)
+        self.users = users or load_users()
+        self.preferences = preferences or preferences_in_turn(
+            self.ids, tuple(activity.strategies), self.users
+        )
+        self._faults = faults
+        self._cards = Random(f"{seed}/cards").random
+        self._uniform = Random(f"{seed}/users").random
+        self._compliance = Random(f"{seed}/compliance")
+        self._moments = Random(f"{seed}/moments").random
+        self._chance = Random(f"{seed}/faults").random
+        rules = activity.stage_rules
+        self._openers = {rule.behaviour for rule in rules if rule.condition == "before"}
+        self._agenda = Agenda()
+        self.begin(0.0)
+
+    def begin(self, now: float) -> None:
+        """Deal other cards and begin a game; nobody asks before it is opened."""
+        activity = self.activity
+        self.now = now
+        self.game = Game()
+        self._agenda.clear()
+        self._calls = 0  # numbers called
+        self._time = 0.0  # in calls
+        self._left_to_open = set(self._openers)
+        self._driven_to = ""
+        self._speak = False  # whether people were asked to say that they would like help
+        self.place = FRONT
+        dealt: list[int] = []
+        while len(dealt) < len(self.ids):
+            card = 1 + int(self._cards() * LAST_CARD)
+            if card not in dealt:
+                dealt.append(card)
+        self.sitters = {
+            person: Sitter(
+                Player(person, activity.deck, numbers_of(activity.deck, card, USUAL_SEED)), card
+            )
+            for person, card in zip(self.ids, dealt, strict=True)
+        }
+        for sitter in self.sitters.values():
+            sitter.player.slips_at = waiting_calls(self._uniform, self.users.slip)
+
+    @property
+    def asking(self) -> tuple[str, ...]:
+        """Whose signs are up, the one that was first put up first."""
+        up = [(s.asks_since, s.id) for s in self.sitters.values() if s.asks_since is not None]
+        return tuple(person for _, person in sorted(up, key=lambda one: one[0]))
+
+    def judged(self, person: str) -> str:
+        """Name the user activity state that a person's card truly shows."""
+        return self.sitters[person].player.judged(self.activity.card_states)
+
+    # -------------------------------------------------------------- what the robot does
+
+    def step(self, now: float) -> None:
+        """Let time pass until `now`."""
+        self.now = now
+        if "request-withdrawn" in self._faults.present:
+            self._withdraw()
+        self._agenda.run(now)
+
+    def meet(self, person: str) -> None:
+        """The robot has arrived at a seat, where the card may be out of view, or at the front."""
+        self.place = person
+        sitter = self.sitters.get(person)
+        if sitter is None:
+            return
+        sitter.moved += 1
+        hides = HIDES[int(self._moments() * len(HIDES))]
+        hidden = self._uniform() < self.users.occluded
+        if sitter.asks_since is not None and self._faults.concerns("card-out-of-sight", person):
+            hidden = True
+        sitter.hides = hides if hidden else ""
+
+    def leave(self) -> None:
+        """The robot has left where it was."""
+        sitter = self.sitters.get(self.place)
+        self.place = ""
+        if sitter is None:
+            return
+        sitter.hides = ""
+        fault = self._faults.present.get("never-complies")
+        if fault is not None and fault.person == sitter.id:
+            self._after((1.0, 3.0), partial(self._turn_down, sitter))  # what for, it has given up
+
+    def hear(self, heard: Heard) -> None:
+        """Understand a sentence of the robot, now that it was said."""
+        if heard.fault:
+            self._asked_to_help(heard)
+            return
+        behaviour = heard.behaviour
+        if behaviour is None or self.game.over:
+            return
+        away = self.place != FRONT or behaviour.effect == "go to user"
+        self._time += self.users.away_calls if away else 1.0
+        sitter = self.sitters.get(heard.person or self.place)
+        match behaviour.effect:
+            case "draw":
+                for number in heard.numbers:
+                    self._call(number)
+            case "go to user":
+                self._driven_to = sitter.id if sitter is not None else ""
+            case "finish":
+                self.game.over = True
+        if sitter is not None and behaviour.persuades:
+            self._persuaded(sitter, behaviour, heard)
+        if not self.game.opened:
+            self._left_to_open.discard(behaviour.name)
+            if not self._left_to_open:
+                self._open()
+        elif not self.game.over:
+            self._let_people_ask()
+
+    # ------------------------------------------------------------------------ the game
+
+    def _call(self, number: int) -> None:
+        if number not in self.game.called:
+            self.game.called.append(number)
+            self._calls += 1
+        for sitter in self.sitters.values():
+            player = sitter.player
+            cell = player.cell.get(number)
+            if cell is None or self.activity.deck.free >> cell & 1:
+                continue
+            player.called |= 1 << cell
+            if not player.marked >> cell & 1 and self._uniform() >= self.users.miss:
+                self._after(MARKS, partial(self._mark, sitter, cell))
+        for sitter in self.sitters.values():
+            if self._calls >= sitter.player.slips_at:
+                waits = waiting_calls(self._uniform, self.users.slip)
+                sitter.player.slips_at = self._calls + waits
+                self._after(SLIPS, partial(self._slip, sitter))
+
+    def _mark(self, sitter: Sitter, cell: int) -> None:
+        if not sitter.player.marked >> cell & 1 and sitter.player.mark(cell):
+            self._ask_soon(sitter)
+
+    def _slip(self, sitter: Sitter) -> None:
+        slip = sitter.player.slip(self._uniform)
+        if slip is not None and slip[1]:
+            self._ask_soon(sitter)
+
+    def _open(self) -> None:
+        self.game.opened = True
+        rate = self.users.ask * self.users.ask_with_error
+        for sitter in self.sitters.values():
+            sitter.player.asks_at = self._time + waiting_time(self._uniform, rate)
+
+    def _let_people_ask(self) -> None:
+        """Requests come at the higher rate of a card with an error, and are thinned without one."""
+        users, uniform = self.users, self._uniform
+        rate = users.ask * users.ask_with_error
+        for sitter in self.sitters.values():
+            player = sitter.player
+            while self._time >= player.asks_at:
+                player.asks_at += waiting_time(uniform, rate)
+                if uniform() * users.ask_with_error < 1.0 or player.has_error:
+                    self._ask_soon(sitter)
+
+    def _ask_soon(self, sitter: Sitter) -> None:
+        self._after(ASKS, partial(self._ask, sitter))
+
+    def _ask(self, sitter: Sitter) -> None:
+        if sitter.asks_since is None and not self.game.over:
+            sitter.asks_since = self.now
+            if self._speak and "requests-silent" in self._faults:
+                self.game.spoken.append(sitter.id)
+
+    def _turn_down(self, sitter: Sitter) -> None:
+        sitter.asks_since = None
+
+    def _closed(self, sitter: Sitter) -> None:
+        """Turn a sign down whose owner was helped, unless it is to be forgotten."""
+        if sitter.asks_since is None:
+            return
+        if self._faults.concerns("request-stuck", sitter.id):
+            self._faults.present["request-stuck"].shown = True
+            return
+        self._turn_down(sitter)
+
+    # -------------------------------------------------------------- what people are asked
+
+    def _persuaded(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
+        """Let somebody do what they were asked, in time or late, or not at all."""
+        patience = self.activity.patience
+        response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
+        asked = behaviour.effect in (*_CORRECTS, "bring card closer")
+        if asked and self._faults.concerns("never-complies", sitter.id):
+            late = response._replace(followed=False, complied=False, seconds=2 * patience)
+            self.game.responses.append(late)
+            return
+        if behaviour.effect in _CORRECTS and self._faults.lift("no-effect"):
+            late = response._replace(followed=False, complied=False, seconds=2 * patience)
+            self.game.responses.append(late)
+            return
+        scale = (patience - AFTER_PATIENCE) / patience if response.complied else 1.0
+        seconds = response.seconds * scale + (0.0 if response.complied else AFTER_PATIENCE)
+        self.game.responses.append(response._replace(seconds=seconds))
+        self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard))
+
+    def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
+        player, before = sitter.player, sitter.player.marked
+        named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)
+        match behaviour.effect:
+            case "bring card closer":
+                if not self._faults.concerns("card-out-of-sight", sitter.id):
+                    self._lay(sitter)
+                return
+            case "clear wrong marks":
+                player.marked &= ~named | self.activity.deck.free
+            case "set missing marks":
+                player.marked |= named
+        settled = self.activity.card_states[-1].name
+        if behaviour.closes == "always" or (
+            behaviour.closes == "when correct"
+            and player.marked != before
+            and self.judged(sitter.id) == settled
+        ):
+            self._after(TURNS_DOWN, partial(self._closed, sitter))
+
+    def _lay(self, sitter: Sitter) -> None:
+        sitter.hides = ""
+        sitter.moved += 1
+
+    # ---------------------------------------------------------------- when something is wrong
+
+    def hide(self, person: str) -> None:
+        """Let a card vanish from the robot's view, as by a fault."""
+        self.sitters[person].hides = HIDES[int(self._moments() * len(HIDES))]
+
+    def lifted(self, kind: str, person: str) -> None:
+        """Do what follows from a fault's having been put right."""
+        sitter = self.sitters.get(person)
+        if sitter is None:
+            return
+        if kind == "card-out-of-sight":
+            self._lay(sitter)
+        elif kind == "request-stuck":
+            self._turn_down(sitter)
+
+    def _asked_to_help(self, heard: Heard) -> None:
+        """The robot asks for help because something is wrong: mostly somebody helps."""
+        if heard.fault == "requests-silent":
+            self._speak = True
+            self.game.spoken += self.asking
+        helped = self._faults.helped(heard.fault)
+        if helped and self._chance() < HELPS:
+            for kind in helped:
+                self._after(HELPS_AFTER, partial(self._faults.lift, kind))
+
+    def _withdraw(self) -> None:
+        """Let somebody who waits, and whom the robot is not busy with, take the sign down."""
+        busy = self.place if self.place in self.sitters else self._driven_to
+        asking = self.asking
+        others = [p for p in asking if p != (busy if busy in asking else asking[0])]
+        if others:
+            self._turn_down(self.sitters[others[int(self._chance() * len(others))]])
+            self._faults.lift("request-withdrawn")
+
+    def _after(self, between: tuple[float, float], happens: Callable[[], object]) -> None:
+        low, high = between
+        self._agenda.at(self.now + low + (high - low) * self._moments(), happens)

@@ -1,0 +1,214 @@
+"""What the bench's cameras see: cards and faces before the head, signs before the infrared camera.
+
+A picture is drawn once for a scene, and sent with other noise again and again, as cameras do.
+Drawing takes a tenth of a second at most, the same scene again some milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict, deque
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import cv2
+import numpy as np
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.card_face import USUAL_SEED
+from tangy_sim.bench.world import HeadScene
+from tangy_sim.card_chips import Chip
+from tangy_sim.card_frames import CardCamera, View, some_view
+from tangy_sim.card_things import background, tone_of
+from tangy_sim.faces import drawn_face
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Picture = NDArray[np.uint8]
+    Draws = Callable[[HeadScene], "list[Picture]"]
+
+SIZE = (1280, 720)
+QUALITY = 88  # of the head camera's JPEG
+NOISE = 2.5  # grey levels
+VARIANTS = 6  # frames of one scene with other noise, which then come round again
+SCENES = 12  # of which frames are kept
+FACE = 300  # pixels of a drawn face with its surroundings
+FACE_PICTURES = 4  # of one person, one after the other
+FIRST_PICTURE = 1_000  # so that nobody was enrolled by the very pictures that are shown
+DEGREE = 12  # pixels of the room all around to a degree
+CHIPS = (0.0, 215.0, 130.0, 285.0, 24.0, 335.0, 50.0, 180.0)  # hues, by seat
+
+
+class HeadCamera:
+    """Makes the frames of the camera in the head, as JPEG."""
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        faces: Mapping[str, int],
+        *,
+        seed: int,
+        title: str = "",
+    ) -> None:
+        """Prepare; `faces` are the numbers of people's drawn faces."""
+        self._people = list(people)
+        self._faces = dict(faces)
+        self._seed = seed
+        self._camera = CardCamera(activity.deck, deck_seed=USUAL_SEED, title=title)
+        self._noise = np.random.default_rng([seed, 3])
+        self._frames: OrderedDict[HeadScene, deque[bytes]] = OrderedDict()
+        self._pictures: OrderedDict[HeadScene, list[Picture]] = OrderedDict()
+        self._last = b""
+
+    def frame(self, scene: HeadScene) -> bytes:
+        """Return the next frame of a scene; a frozen camera gives the last one for ever."""
+        if scene.kind == "frozen":
+            return self._last or self.frame(HeadScene("room"))
+        frames = self._frames.setdefault(scene, deque())
+        self._frames.move_to_end(scene)
+        while len(self._frames) > SCENES:
+            self._frames.popitem(last=False)
+        if len(frames) < VARIANTS:
+            pictures = self._drawn(scene)
+            frames.appendleft(self._exposed(pictures[len(frames) % len(pictures)]))
+            self._last = frames[0]
+        else:
+            frames.rotate(1)
+            self._last = frames[0]
+        return self._last
+
+    def _drawn(self, scene: HeadScene) -> list[Picture]:
+        if scene not in self._pictures:
+            draws: dict[str, Draws] = {
+                "card": self._card, "face": self._face, "room": self._room, "dark": self._dark,
+            }  # fmt: skip
+            self._pictures[scene] = draws[scene.kind](scene)
+            while len(self._pictures) > SCENES // 2:
+                self._pictures.popitem(last=False)
+        return self._pictures[scene]
+
+    def _exposed(self, picture: Picture) -> bytes:
+        """Add a camera's noise and pack the picture; the noise is a window of a larger sheet."""
+        x, y = self._noise.integers(0, 64, 2)
+        grain = self._sheet[y : y + picture.shape[0], x : x + picture.shape[1]]
+        grainy = cv2.add(picture, grain, dtype=cv2.CV_8U)
+        return _packed(grainy, QUALITY)
+
+    @cached_property
+    def _sheet(self) -> NDArray[np.int16]:
+        random = np.random.default_rng([self._seed, 4])
+        across, down = SIZE[0] + 64, SIZE[1] + 64
+        return random.normal(0, NOISE, (down, across, 3)).astype(np.int16)
+
+    # ------------------------------------------------------------------------------ scenes
+
+    def _card(self, scene: HeadScene) -> list[Picture]:
+        """Draw the card that lies before a person: in good light, a little turned and tilted."""
+        who = self._people.index(scene.person)
+        now = np.random.default_rng([self._seed, 5, scene.game, who, scene.moved])
+        if scene.hides == "away":
+            table = background(*SIZE, now)
+            return [np.asarray(np.clip(table * 255 * 0.8, 0, 255), np.uint8)]
+        view = some_view(
+            now,
+            pixels=float(now.uniform(27, 34)),
+            tilt=float(now.uniform(5, 25)),
+            spin=float(now.normal(0, 6)),
+            wide=1.1,
+            light=float(now.uniform(0.72, 0.92)),
+            slope=float(now.uniform(0, 0.15)),
+            warm=float(now.uniform(-0.06, 0.1)),
+            shadow=0.0,
+            glare=0.0,
+            blur=0.5,
+            motion=0.0,
+            noise=0.0,
+            quality=100,
+            bend=float(now.uniform(0, 0.4)),
+            hand="",
+            grey=False,
+        )
+        return [self._photograph(scene, view, who, now)]
+
+    def _photograph(
+        self, scene: HeadScene, view: View, who: int, random: np.random.Generator
+    ) -> Picture:
+        face = self._camera.face
+        cells = face.deck.rows * len(face.deck.columns)
+        chips: dict[int, Chip] = {}
+        for cell in range(cells):
+            if scene.marked >> cell & 1 and not face.deck.free >> cell & 1:
+                thrown = np.random.default_rng([self._seed, 6, scene.game, who, cell])
+                chips[cell] = _chip(who).thrown(thrown, face.middle(cell), face.cell, 0.0)
+        frame = self._camera.take(scene.card, chips, view, random)
+        picture: Picture = np.asarray(frame.picture, np.uint8)
+        corners = np.array(frame.corners, np.float32)
+        if scene.hides == "edge":  # what is above the grid is all that can be seen
+            shift = SIZE[1] + 12 - float(corners[:, 1].min())
+            move = np.array([[1, 0, 0], [0, 1, shift]], np.float32)
+            moved = cv2.warpAffine(picture, move, SIZE, borderMode=cv2.BORDER_REPLICATE)
+            picture = np.asarray(moved, np.uint8)
+        elif scene.hides == "sheet":
+            middle = corners.mean(0)
+            sheet = (middle + (corners - middle) * 1.25).astype(np.int32)
+            tone = [float(c * 255) for c in tone_of(random.uniform(0, 360), 0.3, 0.85)]
+            cv2.fillPoly(picture, [sheet], tone, cv2.LINE_AA)
+        return picture
+
+    def _face(self, scene: HeadScene) -> list[Picture]:
+        """Draw a person before the room, in a few pictures."""
+        behind = self._window(90)
+        x, y = (SIZE[0] - FACE) // 2, 130
+        inner = np.zeros((FACE, FACE), np.float32)
+        inner[20:-20, 20:-20] = 1
+        fade = cv2.GaussianBlur(inner, (0, 0), 8)[..., None]
+        pictures: list[Picture] = []
+        for number in range(FACE_PICTURES):
+            drawn = drawn_face(self._faces[scene.person], FIRST_PICTURE + number, size=FACE)
+            picture = behind.copy()
+            box = np.s_[y : y + FACE, x : x + FACE]
+            picture[box] = (picture[box] * (1 - fade) + drawn * fade).astype(np.uint8)
+            pictures.append(picture)
+        return pictures
+
+    def _room(self, scene: HeadScene) -> list[Picture]:
+        return [self._window(scene.heading)]
+
+    def _dark(self, _: HeadScene) -> list[Picture]:
+        return [np.full((SIZE[1], SIZE[0], 3), 6, np.uint8)]
+
+    def _window(self, heading: int) -> Picture:
+        """Cut what is seen that way (degrees) out of the picture of the room all around."""
+        left = (-heading * DEGREE) % (360 * DEGREE)
+        around = self._around
+        return np.ascontiguousarray(np.roll(around, -left, axis=1)[:, : SIZE[0]])
+
+    @cached_property
+    def _around(self) -> Picture:
+        """Draw the room all around: walls with windows and pictures, a floor."""
+        random = np.random.default_rng([self._seed, 7])
+        across = 360 * DEGREE
+        wall = np.array(random.uniform(130, 190, 3))
+        around = np.empty((SIZE[1], across, 3), np.float32)
+        around[:] = wall
+        around[470:] = wall * 0.55
+        around *= 1 + 0.1 * np.sin(np.linspace(0, 2 * np.pi, across))[None, :, None]
+        for number in range(18):
+            x = int(number * across / 18 + random.uniform(0, 90))
+            y, wide, high = (int(v) for v in random.uniform((90, 60, 60), (220, 150, 200)))
+            tone = [float(v) for v in random.uniform(50, 240, 3)]
+            cv2.rectangle(around, (x, y), (x + wide, y + high), tone, -1)
+            cv2.rectangle(around, (x, y), (x + wide, y + high), [60.0, 60.0, 60.0], 5)
+        return np.asarray(np.clip(around, 0, 255), np.uint8)
+
+
+def _chip(seat: int) -> Chip:
+    """Return the chips that lie at a seat: of one colour, 18 mm wide."""
+    tone = tone_of(CHIPS[seat % len(CHIPS)], 0.85, 0.75)
+    return Chip(radius=9.0, tone=tone, clear=0.0, thick=1.5, rim=-0.15)
+
+
+def _packed(picture: Any, quality: int) -> bytes:
+    return cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()

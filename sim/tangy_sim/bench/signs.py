@@ -1,0 +1,77 @@
+"""What the infrared camera over the bench's table sees: a dark room, and signs that shine.
+
+It looks at the table from the robot's side. Who asks for help has a triangle up on the table.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_profiles.room import Room
+
+SIZE = (320, 240)
+CORNERS = ((20.0, 222.0), (300.0, 222.0), (262.0, 96.0), (58.0, 96.0))
+"""Where the table's corners are in the picture: left near, right near, right far, left far."""
+SIGN = 19.0  # pixels to a side
+VARIANTS = 5  # frames with other noise, which then come round again
+QUALITY = 92
+NOISE = 3.0  # grey levels
+
+
+class InfraredCamera:
+    """Makes the frames of the camera that watches the signs, as JPEG."""
+
+    def __init__(self, room: Room, people: Sequence[str], *, seed: int) -> None:
+        self._random = np.random.default_rng([seed, 8])
+        self._people = list(people)
+        left, near, right, far = room.table
+        corners = np.array(((left, near), (right, near), (right, far), (left, far)), np.float32)
+        there = cv2.getPerspectiveTransform(corners, np.array(CORNERS, np.float32))
+        places = [
+            (min(max(seat.x, left), right), near + 0.6 * (far - near))
+            for seat in room.seated(len(self._people))
+        ]
+        seen = cv2.perspectiveTransform(np.array([places], np.float32), there)[0]
+        self._places = {person: seen[seat] for seat, person in enumerate(self._people)}
+        self._still = self._background()
+        self._asking: tuple[str, ...] | None = None
+        self._frames: deque[bytes] = deque()
+        self._shown: NDArray[np.float32] = self._still
+
+    def frame(self, asking: Sequence[str]) -> bytes:
+        """Return the next frame in which these people have their signs up."""
+        up = tuple(sorted(asking))
+        if up != self._asking:
+            self._asking = up
+            self._frames.clear()
+            self._shown = self._drawn(up)
+        if len(self._frames) < VARIANTS:
+            grain = self._random.standard_normal(self._shown.shape, np.float32) * NOISE
+            picture = np.clip(self._shown + grain, 0, 255).astype(np.uint8)
+            packed = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])[1]
+            self._frames.appendleft(packed.tobytes())
+        else:
+            self._frames.rotate(1)
+        return self._frames[0]
+
+    def _background(self) -> NDArray[np.float32]:
+        image = np.full((SIZE[1], SIZE[0]), 18, np.uint8)
+        cv2.fillPoly(image, [np.array(CORNERS, np.int32)], 38)
+        for x, _ in self._places.values():
+            cv2.ellipse(image, (round(float(x)), 62), (15, 24), 0, 0, 360, 60, -1)
+        return cv2.GaussianBlur(image, (0, 0), 1.5).astype(np.float32)
+
+    def _drawn(self, up: tuple[str, ...]) -> NDArray[np.float32]:
+        image = self._still.copy()
+        for person in up:
+            moved = self._places[person] + self._random.uniform(-3, 3, 2)
+            turned = np.radians(self._random.uniform(-12, 12) + np.array((-90, 30, 150)))
+            corners = np.stack((np.cos(turned), np.sin(turned)), 1) * SIGN / np.sqrt(3) + moved
+            outline = np.round(corners * 16).astype(np.int32)
+            cv2.fillPoly(image, [outline], 225.0, cv2.LINE_AA, 4)
+        return np.asarray(cv2.GaussianBlur(image, (0, 0), 0.7), np.float32)

@@ -1,0 +1,319 @@
+"""The bench's room as a whole: time passes in it, and the robot and its people act on one another.
+
+`step` lets time pass; commands come in between. What devices would see is read from its parts:
+`wheels`, `joints`, `ranges`, `head_scene` and `asking`; nothing here knows of wires.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.person import Person
+from tangy_profiles.robot import Robot
+from tangy_profiles.room import Room
+from tangy_profiles.state import FRONT
+from tangy_sim.bench.drive import RADIUS, Odometer, Wheels
+from tangy_sim.bench.faults import COMES_BACK, Faults
+from tangy_sim.bench.floor import Floor, Pose
+from tangy_sim.bench.hearing import Hearing, speaking_seconds
+from tangy_sim.bench.joints import Joints
+from tangy_sim.bench.lidar import Lidar
+from tangy_sim.bench.people import People
+from tangy_sim.injection import KINDS
+from tangy_sim.users import UserModel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+PHYSICS = 0.05  # s, a step of everything but the wheels, which take smaller ones
+ARRIVES, LEAVES = 0.4, 0.7  # m from where it stands for a place: it is there, it is there no more
+STANDS = 0.1  # m/s below which a robot that passes may have arrived
+AHEAD = 1.3  # m before a driving robot at which a chair is put
+NOD = "head/neck nod"
+LOOKS_DOWN = -10.0  # degrees of the neck from which cards are looked at
+FACES_IT = 25.0  # degrees off the direction of the table
+GRIP = 0.08  # how much of what the wheels turn the robot goes along on a rug that slides
+HELD = {"emergency-stop", "base-failed"}  # kinds with which the wheels have no power
+
+
+class HeadScene(NamedTuple):
+    """What the camera in the head looks at, all that matters for its picture.
+
+    `kind` is "card" or "face" (of a `person`), "room" (`heading` in degrees), "dark" or "frozen";
+    of a card there is the game, how often it was laid anew, its number, its marks, how it hides.
+    """
+
+    kind: str
+    person: str = ""
+    game: int = 0
+    moved: int = 0
+    card: int = 0
+    marked: int = 0
+    hides: str = ""
+    heading: int = 0
+
+
+class BenchWorld:
+    """One room with a robot and people, in a time of its own; the same seed, the same room."""
+
+    def __init__(
+        self,
+        room: Room,
+        robot: Robot,
+        activity: Activity,
+        people: Sequence[Person],
+        *,
+        seed: int,
+        users: UserModel | None = None,
+        odometer: Odometer | None = None,
+    ) -> None:
+        self.room, self.robot, self.activity = room, robot, activity
+        self.now = 0.0
+        self.games = 0
+        self._physics = np.random.default_rng([seed, 1])
+        self.floor = Floor(room, len(people), np.random.default_rng([seed, 2]))
+        start = Pose(room.front.x, room.front.y, pi / 2)
+        self.wheels = Wheels(self.floor, start, self._physics, odometer or Odometer())
+        self.lidar = Lidar()
+        self.joints = Joints(robot)
+        self.faults = Faults()
+        self.people = People(activity, people, self.faults, seed=seed, users=users)
+        self._hearing = Hearing(activity, robot, people)
+        self._speech: deque[str] = deque()
+        self._silent_from = 0.0  # when what is being said has been said
+        self.said: list[str] = []
+        """What was said to its end since somebody last looked; who acts on it empties it."""
+        self._stands = {
+            place: room.stand(place, self.people.ids) for place in (FRONT, *self.people.ids)
+        }
+
+    # --------------------------------------------------------------------- time, and commands
+
+    def begin(self) -> dict[str, int]:
+        """Begin a game with other cards, nothing being wrong; return the card of each person."""
+        self.faults.clear()
+        self._see_to_lifted()
+        self.games += 1
+        self._speech.clear()
+        self.people.begin(self.now)
+        self.people.place = self.nearest() or ""
+        return {person: sitter.card for person, sitter in self.people.sitters.items()}
+
+    def step(self, seconds: float) -> None:
+        """Let time pass."""
+        left = seconds
+        while left > 1e-9:
+            part = min(left, PHYSICS)
+            left -= part
+            self._step(part)
+
+    def _step(self, seconds: float) -> None:
+        faults, wheels = self.faults, self.wheels
+        self.now += seconds
+        self.floor.step(seconds)
+        if not faults.present.keys().isdisjoint(HELD):
+            wheels.halt()
+        stuck = "base-stuck" in faults
+        wheels.step(self.now, seconds, stuck=stuck, grip=GRIP if "wheels-slip" in faults else 1.0)
+        self.joints.step(seconds, ("left_arm",) if "arm-failed" in faults else ())
+        self._place_chair()
+        self._follow()
+        self._speak()
+        self.people.step(self.now)
+        self._see_to_lifted()
+
+    def drive(self, forward: float, turn: float) -> None:
+        """Take a command for the wheels: m/s and rad/s."""
+        self.wheels.drive(forward, turn, self.now)
+
+    def say(self, text: str) -> None:
+        """Begin to say something, after whatever is being said."""
+        if "voice-dead" in self.faults:
+            return
+        if not self._speech:
+            self._silent_from = self.now + speaking_seconds(text)
+        self._speech.append(text)
+
+    def hush(self) -> None:
+        """Break off what is being said; nobody understands half a sentence."""
+        self._speech.clear()
+
+    def _speak(self) -> None:
+        while self._speech and self.now >= self._silent_from:
+            text = self._speech.popleft()
+            if "voice-dead" in self.faults:
+                continue
+            self.said.append(text)
+            heard = self._hearing.hear(text)
+            if heard is not None:
+                self.people.hear(heard)
+            if self._speech:
+                self._silent_from = self.now + speaking_seconds(self._speech[0])
+
+    # ------------------------------------------------------------------------ where it is
+
+    def nearest(self) -> str:
+        """Return the place at which the robot stands; "" where it is at none."""
+        pose = self.wheels.pose
+        for place, point in self._stands.items():
+            if np.hypot(point.x - pose.x, point.y - pose.y) <= ARRIVES:
+                return place
+        return ""
+
+    def _follow(self) -> None:
+        """Let people notice where the robot is."""
+        people, pose = self.people, self.wheels.pose
+        if people.place:
+            point = self._stands[people.place]
+            if np.hypot(point.x - pose.x, point.y - pose.y) > LEAVES:
+                people.leave()
+        if abs(self.wheels.forward) < STANDS and not people.place:
+            place = self.nearest()
+            if place:
+                people.meet(place)
+                chair = self.faults.present.get("path-detour")
+                if chair is not None and chair.shown:
+                    self.faults.lift("path-detour")
+
+    # ------------------------------------------------------------------------- what is seen
+
+    def ranges(self) -> NDArray[np.float64]:
+        """Return what the laser measures now, (beams,) m."""
+        measure = self.lidar.covered if "laser-occluded" in self.faults else self.lidar.scan
+        return measure(self.wheels.pose, self.floor, self._physics)
+
+    def head_scene(self) -> HeadScene:
+        """Return what the camera in the head looks at now."""
+        if "camera-occluded" in self.faults:
+            return HeadScene("dark")
+        if "camera-frozen" in self.faults:
+            return HeadScene("frozen")
+        pose, place = self.wheels.pose, self.nearest()
+        sitter = self.people.sitters.get(place)
+        off = abs((pose.heading - pi / 2 + pi) % (2 * pi) - pi)
+        if sitter is None or off > FACES_IT * pi / 180:
+            return HeadScene("room", heading=round(pose.heading * 90 / pi) * 2)
+        if self.joints.angle(NOD) > LOOKS_DOWN:
+            return HeadScene("face", sitter.id)
+        return HeadScene(
+            "card",
+            sitter.id,
+            self.games,
+            sitter.moved,
+            sitter.card,
+            sitter.player.marked,
+            sitter.hides,
+        )
+
+    @property
+    def asking(self) -> tuple[str, ...]:
+        """Whose signs are up, the oldest first."""
+        return self.people.asking
+
+    # --------------------------------------------------------------------- what goes wrong
+
+    def inject(self, kind: str) -> None:
+        """Bring about a fault: at once where it can be, else as soon as there is a chance to.
+
+        Raises:
+            KeyError: there is no such kind.
+        """
+        if kind in self.faults:
+            return
+        fault = self.faults.inject(kind, self.now)
+        place = self.people.place
+        match kind:
+            case "path-blocked":
+                self.floor.block(self.wheels.pose)
+            case "carried-off":
+                self._carry_off()
+            case "card-out-of-sight" if place in self.asking:
+                fault.person = place
+                self.people.hide(place)
+
+    def lift(self, kind: str) -> bool:
+        """Put a fault right; say whether it was there."""
+        found = self.faults.lift(kind)
+        self._see_to_lifted()
+        return found
+
+    def mend(self, code: str) -> list[str]:
+        """Let an expert see to what was diagnosed; return the kinds that were put right."""
+        found = self.faults.of(code)
+        for kind in found:
+            self.lift(kind)
+        return found
+
+    def restart(self, device: str) -> bool:
+        """Start a device again, which may help; say whether it works now."""
+        kind = f"{device}-dead"
+        if kind in self.faults and self._physics.random() < COMES_BACK:
+            self.lift(kind)
+        return kind not in self.faults
+
+    def _see_to_lifted(self) -> None:
+        lifted, self.faults.lifted = self.faults.lifted, []
+        for fault in lifted:
+            self.people.lifted(fault.kind.name, fault.person)
+            if fault.kind.name in ("path-blocked", "path-detour"):
+                self.floor.tidy()
+
+    def _place_chair(self) -> None:
+        """Put a chair before the robot, as soon as it drives and there is room for one."""
+        fault = self.faults.present.get("path-detour")
+        if fault is None or fault.shown or self.wheels.forward < 0.2:
+            return
+        fault.shown = self.floor.drop_ahead(self.wheels.pose, AHEAD)
+
+    def _carry_off(self) -> None:
+        """Put the robot somewhere else and another way round, without the wheels' turning."""
+        pose, room, random = self.wheels.pose, self.room, self._physics
+        for _ in range(200):
+            x, y = random.uniform(0, room.width), random.uniform(0, room.depth)
+            far = np.hypot(x - pose.x, y - pose.y)
+            if far > 2.0 and y < room.table[1] and self.floor.clear(x, y, RADIUS + 0.2):
+                heading = float(random.uniform(-pi, pi))
+                self.wheels.pose = Pose(float(x), float(y), heading)
+                break
+
+    # ------------------------------------------------------------------------------ truth
+
+    def truth(self) -> dict[str, Any]:
+        """Return what is true, as JSON has it; see `serving.py` for what it means."""
+        people, pose = self.people, self.wheels.pose
+        return {
+            "time": round(self.now, 3),
+            "game": self.games,
+            "pose": [round(value, 4) for value in pose],
+            "place": self.nearest(),
+            "moving": bool(self.wheels.forward or self.wheels.turn),
+            "bumped": self.wheels.bumped,
+            "asking": list(self.asking),
+            "called": list(people.game.called),
+            "opened": people.game.opened,
+            "over": people.game.over,
+            "spoken": list(people.game.spoken),
+            "faults": [
+                {"kind": name, "code": KINDS[name].code, "since": fault.since,
+                 "person": fault.person, "shown": fault.shown}
+                for name, fault in self.faults.present.items()
+            ],
+            "responses": [list(response) for response in people.game.responses],
+            "people": {
+                person: {
+                    "card": sitter.card,
+                    "marked": sitter.player.marked,
+                    "called": sitter.player.called,
+                    "hides": sitter.hides,
+                    "asks": sitter.asks_since is not None,
+                    "state": people.judged(person),
+                }
+                for person, sitter in people.sitters.items()
+            },
+        }  # fmt: skip
