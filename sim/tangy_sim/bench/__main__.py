@@ -1,0 +1,113 @@
+"""The bench process: commands as JSON lines on stdin, answers on stdout, devices on their wires.
+
+It says {"ready": {...}} first, then answers each {"do": ...} (with its "id", if it has one); see
+`Bench.do`. What cannot be done is answered by {"failed": "a sentence"}. It ends with its stdin.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import signal
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import MOST_PEOPLE, Person, load_people
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_sim.bench.serving import Bench
+from tangy_sim.bench.world import BenchWorld
+
+LONGEST_LINE = 1 << 20
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the bench until its stdin is closed or it is told to stop."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it closes its stdin
+    told = _parser().parse_args(arguments)
+    try:
+        people = _people(told.users, told.person)
+        world = BenchWorld(
+            load_room(told.room),
+            load_robot(told.robot),
+            load_activity(told.activity),
+            people,
+            seed=told.seed,
+        )
+    except TangyError as error:
+        print(error, file=sys.stderr)
+        return 2
+    faces = {person.id: number for number, person in enumerate(people, 1)}
+    asyncio.run(_serve(Bench(world, stepped=told.stepped, faces=faces, seed=told.seed)))
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="tangy_sim.bench", description=__doc__)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--users", type=int, default=4, help="how many people play")
+    person = parser.add_argument("--person", action="append", default=[], metavar="ID=NAME")
+    person.help = "one of the people, in the order of their seats, in place of --users"
+    parser.add_argument("--stepped", action="store_true", help="time passes by /bench/advance")
+    parser.add_argument("--room", default="common-room")
+    parser.add_argument("--robot", default="tangy")
+    parser.add_argument("--activity", default="bingo")
+    return parser
+
+
+def _people(count: int, named: Sequence[str]) -> tuple[Person, ...]:
+    if not named:
+        return load_people(count)
+    pairs = [one.partition("=")[::2] for one in named]
+    people = [Person(id.strip(), name.strip() or id.strip()) for id, name in pairs]
+    if len(people) > MOST_PEOPLE or len({person.id for person in people}) < len(people):
+        raise TangyError(f"Name up to {MOST_PEOPLE} people, each with an id of their own.")
+    return tuple(people)
+
+
+async def _serve(bench: Bench) -> None:
+    reader = asyncio.StreamReader(limit=LONGEST_LINE)
+    loop = asyncio.get_running_loop()
+    await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
+    _say({"ready": await bench.start()})
+    passing = None if bench.stepped else asyncio.create_task(bench.run())
+    try:
+        while line := await reader.readline():
+            answer = _answer(bench, line)
+            _say(answer)
+            if answer.get("done") == "stop":
+                break
+    finally:
+        if passing is not None:
+            passing.cancel()
+            with suppress(asyncio.CancelledError):
+                await passing
+        await bench.close()
+
+
+def _answer(bench: Bench, line: bytes) -> dict[str, Any]:
+    told: Any = None
+    answer: dict[str, Any]
+    try:
+        told = json.loads(line)
+        answer = {"done": "stop"} if told["do"] == "stop" else bench.do(told)
+    except (KeyError, TypeError, ValueError) as error:
+        said = line.decode(errors="replace").strip()
+        answer = {"failed": f"The bench does not understand {said:.200} ({error!r})."}
+    if isinstance(told, dict) and "id" in told:
+        answer["id"] = told["id"]
+    return answer
+
+
+def _say(answer: dict[str, Any]) -> None:
+    with suppress(BrokenPipeError):
+        print(json.dumps(answer), flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""The bench's two cameras while they run: frames are drawn in a thread, and streamed.
+
+They run in the machine's time even where the bench's goes in steps: a robot that looks closely
+takes pictures while nothing happens. No picture from before a change goes out after it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+
+from tangy_sim.bench.sights import HeadCamera
+from tangy_sim.bench.signs import CORNERS, InfraredCamera
+from tangy_sim.bench.world import BenchWorld, HeadScene
+from tangy_sim.wires.mjpeg_server import MjpegServer
+
+HEAD, INFRARED = "/head", "/infrared"
+PAUSE = 0.08  # s of real time from one frame of the head's camera to the next
+SIGNS_PAUSE = 0.1  # s, of the infrared camera
+CLOSE_UP = ("card", "face")
+
+
+class Film:
+    """Streams what the cameras of a world see."""
+
+    corners = CORNERS
+
+    def __init__(self, world: BenchWorld, faces: Mapping[str, int], *, seed: int) -> None:
+        people = world.people.ids
+        self._world = world
+        self._head = HeadCamera(world.activity, people, faces, seed=seed)
+        self._signs = InfraredCamera(world.room, people, seed=seed)
+        self._server = MjpegServer((HEAD, INFRARED))
+        self._thread = ThreadPoolExecutor(1, "film")
+        self._tasks: list[asyncio.Task[None]] = []
+
+    @property
+    def sent(self) -> dict[str, int]:
+        """How many frames each camera took so far."""
+        return {path.strip("/"): self._server.camera[path].pushed for path in (HEAD, INFRARED)}
+
+    def url(self, path: str) -> str:
+        """Return the address of a stream, "/head" or "/infrared"."""
+        return self._server.url(path)
+
+    async def start(self) -> None:
+        """Begin to film."""
+        await self._server.start()
+        self._tasks = [asyncio.create_task(self._film_head()), asyncio.create_task(self._watch())]
+
+    async def close(self) -> None:
+        """End."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._thread.shutdown(wait=False, cancel_futures=True)
+        await self._server.close()
+
+    def silence(self, *, head_pulled: bool, head: bool, infrared: bool) -> None:
+        """Let streams stand still or go on; a camera whose cable is pulled cuts them off."""
+        self._server.camera[HEAD].closed = head_pulled
+        self._server.camera[HEAD].hangs = head
+        self._server.camera[INFRARED].hangs = infrared
+
+    def show_signs(self) -> None:
+        """Take a frame of the signs now."""
+        camera = self._server.camera[INFRARED]
+        if camera.viewers and not camera.hangs:
+            camera.push(self._signs.frame(self._world.asking))
+
+    async def _watch(self) -> None:
+        while True:
+            self.show_signs()
+            await asyncio.sleep(SIGNS_PAUSE)
+
+    async def _film_head(self) -> None:
+        loop, camera = asyncio.get_running_loop(), self._server.camera[HEAD]
+        while True:
+            due = loop.time() + PAUSE
+            if camera.viewers and not camera.hangs:
+                scene = self._world.head_scene()
+                jpeg = await loop.run_in_executor(self._thread, self._head.frame, scene)
+                if not _outdated(scene, self._world.head_scene()):
+                    camera.push(jpeg)
+                else:
+                    due = loop.time()
+            await asyncio.sleep(max(0.0, due - loop.time()))
+
+
+def _outdated(scene: HeadScene, now: HeadScene) -> bool:
+    """Say whether a frame would show a card or a face as it was, or was not, before."""
+    return scene != now and (scene.kind in CLOSE_UP or now.kind in CLOSE_UP)

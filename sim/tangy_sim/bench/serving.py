@@ -1,0 +1,192 @@
+"""The bench's wires: a rosbridge server, a laser scanner on the network, two video streams.
+
+In its own (stepped) time the service `/bench/advance` {"seconds": dt} lets time pass: `/clock` is
+published, then what is due on all wires is sent, then the answer {"time": t, "sent": {...}} goes
+out, with how many scans and pictures were sent so far. That service and the clock answer even when
+the robot's link is lost, since time goes on then, too. Otherwise time is the machine's.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tangy_sim.bench import messages
+from tangy_sim.bench.film import Film
+from tangy_sim.bench.lidar import Lidar
+from tangy_sim.bench.world import BenchWorld
+from tangy_sim.injection import KINDS
+from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.wires.scip_server import ScipServer
+from tangy_sim.wires.scip_session import Scanner
+
+SCANNER = Scanner("UTM-30LX", 0.02, 30.0, 480, 360, 180, 10.0, 1)
+"""360 beams over 270 degrees, ten times a second; nearer than such a one is, to see a cloth."""
+
+TICK = 0.05  # s of the bench's time, between two odometries
+LONGEST = 60.0  # s that one step may be asked for
+BEHIND = 0.5  # s that a busy machine may be behind; more of it is lost
+EVERY = {"laser": 0.1, "joints": 0.1, "stop": 0.1, "diagnostics": 0.25, "infrared": 0.2}  # s
+ALWAYS = ("/bench/advance", "/clock")
+
+
+class Bench:
+    """Serves a world. `start` it, then `run` (in the machine's time) or be advanced (in steps)."""
+
+    def __init__(
+        self, world: BenchWorld, *, stepped: bool, faces: Mapping[str, int], seed: int = 1
+    ) -> None:
+        self.world, self.stepped = world, stepped
+        self.faces = dict(faces)
+        world.lidar = Lidar(SCANNER.beams, SCANNER.first, SCANNER.step)
+        self.ros = RosbridgeServer(clock=lambda: world.now)
+        self.scip = ScipServer(SCANNER)
+        self.film = Film(world, faces, seed=seed)
+        self._due = dict.fromkeys(EVERY, 0.0)
+        self._turn = asyncio.Lock()
+        self._lost = False  # whether the link is
+        self._commands: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
+            "begin": lambda _: {"cards": world.begin()},
+            "inject": lambda told: self._injected(str(told["kind"])),
+            "lift": lambda told: {"lifted": world.lift(str(told["kind"]))},
+            "mend": lambda told: {"lifted": world.mend(str(told["fault"]))},
+            "restart": lambda told: {"works": world.restart(str(told["device"]))},
+            "truth": lambda _: {"truth": world.truth()},
+        }
+
+    async def start(self) -> dict[str, Any]:
+        """Listen on all wires; return where, as the "ready" line tells it."""
+        ros = self.ros
+        ros.on_message("/cmd_vel", self._driven)
+        ros.on_message("/joint_trajectory", self._posed)
+        ros.on_message("/voice/say", lambda told: self.world.say(str(told["data"])))
+        ros.on_message("/voice/hush", lambda _: self.world.hush())
+        if self.stepped:
+            ros.provide("/bench/advance", self._advance)
+        await ros.start()
+        await self.scip.start()
+        await self.film.start()
+        return {
+            "rosbridge": ros.url,
+            "scip": self.scip.url,
+            "head": self.film.url("/head"),
+            "infrared": self.film.url("/infrared"),
+            "corners": [list(corner) for corner in self.film.corners],
+            "faces": self.faces,
+        }
+
+    async def close(self) -> None:
+        """End, on all wires."""
+        await self.film.close()
+        await self.scip.close()
+        await self.ros.close()
+
+    async def run(self) -> None:
+        """Let the bench's time pass as the machine's does, until it is cancelled."""
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        while True:
+            due = max(due + TICK, loop.time() - BEHIND)
+            await asyncio.sleep(max(0.0, due - loop.time()))
+            self._pass(TICK)
+
+    def do(self, told: Mapping[str, Any]) -> dict[str, Any]:
+        """Carry out a command of whoever runs the bench, and return the answer to it.
+
+        Raises:
+            KeyError: there is no such command or kind, or something is missing.
+        """
+        done = self._commands[str(told["do"])](told)
+        self._heed_faults()
+        return {"done": told["do"], **done}
+
+    # ------------------------------------------------------------------------------ time
+
+    async def _advance(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+        seconds = float(arguments["seconds"])
+        if not 0 < seconds <= LONGEST:
+            raise ValueError(f"seconds must be above 0 and at most {LONGEST:g}")
+        async with self._turn:
+            while seconds > 1e-9:
+                part = min(TICK, seconds)
+                seconds -= part
+                self._pass(part)
+        sent = {"laser": self.scip.sent, **self.film.sent}
+        return {"time": round(self.world.now, 6), "sent": sent}
+
+    def _pass(self, seconds: float) -> None:
+        world, ros = self.world, self.ros
+        if self.stepped:
+            ros.publish("/clock", "rosgraph_msgs/Clock",
+                        {"clock": messages.time(world.now + seconds)})  # fmt: skip
+        world.step(seconds)
+        now, wheels = world.now, world.wheels
+        self._heed_faults()
+        if "base-failed" not in world.faults:
+            odometry = messages.odometry(now, wheels.odometry, wheels.forward, wheels.turn)
+            ros.publish("/odom", "nav_msgs/Odometry", odometry)
+        if self._is_due("laser") and self.scip.measuring:
+            self.scip.send(world.ranges(), round(now * 1000))
+        if self._is_due("joints"):
+            states = messages.joint_states(now, world.joints.positions, world.joints.speeds)
+            ros.publish("/joint_states", "sensor_msgs/JointState", states)
+        if self._is_due("stop") and "stop-button-silent" not in world.faults:
+            pressed = "emergency-stop" in world.faults
+            ros.publish("/stop_button", "std_msgs/Bool", {"data": pressed})
+        if self._is_due("diagnostics"):
+            said = messages.diagnostics(now, self._diagnosed())
+            ros.publish("/diagnostics", "diagnostic_msgs/DiagnosticArray", said)
+        if self.stepped and self._is_due("infrared"):
+            self.film.show_signs()
+        said_now, world.said = world.said, []
+        for text in said_now:
+            ros.publish("/voice/said", "std_msgs/String", {"data": text})
+
+    def _is_due(self, what: str) -> bool:
+        if self.world.now < self._due[what] - 1e-9:
+            return False
+        self._due[what] = self.world.now + EVERY[what]
+        return True
+
+    # --------------------------------------------------------------------------- commands
+
+    def _driven(self, told: Mapping[str, Any]) -> None:
+        twist = told.get("twist", told)
+        self.world.drive(float(twist["linear"]["x"]), float(twist["angular"]["z"]))
+
+    def _posed(self, told: Mapping[str, Any]) -> None:
+        self.world.joints.move(*messages.trajectory(told))
+
+    def _injected(self, kind: str) -> dict[str, Any]:
+        self.world.inject(kind)
+        return {"kind": kind, "code": KINDS[kind].code}
+
+    # ------------------------------------------------------------------------------ faults
+
+    def _diagnosed(self) -> dict[str, tuple[int, str]]:
+        faults = self.world.faults
+        broken = {
+            "arms": ("arm-failed", "overload in the left elbow"),
+            "voice": ("voice-dead", "the voice has ended"),
+        }
+        return {
+            device: (messages.ERROR, says) if kind in faults else (messages.OK, "")
+            for device, (kind, says) in broken.items()
+        } | {"base": (messages.OK, ""), "stop_button": (messages.OK, "")}
+
+    def _heed_faults(self) -> None:
+        """Silence the wires that have to be, and let the others talk."""
+        faults = self.world.faults
+        lost = "link-lost" in faults
+        self.scip.silent = lost or "laser-disconnected" in faults
+        self.film.silence(
+            head_pulled="camera-disconnected" in faults,
+            head=lost,
+            infrared=lost or "requests-silent" in faults,
+        )
+        if lost and not self._lost:
+            self.ros.pause(ALWAYS if self.stepped else ())
+        elif self._lost and not lost:
+            self.ros.resume()
+        self._lost = lost
