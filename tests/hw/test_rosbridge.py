@@ -231,7 +231,7 @@ class TestActions:
             server.provide_action("/go", drives)
             goal = bridge.send_goal("/go", "nav2_msgs/NavigateToPose", {})
             await soon(began.wait())
-            goal.cancel()
+            bridge.cancel_goal(goal)
             with pytest.raises(DeviceError, match="was cancelled"):
                 await soon(goal.over)
             assert ended.is_set()
@@ -244,6 +244,7 @@ class TestActions:
             (False, {"result": True, "values": {}}, ""),
             (True, {"result": True, "values": {}}, "was cancelled"),
             (False, {"result": False, "values": "rejected"}, "did not succeed: rejected"),
+            (True, {"result": False, "status": 0, "values": "no status"}, "was cancelled"),
         ],
     )
     async def test_bridges_that_tell_the_end_otherwise_are_understood(
@@ -253,7 +254,7 @@ class TestActions:
         async with raw.serving(ros=2) as bridge:
             goal = bridge.send_goal("/go", "nav2_msgs/NavigateToPose", {})
             if cancels:
-                goal.cancel()
+                bridge.cancel_goal(goal)
             await until(lambda: len(raw.heard) == 1 + cancels)
             assert raw.heard[0]["action_type"] == "nav2_msgs/action/NavigateToPose"
             await raw.say({"op": "action_result", "id": raw.heard[0]["id"], **answer})

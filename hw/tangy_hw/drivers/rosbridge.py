@@ -11,7 +11,7 @@ import json
 import random
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
@@ -206,11 +206,19 @@ class Rosbridge:
         name = _full(action)
         if not self.connected:
             raise DeviceError(f"{name} cannot be begun: {self._unreachable()}")
-        sought = self._waiting.goal(name, feeds, self._send)
+        sought = self._waiting.goal(name, feeds)
         kind = kind if kind.count("/") == 2 else kind.replace("/", "/action/")
         wire = {"op": "send_action_goal", "id": sought.key, "action": name, "action_type": kind}
         self._send({**wire, "args": goal, "feedback": feeds is not None})
         return sought
+
+    def cancel_goal(self, goal: Goal) -> None:
+        """Ask the robot to give a goal up, by whatever link it was sent; `over` tells that it did.
+
+        A bridge may hear nothing else of a link as long as a goal of that link is under way.
+        """
+        goal.given_up = True
+        self._send({"op": "cancel_action_goal", "id": goal.key, "action": goal.action})
 
     def spelled(self, kind: str) -> str:
         """Return the name of a type as this ROS spells it: pkg/Kind, or pkg/msg/Kind."""
@@ -251,13 +259,12 @@ class Rosbridge:
     async def _talk(self, socket: ClientConnection) -> None:
         self._urgent.clear()  # what was meant before a loss is not meant after it
         self._queue.clear()
-        self._queue.extend(self._hello.values())
         self._fragments = Fragments()
         self._socket = socket
         self._connected.set()
         for does in self._on_connect:
             does()
-        writing = asyncio.create_task(self._write(socket))
+        writing = asyncio.create_task(self._write(socket, tuple(self._hello.values())))
         try:
             async for text in socket:
                 self._hear(text)
@@ -265,8 +272,10 @@ class Rosbridge:
             writing.cancel()
             await asyncio.gather(writing, return_exceptions=True)
 
-    async def _write(self, socket: ClientConnection) -> None:
+    async def _write(self, socket: ClientConnection, greetings: Sequence[str]) -> None:
         with suppress(WebSocketException):
+            for text in greetings:
+                await socket.send(text)
             while True:
                 while self._urgent or self._queue:
                     if self._urgent:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import secrets
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
@@ -13,33 +14,24 @@ from tangy_profiles.reading import plain
 
 Message = Mapping[str, Any]
 
-SUCCEEDED, CANCELED = 4, 5  # as action_msgs/GoalStatus numbers them
+UNKNOWN, SUCCEEDED, CANCELED = 0, 4, 5  # as action_msgs/GoalStatus numbers them
+
+
+class LinkLost(DeviceError):
+    """An answer does not come because the link was lost."""
 
 
 class Goal:
     """A goal of an action of ROS 2, on its way."""
 
-    def __init__(
-        self,
-        key: str,
-        action: str,
-        feeds: Callable[[Message], None] | None,
-        cancels: Callable[[], None],
-    ) -> None:
-        """Know what to do with feedback, and how to cancel."""
-        self.key, self.action = key, action
-        self.feeds = feeds
+    def __init__(self, key: str, action: str, feeds: Callable[[Message], None] | None) -> None:
+        """Know what to do with feedback."""
+        self.key, self.action, self.feeds = key, action, feeds
         self.given_up = False
-        self._cancels = cancels
+        """Whether it was cancelled."""
         self.over: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         """Its values; or what became of it, as a `DeviceError`."""
         self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
-
-    def cancel(self) -> None:
-        """Ask the robot to give it up; that it did, `over` tells."""
-        if not self.over.done():
-            self.given_up = True
-            self._cancels()
 
 
 class Waiting:
@@ -47,28 +39,24 @@ class Waiting:
 
     def __init__(self) -> None:
         """Begin with none."""
+        # Some bridges keep the goals of all their clients in one place.
+        self._mark = f"tangy {secrets.token_hex(4)}"
         self._numbers = count(1)
         self._calls: dict[str, tuple[str, asyncio.Future[Message]]] = {}
         self._goals: dict[str, Goal] = {}
 
     def call(self, service: str) -> tuple[str, asyncio.Future[Message]]:
         """Return an id for a call, and what becomes of it."""
-        key = f"call {next(self._numbers)}"
+        key = f"{self._mark} {next(self._numbers)}"
         future: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         self._calls[key] = service, future
         return key, future
 
-    def goal(
-        self,
-        action: str,
-        feeds: Callable[[Message], None] | None,
-        send: Callable[[Message], None],
-    ) -> Goal:
-        """Return a new goal, which is cancelled by what `send` sends."""
-        key = f"goal {next(self._numbers)}"
-        cancel = {"op": "cancel_action_goal", "id": key, "action": action}
-        self._goals[key] = Goal(key, action, feeds, lambda: send(cancel))
-        return self._goals[key]
+    def goal(self, action: str, feeds: Callable[[Message], None] | None) -> Goal:
+        """Return a new goal."""
+        goal = Goal(f"{self._mark} {next(self._numbers)}", action, feeds)
+        self._goals[goal.key] = goal
+        return goal
 
     def forget(self, key: str) -> None:
         """Await an answer no more."""
@@ -99,10 +87,10 @@ class Waiting:
         """Answer all of them with the loss of the link."""
         for name, future in self._calls.values():
             if not future.done():
-                future.set_exception(DeviceError(plain(f"{name}: {reason}")))
+                future.set_exception(LinkLost(plain(f"{name}: {reason}")))
         for goal in self._goals.values():
             if not goal.over.done():
-                goal.over.set_exception(DeviceError(plain(f"{goal.action}: {reason}")))
+                goal.over.set_exception(LinkLost(plain(f"{goal.action}: {reason}")))
         self._calls.clear()
         self._goals.clear()
 
@@ -117,7 +105,7 @@ class Waiting:
         if status == SUCCEEDED or (status is None and message.get("result") and not goal.given_up):
             goal.over.set_result(values if isinstance(values, Mapping) else {})
             return
-        cancelled = status == CANCELED or (status is None and goal.given_up)
+        cancelled = status == CANCELED or (status in (None, UNKNOWN) and goal.given_up)
         what = "was cancelled" if cancelled else "did not succeed"
         goal.over.set_exception(DeviceError(_says(f"{goal.action} {what}", values)))
 

@@ -30,14 +30,13 @@ def encoded(message: object) -> str:
 
 
 class Client:
-    """A connection with its subscriptions, goals, and the queue of what it is to be told."""
+    """A connection with its subscriptions and the queue of what it is to be told."""
 
     def __init__(self, connection: ServerConnection) -> None:
         """Know its connection."""
         self.connection = connection
         self.topics: dict[str, dict[str, tuple[float, int]]] = {}
         """Throttle in s and largest message by subscription, by topic."""
-        self.goals: dict[str, asyncio.Future[Any]] = {}
         self.held: list[dict[str, Any]] = []
         """What it said in a pause."""
         self.unsaid: list[str] = []

@@ -52,6 +52,7 @@ class RosbridgeServer:
         self._hears: dict[str, list[Hears]] = {}
         self._services: dict[str, Service] = {}
         self._actions: dict[str, Action] = {}
+        self._goals: dict[str, asyncio.Future[Any]] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._paused = False
         self._still: frozenset[str] = frozenset()
@@ -174,8 +175,7 @@ class RosbridgeServer:
                     self._hear(client, text)
         finally:
             self._clients.discard(client)
-            for task in (writing, *client.goals.values()):
-                task.cancel()
+            writing.cancel()  # a goal goes on without its client, as in ROS
             self._changed.set()
             await asyncio.gather(writing, return_exceptions=True)
 
@@ -269,21 +269,20 @@ class RosbridgeServer:
                 status = CANCELED
             except Exception as error:  # whatever an action raises is its client's to know
                 values, status = str(error), ABORTED
-            client.goals.pop(key, None)
+            self._goals.pop(key, None)
             result = {"values": values, "status": status, "result": status == SUCCEEDED}
             self._answer(client, name, {"op": "action_result", **base, **result})
 
         if name not in self._actions:
             raise ValueError(f"action {name} does not exist")
         goal = asyncio.ensure_future(self._actions[name](message.get("args") or {}, feed))
-        client.goals[key] = goal
+        self._goals[key] = goal
         self._begin(run())
 
-    def _cancelled(self, client: Client, message: dict[str, Any]) -> None:
-        goal = client.goals.get(str(message["id"]))
-        if goal is None:
-            raise ValueError("there is no such goal")
-        goal.cancel()
+    def _cancelled(self, _: Client, message: dict[str, Any]) -> None:
+        goal = self._goals.get(str(message["id"]))
+        if goal is not None:
+            goal.cancel()
 
     def _answer(self, client: Client, name: str, answer: Message) -> None:
         text = encoded(answer)

@@ -1,0 +1,123 @@
+"""Wheels behind ROS: geometry_msgs/Twist out, nav_msgs/Odometry in."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from contextlib import suppress
+
+from tangy_hw.devices import STILL, DeviceError, Odometry, Stamped, Twist
+from tangy_hw.drivers.ros_messages import Message, header, odometry_of, twist_message
+from tangy_hw.drivers.ros_newest import Newest
+from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_profiles.health import Reading
+
+HOLDS_SECONDS = 0.5  # for which a command holds; so long bases hold one themselves
+REPEAT_SECONDS = 0.1  # between two of the same command; bases want 10 a second
+
+
+class RosBase:
+    """A base that drives as the newest command says; every command goes ahead of all else."""
+
+    def __init__(
+        self,
+        bridge: Rosbridge,
+        *,
+        name: str = "base",
+        drive: str = "/cmd_vel",
+        odometry: str = "/odom",
+        stamped: bool = False,
+        repeat: float = REPEAT_SECONDS,
+        diagnostics: RosDiagnostics | None = None,
+    ) -> None:
+        """Name its topics.
+
+        Args:
+            stamped: it takes geometry_msgs/TwistStamped, as some of ROS 2 do.
+            repeat: s between repetitions of a command that still holds; 0: whoever drives repeats.
+        """
+        self.name = name
+        self._bridge, self._diagnostics = bridge, diagnostics
+        self._drive_topic, self._odometry_topic = drive, odometry
+        self._stamped, self._repeat = stamped, repeat
+        self._newest: Newest[Odometry] = Newest(bridge.clock)
+        self._twist, self._since = STILL, -math.inf
+        self._moved = asyncio.Event()
+        self._repeating: asyncio.Task[None] | None = None
+        bridge.on_connect(self._connected)
+
+    @property
+    def odometry(self) -> Stamped[Odometry] | None:
+        """The newest odometry; None: there was none yet."""
+        return self._newest.stamped
+
+    async def start(self) -> None:
+        """Begin to hear odometry; the base stands still until it is told to drive."""
+        await self._bridge.start()
+        if self._repeating is None:
+            self._newest.restart()
+            kind = "geometry_msgs/TwistStamped" if self._stamped else "geometry_msgs/Twist"
+            self._bridge.advertise(self._drive_topic, kind)
+            self._bridge.subscribe(self._odometry_topic, "nav_msgs/Odometry", self._hear)
+            self._repeating = asyncio.create_task(self._repeat_on())
+
+    async def close(self) -> None:
+        """Stand still, and end."""
+        await self.stop()
+        task, self._repeating = self._repeating, None
+        if task is not None:
+            self._bridge.unsubscribe(self._odometry_topic, self._hear)
+            task.cancel()
+            await asyncio.wait({task})
+
+    def reading(self) -> Reading:
+        """Return the age of the odometry, and what the diagnostics say of the base."""
+        return self._newest.reading(self.name, state_told(self._diagnostics, self.name))
+
+    async def drive(self, twist: Twist) -> None:
+        """Drive so until the next command, for half a second at most.
+
+        Raises:
+            DeviceError: there is no link, or it is no twist.
+        """
+        if not all(map(math.isfinite, twist)):
+            raise DeviceError(f"{self.name} cannot drive {twist}.")
+        if self._repeating is None:
+            raise DeviceError(f"{self.name} is switched off.")
+        self._twist, self._since = twist, self._bridge.clock()
+        self._moved.set()
+        self._say(twist)
+
+    async def stop(self) -> None:
+        """Stand still now: what was to be driven and waits to be sent is never sent."""
+        self._twist = STILL
+        with suppress(DeviceError):
+            self._say(STILL)
+
+    def _say(self, twist: Twist) -> None:
+        message: Message = twist_message(twist)
+        if self._stamped:
+            message = {"header": header("base_link", self._bridge.ros), "twist": message}
+        self._bridge.publish(self._drive_topic, message, urgent=True)
+
+    def _connected(self) -> None:
+        """Stand still at a new connection: nobody knows what was driven when the last ended."""
+        self._twist = STILL
+        if self._repeating is not None:
+            self._say(STILL)
+
+    def _hear(self, message: Message) -> None:
+        self._newest.take(odometry_of(message))
+
+    async def _repeat_on(self) -> None:
+        while True:
+            await self._moved.wait()
+            self._moved.clear()
+            while self._repeat and self._twist != STILL:
+                await asyncio.sleep(self._repeat)
+                if self._bridge.clock() - self._since > HOLDS_SECONDS:
+                    await self.stop()
+                elif self._twist != STILL:
+                    with suppress(DeviceError):
+                        self._say(self._twist)

@@ -1,0 +1,198 @@
+"""ROS messages as rosbridge sends them, and what they mean here; pure functions.
+
+Times are {"secs", "nsecs"} in ROS 1 and {"sec", "nanosec"} in ROS 2; what is read may be either.
+Whatever is no such message raises KeyError, TypeError or ValueError, which `Rosbridge` tells of.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_hw.devices import Odometry, Pose, Scan, Twist
+from tangy_profiles.health import ERROR, OK, STALE, WARN
+
+Message = Mapping[str, Any]
+
+LEVELS = (OK, WARN, ERROR, STALE)
+"""As diagnostic_msgs/DiagnosticStatus numbers them."""
+
+
+def number(value: object) -> float:
+    """Return a finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{value!r:.40} is no finite number")
+    return float(value)
+
+
+def time_message(seconds: float, ros: int) -> dict[str, int]:
+    """Return a time or duration as this ROS spells it."""
+    whole = math.floor(seconds)
+    rest = min(round((seconds - whole) * 1e9), 999_999_999)
+    return {"secs": whole, "nsecs": rest} if ros == 1 else {"sec": whole, "nanosec": rest}
+
+
+def seconds_of(message: Message) -> float:
+    """Return a time or duration in s, however it is spelled."""
+    whole = message["secs"] if "secs" in message else message["sec"]
+    rest = message["nsecs"] if "nsecs" in message else message["nanosec"]
+    return number(whole) + number(rest) / 1e9
+
+
+def header(frame: str, ros: int) -> dict[str, Any]:
+    """Return a header without a time, which means now."""
+    return {"stamp": time_message(0, ros), "frame_id": frame}
+
+
+def heading_of(quaternion: Message) -> float:
+    """Return the heading of an orientation; one that is all zeros was not filled in, and is 0."""
+    x, y, z, w = (number(quaternion[axis]) for axis in "xyzw")
+    return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def quaternion_message(heading: float) -> dict[str, float]:
+    """Return a heading as an orientation."""
+    return {"x": 0.0, "y": 0.0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)}
+
+
+def pose_of(message: Message) -> Pose:
+    """Return a geometry_msgs/Pose, seen from above."""
+    place = message["position"]
+    return Pose(number(place["x"]), number(place["y"]), heading_of(message["orientation"]))
+
+
+def pose_message(pose: Pose) -> dict[str, Any]:
+    """Return a pose as geometry_msgs/Pose."""
+    return {
+        "position": {"x": pose.x, "y": pose.y, "z": 0.0},
+        "orientation": quaternion_message(pose.heading),
+    }
+
+
+def twist_of(message: Message) -> Twist:
+    """Return a geometry_msgs/Twist of a base that drives forward and turns."""
+    return Twist(number(message["linear"]["x"]), number(message["angular"]["z"]))
+
+
+def twist_message(twist: Twist) -> dict[str, Any]:
+    """Return how fast to drive as geometry_msgs/Twist."""
+    return {
+        "linear": {"x": twist.forward, "y": 0.0, "z": 0.0},
+        "angular": {"x": 0.0, "y": 0.0, "z": twist.turn},
+    }
+
+
+def odometry_of(message: Message) -> Odometry:
+    """Return a nav_msgs/Odometry."""
+    return Odometry(pose_of(message["pose"]["pose"]), twist_of(message["twist"]["twist"]))
+
+
+def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.float64]]:
+    """Return a sensor_msgs/LaserScan, and its ranges as they came.
+
+    What a scanner measures below its least or beyond its greatest range, or not at all (null, as
+    rosbridge writes infinity), is inf in the scan.
+
+    Args:
+        turned: by how much it looks to the left of where the robot faces, in radians.
+    """
+    raw = np.array(message["ranges"], float)
+    first, step = number(message["angle_min"]), number(message["angle_increment"])
+    least, most = number(message["range_min"]), number(message["range_max"])
+    if raw.ndim != 1 or not len(raw) or not step or most <= 0:
+        raise ValueError("a scan has ranges, a step between its beams, and a greatest range")
+    with np.errstate(invalid="ignore"):
+        known = (raw >= max(least, 1e-6)) & (raw <= most)
+    return Scan(first + turned, step, np.where(known, raw, np.inf), most), raw
+
+
+def joints_of(message: Message) -> dict[str, float]:
+    """Return the positions of a sensor_msgs/JointState by joint, in radians."""
+    names, positions = message["name"], message["position"]
+    if not positions:  # some publish only how fast joints move, or how hard
+        return {}
+    return {str(name): number(position) for name, position in zip(names, positions, strict=True)}
+
+
+def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) -> dict[str, Any]:
+    """Return a trajectory_msgs/JointTrajectory to one point.
+
+    Args:
+        joints: where to, in radians, by joint.
+        seconds: when to be there.
+    """
+    point = {
+        "positions": list(joints.values()),
+        "velocities": [],
+        "accelerations": [],
+        "effort": [],
+        "time_from_start": time_message(seconds, ros),
+    }
+    return {"header": header("", ros), "joint_names": list(joints), "points": [point]}
+
+
+def statuses_of(message: Message) -> list[tuple[str, str, str, dict[str, str]]]:
+    """Return a diagnostic_msgs/DiagnosticArray: name, state, what it says, and its values."""
+    found: list[tuple[str, str, str, dict[str, str]]] = []
+    for status in message["status"]:
+        level = status["level"]
+        if isinstance(level, str) and len(level) == 1:  # a byte, as some bridges write it
+            level = ord(level) if level < " " else int(level)
+        if isinstance(level, bool) or not isinstance(level, int) or not 0 <= level < len(LEVELS):
+            raise ValueError(f"{level!r:.40} is no level of a diagnosis")
+        values = {str(pair["key"]): str(pair["value"]) for pair in status.get("values", ())}
+        said = str(status.get("message", ""))
+        found.append((str(status["name"]), LEVELS[level], said, values))
+    return found
+
+
+def within(pose: Pose, origin: Pose) -> Pose:
+    """Return a pose of a frame as one of the frame in which `origin` is that frame's place."""
+    cos, sin = math.cos(origin.heading), math.sin(origin.heading)
+    return Pose(
+        origin.x + cos * pose.x - sin * pose.y,
+        origin.y + sin * pose.x + cos * pose.y,
+        _wrapped(origin.heading + pose.heading),
+    )
+
+
+def seen_from(pose: Pose, origin: Pose) -> Pose:
+    """Return a pose as it is seen from `origin`; undoes `within`."""
+    cos, sin = math.cos(origin.heading), math.sin(origin.heading)
+    x, y = pose.x - origin.x, pose.y - origin.y
+    return Pose(cos * x + sin * y, cos * y - sin * x, _wrapped(pose.heading - origin.heading))
+
+
+def joined_names(text: str) -> dict[str, str]:
+    """Read "limb/joint = robot's name, ..." as robots' profiles name joints otherwise.
+
+    Raises:
+        ValueError: it is not of that form.
+    """
+    names: dict[str, str] = {}
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        ours, equals, theirs = (piece.strip() for piece in part.partition("="))
+        if not (ours and equals and theirs) or ours in names:
+            raise ValueError(part)
+        names[ours] = theirs
+    return names
+
+
+def near_share(raw: NDArray[np.float64], near: float) -> float:
+    """Return the share of beams that end within so many m; 0 is a beam that met nothing."""
+    with np.errstate(invalid="ignore"):
+        return float(np.mean((raw > 0) & (raw < near)))
+
+
+def changed_share(scans: Sequence[NDArray[np.float64]]) -> float:
+    """Return the share of beams that changed over some scans."""
+    ranges = np.nan_to_num(np.stack(scans), nan=np.inf)
+    return float(np.mean(ranges.min(0) != ranges.max(0)))
+
+
+def _wrapped(angle: float) -> float:
+    return math.remainder(angle, math.tau)

@@ -1,0 +1,177 @@
+"""ROS messages as bridges of both kinds send them, and what is read in them."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.devices import Pose, Twist
+from tangy_hw.drivers.ros_messages import (
+    changed_share,
+    heading_of,
+    joined_names,
+    joints_of,
+    near_share,
+    odometry_of,
+    pose_message,
+    pose_of,
+    quaternion_message,
+    scan_of,
+    seconds_of,
+    seen_from,
+    statuses_of,
+    time_message,
+    trajectory_message,
+    twist_message,
+    twist_of,
+    within,
+)
+
+METRES = st.floats(-50, 50)
+HEADINGS = st.floats(-3.1, 3.1)
+POSES = st.builds(Pose, METRES, METRES, HEADINGS)
+
+
+@given(st.floats(0, 1e9), st.sampled_from([1, 2]))
+def test_times_are_read_as_they_were_written(seconds: float, ros: int) -> None:
+    message = time_message(seconds, ros)
+    assert set(message) == ({"secs", "nsecs"} if ros == 1 else {"sec", "nanosec"})
+    assert 0 <= list(message.values())[1] < 1_000_000_000
+    assert seconds_of(message) == pytest.approx(seconds, abs=2e-7)
+
+
+@given(POSES)
+def test_poses_are_read_as_they_were_written(pose: Pose) -> None:
+    assert pose_of(json.loads(json.dumps(pose_message(pose)))) == pytest.approx(pose)
+
+
+@given(POSES, POSES)
+def test_what_a_map_calls_a_place_the_room_calls_as_before(pose: Pose, origin: Pose) -> None:
+    there = within(pose, origin)
+    back = seen_from(there, origin)
+    assert back[:2] == pytest.approx(pose[:2], abs=1e-6)
+    assert math.cos(back.heading - pose.heading) == pytest.approx(1)
+    assert math.dist(there[:2], origin[:2]) == pytest.approx(math.hypot(*pose[:2]), abs=1e-6)
+
+
+def test_a_room_turned_by_a_quarter_in_the_map() -> None:
+    assert within(Pose(1, 0, 0), Pose(10, 20, math.pi / 2)) == pytest.approx((10, 21, math.pi / 2))
+
+
+@given(HEADINGS, st.floats(-0.3, 0.3), st.floats(0.5, 2))
+def test_a_heading_is_that_of_a_robot_that_leans_or_rounds(
+    heading: float, lean: float, length: float
+) -> None:
+    """A quaternion turned about the robot's own side, and not of length one."""
+    turn = quaternion_message(heading)
+    z, w, s, c = turn["z"], turn["w"], math.sin(lean / 2), math.cos(lean / 2)
+    leaning = {"x": -z * s, "y": w * s, "z": z * c, "w": w * c}
+    assert heading_of({axis: length * part for axis, part in leaning.items()}) == pytest.approx(
+        heading, abs=1e-6
+    )
+
+
+def test_twist_and_odometry() -> None:
+    twist = Twist(0.3, -0.5)
+    assert twist_of(twist_message(twist)) == twist
+    pose = Pose(1.0, 2.0, 0.5)
+    message = {"pose": {"pose": pose_message(pose)}, "twist": {"twist": twist_message(twist)}}
+    assert odometry_of(message).pose == pytest.approx(pose)
+    assert odometry_of(message).twist == twist
+    message["pose"]["pose"]["position"]["x"] = math.nan
+    with pytest.raises(ValueError, match="no finite number"):
+        odometry_of(message)
+
+
+SCAN: dict[str, Any] = {
+    "angle_min": -2.0, "angle_increment": 0.5, "range_min": 0.1, "range_max": 5.0,
+}  # fmt: skip
+
+
+class TestScans:
+    def test_what_met_nothing_or_is_unknown_is_infinite(self) -> None:
+        ranges = [1.0, None, math.nan, math.inf, 0.05, 0.0, 5.0, 5.01, -1.0]
+        scan, raw = scan_of({**SCAN, "ranges": ranges}, 0.25)
+        assert scan.ranges.tolist() == [1.0] + [math.inf] * 5 + [5.0] + [math.inf] * 2
+        assert (scan.first, scan.step, scan.farthest) == (-1.75, 0.5, 5.0)
+        assert near_share(raw, 0.15) == pytest.approx(1 / 9)
+
+    @pytest.mark.parametrize(
+        "wrong",
+        [
+            {"ranges": []},
+            {"ranges": [[1]]},
+            {"ranges": "x"},
+            {"angle_increment": 0},
+            {"range_max": None},
+        ],
+    )
+    def test_what_is_no_scan_is_none(self, wrong: dict[str, Any]) -> None:
+        with pytest.raises((ValueError, TypeError)):
+            scan_of({**SCAN, "ranges": [1.0], **wrong})
+
+    def test_beams_that_stay_as_they_are_have_not_changed(self) -> None:
+        first = np.array([1.0, 2.0, math.nan, math.inf])
+        assert changed_share([first, first.copy()]) == 0
+        assert changed_share([first, np.array([1.0, 2.1, 3.0, math.inf]), first]) == 0.5
+
+
+class TestJoints:
+    def test_a_trajectory_says_where_and_when_in_either_spelling(self) -> None:
+        for ros, when in (
+            (1, {"secs": 1, "nsecs": 500_000_000}),
+            (2, {"sec": 1, "nanosec": 500_000_000}),
+        ):
+            message = trajectory_message({"head/neck nod": 0.3, "head/mouth": 0.0}, 1.5, ros)
+            assert message["joint_names"] == ["head/neck nod", "head/mouth"]
+            assert message["points"][0]["positions"] == [0.3, 0.0]
+            assert message["points"][0]["time_from_start"] == when
+
+    def test_states_of_joints_may_lack_positions_but_not_some_of_them(self) -> None:
+        assert joints_of({"name": ["a", "b"], "position": [1, 2.5]}) == {"a": 1.0, "b": 2.5}
+        assert joints_of({"name": ["a", "b"], "position": []}) == {}
+        with pytest.raises(ValueError):
+            joints_of({"name": ["a", "b"], "position": [1]})
+        with pytest.raises(ValueError):
+            joints_of({"name": ["a"], "position": [None]})
+
+    def test_names_that_differ_are_read_from_a_profile(self) -> None:
+        text = "head/neck nod = head_tilt, head/neck shake=head_pan,"
+        assert joined_names(text) == {"head/neck nod": "head_tilt", "head/neck shake": "head_pan"}
+        for wrong in ("head", "=x", "a=", "a=b, a=c"):
+            with pytest.raises(ValueError):
+                joined_names(wrong)
+
+
+class TestDiagnoses:
+    def test_levels_are_numbers_or_the_bytes_that_some_write(self) -> None:
+        statuses = [
+            {
+                "level": level,
+                "name": str(place),
+                "message": "m",
+                "values": [{"key": "a", "value": 1}],
+            }
+            for place, level in enumerate([0, 1, 2, 3, "\x02", "3"])
+        ]
+        found = statuses_of({"status": statuses})
+        assert [state for _, state, _, _ in found] == [
+            "OK",
+            "WARN",
+            "ERROR",
+            "STALE",
+            "ERROR",
+            "STALE",
+        ]
+        assert found[0][2:] == ("m", {"a": "1"})
+
+    @pytest.mark.parametrize("level", [4, -1, True, None, "x", "12", 1.5])
+    def test_what_is_no_level_is_none(self, level: Any) -> None:
+        with pytest.raises(ValueError):
+            statuses_of({"status": [{"level": level, "name": "a"}]})
