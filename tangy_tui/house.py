@@ -242,13 +242,15 @@ class House:
         asks: bool = False,
         injections: Sequence[str] = (),
         live: Callable[[], Health] | None = None,
+        world: World | None = None,
     ) -> Supervision:
-        """Make a run of simulated games under execution monitoring.
+        """Make a run of games under execution monitoring; they are simulated ones.
 
         Args:
             asks: somebody is there to say what to do where Tangy is not sure.
             injections: faults that are to come, as in `--inject`.
             live: what real devices report, in place of the simulated ones.
+            world: where they are played instead, and where `injections` are its own business.
 
         Raises:
             TangyError: one of the injections is none, or the fault rules have a mistake.
@@ -260,9 +262,11 @@ class House:
         from tangy_tui.monitoring.supervision import Supervision
 
         to_come = [read_injection(text) for text in injections]
-        seed = self._seed(seed)
+        seed = self.game_seed(seed)
         people = list(self.names)
-        if live is None:
+        if world is not None:
+            pass
+        elif live is None:
             world = FaultyWorld(self.activity, people, seed=seed, injections=to_come)
         else:
             from tangy_tui.live_devices import PartlyLiveWorld
@@ -286,11 +290,11 @@ class House:
         """
         from tangy_sim.world import SimulatedWorld
 
-        seed = self._seed(seed)
+        seed = self.game_seed(seed)
         world = SimulatedWorld(self.activity, list(self.names), seed=seed)
         return self._facilitation(world, policy, seed, asks)
 
-    def _seed(self, seed: int | None) -> int:
+    def game_seed(self, seed: int | None) -> int:
         """Return a seed: the given one, or one that no game has had."""
         from tangy_tui.interaction import facilitation
 

@@ -381,4 +381,3 @@ class LiveRobot:
 async def _quietly(work: Coroutine[Any, Any, None]) -> None:
     with suppress(DeviceError):  # its reading tells
         await work
-

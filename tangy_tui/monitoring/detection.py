@@ -51,23 +51,10 @@ class Detector:
         return state_of(self._robot.devices.get(reading.device), reading)
 
     def watch(self, health: Health) -> Evidence:
-        """Return the evidence that the devices give; the same object for the same readings.
-
-        What a device measured before it fell silent is no evidence any more, and a device of the
-        robot's that is not even mentioned is as silent as any.
-        """
+        """Return the evidence that the devices give; the same object for the same readings."""
         if health is not self._health:
             self._health = health
-            self._devices = {f"{name}.state": STALE for name in self._robot.devices}
-            for reading in health:
-                state = self.state(reading)
-                self._devices[f"{reading.device}.state"] = state
-                if math.isfinite(reading.age):
-                    self._devices[f"{reading.device}.age"] = reading.age
-                if state != STALE:
-                    for fact, value in reading.facts.items():
-                        if value == value:
-                            self._devices[f"{reading.device}.{fact}"] = value
+            self._devices = device_evidence(self._robot, health)
         return self._devices
 
     def worst(self, health: Health) -> tuple[str, str]:
@@ -121,6 +108,24 @@ class Detector:
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0
+
+
+def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
+    """Return the evidence that the devices of a robot give.
+
+    What a device measured before it fell silent is no evidence any more, and a device of the
+    robot's that is not even mentioned is as silent as any.
+    """
+    found: dict[str, Fact] = {f"{name}.state": STALE for name in robot.devices}
+    for reading in health:
+        state = state_of(robot.devices.get(reading.device), reading)
+        found[f"{reading.device}.state"] = state
+        if math.isfinite(reading.age):
+            found[f"{reading.device}.age"] = reading.age
+        if state != STALE:
+            facts = reading.facts.items()
+            found |= {f"{reading.device}.{fact}": value for fact, value in facts if value == value}
+    return found
 
 
 def state_of(device: Device | None, reading: Reading) -> str:

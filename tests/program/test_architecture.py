@@ -33,6 +33,7 @@ ENGINE = [
     ROOT / "tangy_tui" / "log_lines.py",
     ROOT / "tangy_tui" / "drill_lines.py",
     ROOT / "tangy_tui" / "live_devices.py",
+    ROOT / "tangy_tui" / "live",
     ROOT / "tangy_tui" / "sensor_lines.py",
 ]
 HEAVY = {"sklearn", "cv2", "scipy", "pocketsphinx", "skimage", "numpy"}

@@ -1,0 +1,1 @@
+"""Games with real devices: what opens the robot or its bench, and what is made of it."""

@@ -1,0 +1,138 @@
+"""The bench: a process in which the devices of a robot and the people round it are simulated.
+
+The robot process speaks to its devices over their own wires. Here is only what somebody at the
+bench would do by hand: deal cards, bring a fault about, lift it, and look how things really are.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.worker_log import open_log
+
+CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench")
+END_SECONDS = 3.0
+
+
+class BenchError(TangyError):
+    """The bench cannot be had, or does not do what it was told."""
+
+
+@dataclass(frozen=True)
+class Wires:
+    """Where the devices of the bench are, as addresses.
+
+    `corners` are those of the table in the infrared picture; `faces` says which drawn person sits
+    where, by id.
+    """
+
+    rosbridge: str
+    scip: str
+    head: str
+    infrared: str
+    corners: tuple[tuple[float, float], ...]
+    faces: dict[str, int]
+
+
+class Bench:
+    """A bench that runs. `do` things at it, and `close` it."""
+
+    def __init__(
+        self,
+        *,
+        seed: int,
+        users: int,
+        stepped: bool,
+        activity: str = "bingo",
+        room: str = "common-room",
+        log: Path | None = None,
+    ) -> None:
+        """Start a bench.
+
+        Args:
+            seed: another seed, other people and games.
+            users: how many people sit there.
+            stepped: its time passes only when the robot lets it.
+            log: where what goes wrong in it is written.
+
+        Raises:
+            BenchError: it does not begin.
+        """
+        command = [*CHILD, "--seed", str(seed), "--users", str(users), "--room", room]
+        command += ["--activity", activity, *(["--stepped"] if stepped else [])]
+        err: IO[bytes] | int = subprocess.DEVNULL
+        if log is not None:
+            with suppress(OSError):
+                err = open_log(log)
+        self._process = subprocess.Popen(  # noqa: S603 - it is our own program
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=err,
+            start_new_session=True,
+        )
+        if not isinstance(err, int):
+            err.close()
+        self._lock = threading.Lock()
+        try:
+            ready = self._read()["ready"]
+            self.wires = Wires(
+                ready["rosbridge"],
+                ready["scip"],
+                ready["head"],
+                ready["infrared"],
+                tuple((float(x), float(y)) for x, y in ready["corners"]),
+                {str(person): int(number) for person, number in ready["faces"].items()},
+            )
+        except (KeyError, TypeError, BenchError):
+            self.close()
+            where = f": see {log}" if log is not None else ""
+            raise BenchError(f"The bench does not begin{where}.") from None
+
+    def do(self, do: str, **what: Any) -> dict[str, Any]:
+        """Let it do something, and return its answer.
+
+        Raises:
+            BenchError: it cannot, or it has ended.
+        """
+        with self._lock:
+            try:
+                assert self._process.stdin is not None  # noqa: S101 - it was asked for
+                self._process.stdin.write(json.dumps({"do": do, **what}).encode() + b"\n")
+                self._process.stdin.flush()
+            except (OSError, ValueError):
+                raise BenchError("The bench has ended.") from None
+            answer = self._read()
+        if "failed" in answer:
+            raise BenchError(str(answer["failed"]))
+        return answer
+
+    def close(self) -> None:
+        """End it."""
+        with suppress(OSError):
+            assert self._process.stdin is not None  # noqa: S101 - it was asked for
+            self._process.stdin.close()
+        try:
+            self._process.wait(END_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        if self._process.stdout is not None:
+            self._process.stdout.close()
+
+    def _read(self) -> dict[str, Any]:
+        assert self._process.stdout is not None  # noqa: S101 - it was asked for
+        line = self._process.stdout.readline()
+        try:
+            answer = json.loads(line)
+        except ValueError:
+            raise BenchError("The bench has ended.") from None
+        return dict(answer)

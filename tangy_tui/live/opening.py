@@ -1,0 +1,196 @@
+"""Opening a robot for games: the one that is there, or the bench, and the world that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.world import FACING, PACE_SECONDS, LiveWorld
+from tangy_profiles.health import Health
+from tangy_profiles.room import Room
+from tangy_profiles.state import FRONT
+from tangy_tui.live.bench import Bench
+
+if TYPE_CHECKING:
+    from tangy_profiles.faults import FaultBook
+    from tangy_profiles.robot import Robot
+    from tangy_tui.house import House
+
+LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
+PICTURES = 10  # of each drawn face that the bench's people are known by
+CAMERA = "camera"
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A world that is there, and the bench if it is only one."""
+
+    world: LiveWorld
+    link: RobotLink
+    bench: Bench | None
+
+
+@contextmanager
+def open_bench(
+    house: House,
+    *,
+    seed: int,
+    stepped: bool,
+    pace: float = PACE_SECONDS,
+    book: FaultBook | None = None,
+) -> Iterator[Opened]:
+    """Open the robot's own devices as a bench simulates them.
+
+    Args:
+        seed: of the people, their cards, and all that is left to chance.
+        stepped: in a hurry: time passes as fast as it can be computed.
+        pace: s between calls.
+        book: the fault rules, by which a behaviour is broken off.
+
+    Raises:
+        TangyError: the bench or the robot process does not begin.
+    """
+    folder = house.store.folder
+    bench = Bench(
+        seed=seed,
+        users=len(house.people),
+        stepped=stepped,
+        activity=house.profile,
+        log=folder / BENCH_LOG,
+    )
+    try:
+        at = bench.wires.rosbridge
+        setup = RobotSetup(
+            robot=str(house.robot.file),
+            activity=house.profile,
+            people=tuple(house.names),
+            drivers={
+                **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
+                "laser": {"kind": "scip", "at": bench.wires.scip},
+                # SCREEN
+            },
+            cameras={CAMERA: bench.wires.head},
+            requests=f"signs:{bench.wires.infrared}",
+            corners=bench.wires.corners,
+            start=_start(house.room, tuple(house.names)),
+            stepped=stepped,
+            seed=seed,
+            faces=_drawn_people(bench.wires.faces),
+            log=str(folder / LOG),
+        )
+        with _linked(setup, house, seed=seed, pace=pace, book=book) as world:
+            yield Opened(world, world.link, bench)
+    finally:
+        bench.close()
+
+
+ROSBRIDGE = ("base", "stop_button", "arms", "voice")
+"""The devices of the bench that are reached by rosbridge."""
+
+
+@contextmanager
+def open_robot(
+    house: House,
+    *,
+    seed: int,
+    pace: float = PACE_SECONDS,
+    book: FaultBook | None = None,
+    cameras: Sequence[str] = (),
+    requests: str = "",
+    corners: tuple[tuple[float, float], ...] = (),
+    map_: str = "",
+) -> Iterator[Opened]:
+    """Open a robot that is there, by the drivers of its profile.
+
+    Raises:
+        TangyError: the profile names none, or the robot process does not begin.
+    """
+    if not house.robot.drivers:
+        raise DeviceError(
+            f"{house.robot.file.name} names no drivers, so there is no robot to be reached: "
+            "try --bench, or name them as the README tells."
+        )
+    from tangy_hw.perception.faces.keeping import read_faces
+    from tangy_hw.perception.faces.reader import open_reader
+
+    known = read_faces(house.store, open_reader(house.robot.faces).kind)
+    setup = RobotSetup(
+        robot=str(house.robot.file),
+        activity=house.profile,
+        people=tuple(house.names),
+        cameras=dict(named.split("=", 1) for named in cameras),
+        requests=requests,
+        corners=corners,
+        start=_start(house.room, tuple(house.names)),
+        seed=seed,
+        faces={p: rows.tolist() for p, rows in known.items() if p in house.names},
+        map=map_,
+        log=str(house.store.folder / LOG),
+    )
+    with _linked(setup, house, seed=seed, pace=pace, book=book) as world:
+        yield Opened(world, world.link, None)
+
+
+@contextmanager
+def _linked(
+    setup: RobotSetup, house: House, *, seed: int, pace: float, book: FaultBook | None
+) -> Iterator[LiveWorld]:
+    link = RobotLink(setup, log=house.store.folder / LOG)
+    try:
+        link.start()
+        world = LiveWorld(
+            house.activity,
+            list(house.names),
+            link,
+            house.robot,
+            house.room,
+            seed=seed,
+            names=house.names,
+            pace=pace,
+            knows_faces=bool(setup.faces),
+        )
+        if book is not None:
+            world.diagnosed = _Diagnosis(book, house.robot)
+        yield world
+    finally:
+        link.close()
+
+
+class _Diagnosis:
+    """Says which faults the devices show, of themselves."""
+
+    def __init__(self, book: FaultBook, robot: Robot) -> None:
+        self._book = book
+        self._robot = robot
+
+    def __call__(self, health: Health) -> Mapping[str, bool]:
+        """Return the codes of the faults, and whether each is critical."""
+        from tangy_tui.monitoring.detection import device_evidence
+        from tangy_tui.monitoring.diagnosis import diagnose
+
+        evidence = device_evidence(self._robot, health)
+        return {one.rule.code: one.rule.critical for one in diagnose(self._book, evidence)}
+
+
+def _start(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
+    front = room.stand(FRONT, people)
+    return front.x, front.y, FACING
+
+
+def _drawn_people(faces: Mapping[str, int]) -> dict[str, list[list[float]]]:
+    """Describe the drawn faces of the bench's people, as an enrolment would."""
+    from tangy_hw.perception.faces.reader import HaarReader
+    from tangy_sim.faces import drawn_face
+
+    reader = HaarReader()
+    known: dict[str, list[list[float]]] = {}
+    for person, number in faces.items():
+        seen = (reader.read(drawn_face(number, 100 + one)) for one in range(PICTURES))
+        vectors = [found[0].vector for found in seen if found and found[0].vector is not None]
+        known[person] = [[round(float(v), 5) for v in vector] for vector in vectors]
+    return known
