@@ -30,7 +30,10 @@ from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which the particles are weighed again
 FAST, SLOW = 0.1, 0.002  # shares of a new value in the averages of the fit
-USUAL = 0.7  # the fit at a right pose, until the robot knows better
+USUAL, BELIEF = (
+    0.75,
+    10,
+)  # the fit at a right pose before any scan, and how many scans that is worth
 SHARPNESS = 30.0  # the exponent that makes a weight of the fit
 START = (0.1, 0.1, 0.05)  # metres, metres, radians: how exactly a start is told
 FARTHEST = 20.0  # metres beyond which beams are not used
@@ -93,6 +96,7 @@ class Localisation:
             self._particles = around(pose, START, MOST // 4, self._rng)
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
         self._fast = self._slow = USUAL
+        self._scans = BELIEF
         self._odometry = None
         self._sum_up()
 
@@ -133,7 +137,8 @@ class Localisation:
         score = float(self._field.scores(np.asarray([here]), points)[0])
         self._fast += FAST * (score - self._fast)
         if moved or first or lost:
-            self._slow += SLOW * (score - self._slow)
+            self._scans += 1
+            self._slow += max(SLOW, 1 / self._scans) * (score - self._slow)
             self._renew(points)
         return self._told(here)
 

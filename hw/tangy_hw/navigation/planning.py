@@ -116,7 +116,8 @@ def plan(
     if found is None:
         return None
     cells, cost = found
-    points: Floats = (cells[:, ::-1] + 0.5) * map_.resolution + map_.origin
+    middles = (cells[:, ::-1] + 0.5) * map_.resolution + map_.origin
+    points = np.asarray(middles, dtype=np.float64)
     points[-1] = goal
     if np.isfinite(costs.at(*start)):
         points[0] = start

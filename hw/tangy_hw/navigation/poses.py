@@ -44,8 +44,8 @@ def between(start: Pose, end: Pose) -> Pose:
 def placed(points: Floats, pose: Pose) -> Floats:
     """Return points (n, 2) that are told in the frame of a pose in the frame around it."""
     c, s = cos(pose.heading), sin(pose.heading)
-    turned: Floats = points @ np.array([[c, s], [-s, c]])
-    return turned + np.array([pose.x, pose.y])
+    turned = points @ np.array([[c, s], [-s, c]]) + np.array([pose.x, pose.y])
+    return np.asarray(turned, dtype=np.float64)
 
 
 def lengths(steps: Floats) -> Floats:

@@ -1,0 +1,141 @@
+"""Maps from scans: each beam says that its way is free, and that something stands at its end.
+
+A cell is occupied if enough of the beams that came to it ended in it (counting model; Thrun et
+al., ch. 9). Poses come with the scans, or are found by matching each scan with the map so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import ceil, hypot
+
+import cv2
+import numpy as np
+
+from tangy_hw.devices import Pose, Scan
+from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+from tangy_hw.navigation.poses import Floats, between, compose, endpoints, placed
+from tangy_profiles.errors import TangyError
+
+REACH = 20.0  # metres of a beam that are used
+SHARE = 0.25  # of the beams that came to a cell must have ended there
+MOST_CELLS = 40_000_000
+SHIFT = 4  # fractional bits of the corners of polygons
+
+
+class MapError(TangyError):
+    """A map that cannot be made; one sentence."""
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A scan and where the laser was."""
+
+    scan: Scan
+    pose: Pose
+
+
+def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -> list[Placed]:
+    """Leave out scans from where the last one was taken already."""
+    kept: list[Placed] = []
+    for one in scans:
+        if kept:
+            step = between(kept[-1].pose, one.pose)
+            if hypot(step.x, step.y) < metres and abs(step.heading) < radians:
+                continue
+        kept.append(one)
+    return kept
+
+
+class MapMaker:
+    """A map that grows scan by scan."""
+
+    def __init__(
+        self, left: float, near: float, right: float, far: float, resolution: float
+    ) -> None:
+        """Begin with an empty map of an area (metres).
+
+        Raises:
+            MapError: it is too large.
+        """
+        columns, rows = ceil((right - left) / resolution), ceil((far - near) / resolution)
+        if rows * columns > MOST_CELLS:
+            raise MapError(
+                f"A map of {right - left:.0f} x {far - near:.0f} m at {resolution} m has too many "
+                "cells; take a coarser --resolution."
+            )
+        self.resolution = resolution
+        self.origin = (left, near)
+        self._hits = np.zeros((rows, columns), dtype=np.uint16)
+        self._visits = np.zeros((rows, columns), dtype=np.uint16)
+        self._seen = np.zeros((rows, columns), dtype=np.uint8)
+
+    def add(self, scan: Scan, pose: Pose) -> None:
+        """Draw a scan that was taken at a pose of the laser."""
+        ranges = np.where(np.isfinite(scan.ranges), scan.ranges, 0.0)
+        known = (scan.ranges > 0) & (scan.ranges < scan.farthest)
+        met = known & (scan.ranges < REACH)
+        # what a beam went through, short of the cell it ended in
+        through = np.where(met, np.maximum(ranges - self.resolution, 0), np.where(known, REACH, 0))
+        angles = scan.first + scan.step * np.arange(len(ranges))
+        free = np.column_stack((through * np.cos(angles), through * np.sin(angles)))
+        corners = self._cells(placed(np.vstack(([[0.0, 0.0]], free)), pose))
+        low = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0)
+        high = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 2, self._seen.shape[::-1])
+        if (high <= low).any():
+            return
+        part = np.s_[low[1] : high[1], low[0] : high[0]]
+        seen = self._seen[part]
+        seen[:] = 0
+        # pixels of OpenCV have their middles at whole numbers
+        drawn = np.round((corners - low - 0.5) * (1 << SHIFT)).astype(np.int32)
+        cv2.fillPoly(seen, [drawn.reshape(-1, 1, 2)], 1, shift=SHIFT)
+        ends = np.floor(self._cells(placed(endpoints(scan, REACH), pose))).astype(int)
+        on = ((ends >= 0) & (ends < self._seen.shape[::-1])).all(axis=1)
+        ends = np.unique(ends[on], axis=0)
+        self._hits[ends[:, 1], ends[:, 0]] += 1
+        self._visits[part] += seen
+        inside = ((ends >= low) & (ends < high)).all(axis=1)
+        twice = np.zeros(len(ends), dtype=np.uint16)
+        twice[inside] = self._seen[ends[inside, 1], ends[inside, 0]]
+        self._visits[ends[:, 1], ends[:, 0]] += 1 - twice
+
+    def _cells(self, points: Floats) -> Floats:
+        return np.asarray((points - np.array(self.origin)) / self.resolution)
+
+    def map(self, share: float = SHARE) -> OccupancyMap:
+        """Return the map as far as it is known."""
+        cells = np.full(self._hits.shape, UNKNOWN, dtype=np.int8)
+        cells[self._visits > 0] = FREE
+        cells[(self._hits > 0) & (self._hits >= share * self._visits)] = OCCUPIED
+        return OccupancyMap(cells, self.resolution, self.origin)
+
+
+def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, float, float]:
+    """Return left, near, right, far of all that the scans saw, in metres."""
+    ends = [placed(endpoints(one.scan, REACH), one.pose) for one in scans]
+    places = np.array([(one.pose.x, one.pose.y) for one in scans])
+    every = np.vstack((*ends, places))
+    left, near = np.floor(every.min(axis=0) - margin)
+    right, far = np.ceil(every.max(axis=0) + margin)
+    return float(left), float(near), float(right), float(far)
+
+
+def map_of_scans(scans: Sequence[Placed], resolution: float = 0.05) -> OccupancyMap:
+    """Draw the map of scans whose poses are known.
+
+    Raises:
+        MapError: there are none, or the map would be too large.
+    """
+    if not scans:
+        raise MapError("There are no scans to draw a map of.")
+    maker = MapMaker(*extent(scans), resolution)
+    for one in scans:
+        maker.add(one.scan, one.pose)
+    return maker.map()
+
+
+def followed(poses: Sequence[Pose], start: Pose) -> list[Pose]:
+    """Return poses as if the first of them had been `start`."""
+    return [compose(start, between(poses[0], pose)) for pose in poses]

@@ -1,0 +1,142 @@
+"""Logs of laser scans, as CARMEN and the programs after it write them.
+
+A line is a message; of interest are `FLASER` (front laser, half a circle: readings, pose of the
+laser, pose of the wheels), `ROBOTLASER1` (its newer form, with the angles in it) and `ODOM` (the
+wheels alone). In a log that a mapping program has gone over, the pose of the laser is corrected.
+"""
+
+from __future__ import annotations
+
+import gzip
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+
+import numpy as np
+
+from tangy_hw.devices import Pose, Scan
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+
+FARTHEST = 80.0  # metres; an old FLASER does not say how far its scanner sees: SICK's say 81.91
+LARGEST = 500_000_000  # bytes, unpacked
+BEAMS = 10_000  # no scanner has more
+
+
+class LogError(TangyError):
+    """A log that cannot be used; one sentence with file and line."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoggedScan:
+    """A scan of a log.
+
+    `pose` is that of the laser as logged, `odometry` that of the wheels by the same line, and
+    `wheels` that of the last ODOM line before it, if there was one; `stamp` is in s.
+    """
+
+    scan: Scan
+    pose: Pose
+    odometry: Pose
+    wheels: Pose | None
+    stamp: float
+
+
+def read_log(path: Path) -> list[LoggedScan]:
+    """Read all scans of a log, packed with gzip or not.
+
+    Raises:
+        LogError: it cannot be read, a line is broken, or it has no scans.
+    """
+    name = plain(str(path))
+    found: list[LoggedScan] = []
+    wheels: Pose | None = None
+    number = 0
+    try:
+        for number, line in enumerate(_lines(path), 1):
+            words = line.split()
+            if not words:
+                continue
+            if words[0] == "ODOM":
+                wheels = Pose(*_numbers(words[1:4], 3))
+            elif words[0] == "FLASER":
+                found.append(_flaser(words, wheels))
+            elif words[0] == "ROBOTLASER1":
+                found.append(_robot_laser(words, wheels))
+    except OSError as error:
+        why = error.strerror or "it is damaged"
+        raise LogError(f"{name}: cannot be read ({why}).") from None
+    except EOFError:
+        raise LogError(f"{name}: breaks off.") from None
+    except UnicodeDecodeError:
+        raise LogError(f"{name}: is no text, so it is no log of scans.") from None
+    except ValueError as error:
+        raise LogError(plain(f"{name}, line {number}: {error}")) from None
+    if not found:
+        raise LogError(f"{name}: has no scans (lines that begin with FLASER or ROBOTLASER1).")
+    return found
+
+
+def _lines(path: Path) -> Iterator[str]:
+    with path.open("rb") as file:
+        packed = file.read(2) == b"\x1f\x8b"
+    size = 0
+    with gzip.open(path, "rt", encoding="utf-8") if packed else path.open(encoding="utf-8") as log:
+        for line in log:
+            size += len(line)
+            if size > LARGEST:
+                raise ValueError(f"the log has more than {LARGEST // 1_000_000} MB.")
+            yield line
+
+
+def _numbers(words: Sequence[str], count: int) -> list[float]:
+    if len(words) < count:
+        raise ValueError("the line ends too early.")
+    numbers = []
+    for word in words[:count]:
+        try:
+            numbers.append(float(word))
+        except ValueError:
+            raise ValueError(f"{word[:20]!r} is not a number.") from None
+        if not math.isfinite(numbers[-1]):
+            raise ValueError(f"{word[:20]!r} is not a number that can be used.")
+    return numbers
+
+
+def _count(word: str) -> int:
+    if not word.isdigit() or not 0 < int(word) <= BEAMS:
+        raise ValueError(f"{word[:20]!r} is no number of readings.")
+    return int(word)
+
+
+def _ranges(
+    numbers: Sequence[float], farthest: float
+) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    ranges = np.array(numbers)
+    ranges[(ranges >= farthest) | (ranges <= 0)] = np.inf
+    return ranges
+
+
+def _flaser(words: Sequence[str], wheels: Pose | None) -> LoggedScan:
+    count = _count(words[1] if len(words) > 1 else "")
+    numbers = _numbers(words[2:], count + 7)
+    # 181 and 361 readings reach from -90 to +90 degrees, 180 and 360 end one step before
+    step = pi / (count - 1 if count % 2 else count)
+    scan = Scan(-pi / 2, step, _ranges(numbers[:count], FARTHEST), FARTHEST)
+    pose, odometry = Pose(*numbers[count : count + 3]), Pose(*numbers[count + 3 : count + 6])
+    return LoggedScan(scan, pose, odometry, wheels, numbers[count + 6])
+
+
+def _robot_laser(words: Sequence[str], wheels: Pose | None) -> LoggedScan:
+    _, first, angle, step, farthest, *_ = _numbers(words[1:], 7)
+    count = _count(words[8] if len(words) > 8 else "")
+    if step <= 0 or farthest <= 0 or angle <= 0:
+        raise ValueError("the scanner's angles or its range are not above 0.")
+    ranges = _numbers(words[9:], count)
+    more = int(_numbers(words[9 + count :], 1)[0])
+    rest = words[10 + count + max(0, more) :]
+    numbers = _numbers(rest, 12)
+    scan = Scan(first, step, _ranges(ranges, farthest), farthest)
+    return LoggedScan(scan, Pose(*numbers[:3]), Pose(*numbers[3:6]), wheels, numbers[11])

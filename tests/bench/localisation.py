@@ -1,0 +1,141 @@
+"""How exactly the robot is followed over Freiburg's building 079, on a log of a real robot.
+
+Run by hand: `TANGY_LASER_LOG=DIR python -m tests.bench.localisation`, where DIR holds
+freiburg-079.log.gz. The poses in that log were corrected by a mapping program and are taken for
+the truth; the map is drawn from every second scan, and the robot is followed by the other ones.
+The wheels' steps stand in the log as lengths without sign: driving backwards reads as forwards. They
+are restored where the corrected poses went backwards.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from math import hypot
+from pathlib import Path
+
+import numpy as np
+
+from tangy_hw.devices import Pose, Scan
+from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.navigation.localisation import Localisation
+from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
+from tangy_hw.navigation.occupancy import OccupancyMap
+from tangy_hw.navigation.poses import HERE, between, compose, wrap
+from tangy_hw.navigation.scan_log import LoggedScan, read_log
+
+FOLDER = "TANGY_LASER_LOG"
+AROUND = 1  # steps before and after: their corrected sum says whether it was driven backwards
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """What the robot measured at one moment, and where it truly was."""
+
+    odometry: Pose
+    scan: Scan
+    truth: Pose
+
+
+@cache
+def logged(folder: str) -> list[LoggedScan]:
+    """Read the log."""
+    return read_log(Path(folder) / "freiburg-079.log.gz")
+
+
+def moments(log: Sequence[LoggedScan], *, restored: bool = True) -> list[Moment]:
+    """Return the log with the wheels' own count of the way."""
+    forward = np.array([between(a.pose, b.pose).x for a, b in pairwise(log)])
+    around = np.convolve(forward, np.ones(2 * AROUND + 1), "same")
+    odometry = HERE
+    found = [Moment(odometry, log[0].scan, log[0].pose)]
+    for (before, one), back in zip(pairwise(log), around < 0, strict=True):
+        step = between(before.pose, one.wheels or one.odometry)
+        if restored and back:
+            step = Pose(-step.x, -step.y, step.heading)
+        odometry = compose(odometry, step)
+        found.append(Moment(odometry, one.scan, one.pose))
+    return found
+
+
+@cache
+def building(folder: str, part: int = 2) -> OccupancyMap:
+    """Draw the map from every second scan."""
+    every = logged(folder)[::part]
+    return map_of_scans(sparse(Placed(one.scan, one.pose) for one in every))
+
+
+def errors(
+    localisation: Localisation, way: Sequence[Moment]
+) -> Iterator[tuple[float, float, float]]:
+    """Follow a way; yield by how many metres and radians it is off, and the time it took in s."""
+    for moment in way:
+        begun = time.process_time()
+        pose = localisation.update(moment.odometry, moment.scan).pose
+        took = time.process_time() - begun
+        off = hypot(pose.x - moment.truth.x, pose.y - moment.truth.y)
+        yield off, abs(wrap(pose.heading - moment.truth.heading)), took
+
+
+def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | None:
+    """Carry the robot elsewhere without telling it; return after how many scans it knows.
+
+    It knows when it stays within half a metre of the truth for twenty scans.
+    """
+    rng = np.random.default_rng(seed)
+    first = then = int(rng.integers(len(way) - 500))
+    last = way[first + 59]
+    while hypot(last.truth.x - way[then].truth.x, last.truth.y - way[then].truth.y) < 4:
+        then = int(rng.integers(len(way) - 500))
+    localisation = Localisation(map_, np.random.default_rng(seed + 1000), way[first].truth)
+    for _ in errors(localisation, way[first : first + 60]):
+        pass
+    moved = [
+        Moment(compose(last.odometry, between(way[then].odometry, one.odometry)), one.scan, one.truth)
+        for one in way[then : then + 420]
+    ]
+    right = 0
+    for number, (off, turned, _) in enumerate(errors(localisation, moved)):
+        right = right + 1 if off < 0.5 and turned < 0.35 else 0
+        if right >= 20:
+            return number - 19
+    return None
+
+
+def disagreements(way: Sequence[Moment]) -> list[float]:
+    """Return by how many metres wheels and laser disagree after each scan."""
+    disagreement = Disagreement()
+    return [disagreement.update(moment.odometry, moment.scan) for moment in way]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--carried", type=int, default=10)
+    options = parser.parse_args()
+    folder = os.environ[FOLDER]
+    log, map_ = logged(folder), building(folder)
+    whole, raw = moments(log), moments(log, restored=False)
+    for name, way in (("restored", whole), ("as logged", raw)):
+        slips = np.array(disagreements(way))
+        print(f"wheels {name}: disagree by {slips.max():.2f} m at most, above .3 m "
+              f"in {np.mean(slips > 0.3):.1%} of scans")  # fmt: skip
+    way = whole[1::2]
+    for seed in range(options.seeds):
+        localisation = Localisation(map_, np.random.default_rng(seed), way[0].truth)
+        rows = np.array(list(errors(localisation, way)))
+        median, high, most = np.percentile(rows[:, 0], [50, 95, 100])
+        print(f"seed {seed}: median {median:.3f} m, p95 {high:.3f}, most {most:.2f}; "
+              f"{np.percentile(rows[:, 1], 95):.3f} rad p95; "
+              f"{rows[:, 2].mean() * 1e3:.2f} ms")  # fmt: skip
+    found = [kidnapped(map_, way, seed) for seed in range(options.carried)]
+    print("carried off, found after so many scans:", found)
+
+
+if __name__ == "__main__":
+    main()
