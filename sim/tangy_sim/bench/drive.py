@@ -72,14 +72,17 @@ class Wheels:
             stuck: the wheels cannot turn.
             grip: how much of what the wheels turn the robot goes along, 0 to 1.
         """
+        if self._told is None and not self.forward and not self.turn:
+            return
         count = max(1, round(seconds / STEP))
         part = seconds / count
         for number in range(count):
             self._step(now - seconds + (number + 1) * part, part, stuck, grip)
 
     def _step(self, now: float, seconds: float, stuck: bool, grip: float) -> None:
-        listens = self._told is not None and now - self._told <= SILENCE + 1e-9
-        forward, turn = self._wanted if listens else (0.0, 0.0)
+        if self._told is not None and now - self._told > SILENCE + 1e-9:
+            self._told = None
+        forward, turn = self._wanted if self._told is not None else (0.0, 0.0)
         brakes = abs(forward) < abs(self.forward) or forward * self.forward < 0
         self.forward = _towards(self.forward, forward, (BRAKES if brakes else SPEEDS_UP) * seconds)
         self.turn = _towards(self.turn, turn, TURNS_UP * seconds)

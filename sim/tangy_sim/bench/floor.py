@@ -24,7 +24,7 @@ LEG_INSET = 0.1  # m from the table's edges to the middle of its legs
 LEG = 0.06  # m, radius of a person's leg, a hand's breadth above the floor
 CHAIR_LEG = 0.02  # m, radius
 CHAIR = 0.42  # m from one leg of a chair to the next
-FIDGETS = 0.2  # times a second that somebody moves a leg
+FIDGETS = 0.2  # times a second that a leg is moved
 RING = 1.0  # m from the robot at which chairs are put around it
 
 
@@ -80,6 +80,7 @@ class Floor:
         for seat in self._seats:
             self._still += chair(seat.x, seat.y)
         self._legs = [self._placed(seat, side) for seat in self._seats for side in (-1, 1)]
+        self._still_for = self._waiting()
         self.dropped: list[Circle] = []
         """What was put in the robot's way; call `changed` after changing it."""
         self.changed()
@@ -95,10 +96,17 @@ class Floor:
 
     def step(self, seconds: float) -> None:
         """Let people move their legs now and then, for so many s."""
-        for number in np.flatnonzero(self._random.random(len(self._legs)) < FIDGETS * seconds):
+        self._still_for -= seconds
+        while self._still_for <= 0:
+            self._still_for += self._waiting()
+            number = int(self._random.integers(len(self._legs)))
             seat = self._seats[number // 2]
             self._legs[number] = self._placed(seat, -1 if number % 2 == 0 else 1)
             self.changed()
+
+    def _waiting(self) -> float:
+        """Draw how long nobody moves a leg, in s."""
+        return float(self._random.exponential(1 / (FIDGETS * len(self._legs))))
 
     def clear(self, x: float, y: float, radius: float) -> bool:
         """Say whether something round can stand there: in the room, off the table and the rest."""

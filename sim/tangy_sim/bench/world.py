@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from math import pi
+from math import hypot, pi
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -162,7 +162,7 @@ class BenchWorld:
         """Return the place at which the robot stands; "" where it is at none."""
         pose = self.wheels.pose
         for place, point in self._stands.items():
-            if np.hypot(point.x - pose.x, point.y - pose.y) <= ARRIVES:
+            if hypot(point.x - pose.x, point.y - pose.y) <= ARRIVES:
                 return place
         return ""
 
@@ -171,7 +171,7 @@ class BenchWorld:
         people, pose = self.people, self.wheels.pose
         if people.place:
             point = self._stands[people.place]
-            if np.hypot(point.x - pose.x, point.y - pose.y) > LEAVES:
+            if hypot(point.x - pose.x, point.y - pose.y) > LEAVES:
                 people.leave()
         if abs(self.wheels.forward) < STANDS and not people.place:
             place = self.nearest()
