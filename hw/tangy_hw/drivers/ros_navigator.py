@@ -68,6 +68,7 @@ class RosNavigator:
         self._mark, self._numbers = f"tangy-{secrets.token_hex(4)}", count(1)
         self._drive: _Drive | None = None
         self._orphan: _Drive | None = None
+        self._known: dict[str, _Drive] = {}
         self._topics = {
             f"{self._action}/status": ("actionlib_msgs/GoalStatusArray", self._hear_status),
             f"{self._action}/result": ("move_base_msgs/MoveBaseActionResult", self._hear_result),
@@ -139,6 +140,7 @@ class RosNavigator:
         place = within(goal, self._origin)
         target = {"header": header(self._frame, self._bridge.ros), "pose": pose_message(place)}
         drive = self._drive = _Drive(f"{self._mark}-{next(self._numbers)}")
+        self._known[drive.key] = drive
         self.state, self._path = "driving", "clear"
         self._newest.restart()
         try:
@@ -162,6 +164,7 @@ class RosNavigator:
             self._give_up(drive)
             raise
         finally:
+            del self._known[drive.key]
             if self._drive is drive:
                 self._drive = None
 
@@ -246,8 +249,8 @@ class RosNavigator:
 
     def _told(self, status: Message) -> None:
         """Hear what became of a goal; of those of others nothing is done."""
-        drive = self._drive
-        if drive is None or status["goal_id"]["id"] != drive.key:
+        drive = self._known.get(status["goal_id"]["id"])
+        if drive is None:
             return
         if not drive.taken.done():
             drive.taken.set_result(None)

@@ -1,0 +1,292 @@
+"""Robots that find their way themselves: goals of ROS 1 and ROS 2, and what becomes of them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+from websockets.asyncio.server import ServerConnection, serve
+
+from tangy_hw.devices import DeviceError, Pose
+from tangy_hw.drivers.ros_messages import pose_message
+from tangy_hw.drivers.ros_navigator import RosNavigator
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_profiles.health import OK
+from tangy_sim.wires.rosbridge_server import RosbridgeServer
+
+SOON = 5  # s within which what must happen at once has happened on any machine
+ORIGIN = Pose(10.0, 20.0, math.pi / 2)
+GOAL = Pose(2.0, 1.0, 0.5)
+IN_MAP = Pose(9.0, 22.0, 0.5 + math.pi / 2)
+
+
+async def soon(thing: Awaitable[Any]) -> Any:
+    return await asyncio.wait_for(thing, SOON)
+
+
+async def until(holds: Callable[[], object]) -> None:
+    async def looking() -> None:
+        while not holds():  # noqa: ASYNC110 (whatever holds, there is no event of it)
+            await asyncio.sleep(0.002)
+
+    await soon(looking())
+
+
+def pose_in(message: Any) -> tuple[float, float, float]:
+    pose = message["pose"]
+    turn = 2 * math.atan2(pose["orientation"]["z"], pose["orientation"]["w"])
+    return pose["position"]["x"], pose["position"]["y"], turn
+
+
+@asynccontextmanager
+async def navigating(ros: int) -> AsyncIterator[tuple[RosbridgeServer, RosNavigator, Rosbridge]]:
+    server = RosbridgeServer()
+    await server.start()
+    bridge = Rosbridge(server.url, ros=ros)
+    await bridge.start()
+    assert await bridge.wait_connected(SOON)
+    navigator = RosNavigator(bridge, origin=ORIGIN)
+    await navigator.start()
+    await soon(server.subscribed("/amcl_pose"))
+    try:
+        yield server, navigator, bridge
+    finally:
+        await navigator.close()
+        await bridge.close()
+        await server.close()
+
+
+class MoveBase:
+    """move_base at the other end: its goals are taken, and end as a test says."""
+
+    def __init__(self, server: RosbridgeServer) -> None:
+        self.server = server
+        self.goals: dict[str, Any] = {}
+        self.cancelled: list[str] = []
+        server.on_message("/move_base/goal", self.take)
+        server.on_message("/move_base/cancel", lambda message: self.cancelled.append(message["id"]))
+
+    def take(self, message: Any) -> None:
+        self.goals[message["goal_id"]["id"]] = message["goal"]["target_pose"]
+        self.say(1)
+
+    @property
+    def newest(self) -> str:
+        return list(self.goals)[-1]
+
+    def say(self, code: int, text: str = "", key: str = "") -> None:
+        status = {"goal_id": {"id": key or self.newest}, "status": code, "text": text}
+        self.server.publish("/move_base/status", "", {"status_list": [status]})
+
+    def end(self, code: int, text: str = "") -> None:
+        status = {"goal_id": {"id": self.newest}, "status": code, "text": text}
+        self.server.publish("/move_base/result", "", {"status": status, "result": {}})
+
+    def feed(self, pose: Pose) -> None:
+        feedback = {"base_position": {"pose": pose_message(pose)}}
+        self.server.publish("/move_base/feedback", "", {"feedback": feedback})
+
+
+class TestMoveBase:
+    async def test_a_goal_is_of_the_robot_s_map_and_where_it_is_of_the_room(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            assert pose_in(base.goals[base.newest]) == pytest.approx(IN_MAP)
+            assert base.goals[base.newest]["header"]["frame_id"] == "map"
+            base.feed(IN_MAP)
+            await until(lambda: navigator.pose)
+            assert navigator.pose is not None
+            assert navigator.pose.value == pytest.approx(GOAL)
+            assert not going.done()
+            base.end(3)
+            await soon(going)
+            assert str(navigator.state) == "arrived"
+            assert navigator.reading()[2:] == (OK, {"path": "clear"})
+
+    @pytest.mark.parametrize(
+        ("code", "path", "error"),
+        [(4, "none", "found no way: blocked"), (5, "clear", "refused: blocked")],
+    )
+    async def test_a_goal_that_cannot_be_reached_says_why(
+        self, code: int, path: str, error: str
+    ) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            base.say(3, key="of somebody else")
+            base.end(code, "blocked")
+            with pytest.raises(DeviceError, match=error):
+                await soon(going)
+            assert navigator.state == "failed"
+            assert navigator.reading().facts == {"path": path}
+            assert not base.cancelled
+
+    async def test_a_goal_that_is_given_up_or_forgotten_is_cancelled_at_the_robot(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            cancelling = asyncio.create_task(navigator.cancel())
+            await until(lambda: base.cancelled == list(base.goals))
+            base.end(2)
+            await soon(cancelling)
+            with pytest.raises(DeviceError, match="was cancelled"):
+                await soon(going)
+            forgotten = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: len(base.goals) == 2)
+            forgotten.cancel()
+            await until(lambda: base.cancelled == list(base.goals))
+
+    async def test_a_newer_goal_ends_the_one_before(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            first = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            second = asyncio.create_task(navigator.go(Pose(0, 0, 0), 30))
+            with pytest.raises(DeviceError, match="otherwise"):
+                await soon(first)
+            await until(lambda: len(base.goals) == 2)
+            assert str(navigator.state) == "driving"
+            base.end(3)
+            await soon(second)
+            assert str(navigator.state) == "arrived"
+
+    async def test_a_goal_is_sent_again_until_it_is_taken_as_topics_begin_late(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            deaf = list[Any]()
+            server.on_message("/move_base/goal", deaf.append)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: deaf)
+            base = MoveBase(server)
+            await until(lambda: base.goals)
+            assert base.newest == deaf[0]["goal_id"]["id"]
+            base.end(3)
+            await soon(going)
+
+    async def test_a_goal_that_was_under_way_when_the_link_was_lost_is_cancelled_after(
+        self,
+    ) -> None:
+        async with navigating(1) as (server, navigator, bridge):
+            base = MoveBase(server)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            server.drop()
+            with pytest.raises(DeviceError, match="the link was lost"):
+                await soon(going)
+            await until(lambda: base.cancelled == list(base.goals))
+            assert bridge.connected
+
+
+class TestNavigateToPose:
+    async def test_it_drives_tells_of_detours_and_arrives(self) -> None:
+        goals, go_on = list[Any](), asyncio.Event()
+
+        async def drives(goal: Any, feedback: Callable[[Any], None]) -> dict[str, Any]:
+            goals.append(goal)
+            feedback({"current_pose": {"pose": pose_message(IN_MAP)}, "number_of_recoveries": 1})
+            await go_on.wait()
+            return {}
+
+        async with navigating(2) as (server, navigator, _):
+            server.provide_action("/navigate_to_pose", drives)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: navigator.pose)
+            assert pose_in(goals[0]["pose"]) == pytest.approx(IN_MAP)
+            assert navigator.pose is not None
+            assert navigator.pose.value == pytest.approx(GOAL)
+            assert navigator.reading().facts == {"path": "replanned"}
+            go_on.set()
+            await soon(going)
+            assert navigator.state == "arrived"
+
+    async def test_it_fails_and_is_cancelled_at_the_robot(self) -> None:
+        began, ended = asyncio.Event(), asyncio.Event()
+
+        async def drives(goal: Any, _: Any) -> dict[str, Any]:
+            if goal["pose"]["pose"]["position"]["x"] > 50:
+                raise RuntimeError("no path")
+            began.set()
+            try:
+                await asyncio.sleep(60)
+            finally:
+                ended.set()
+            return {}
+
+        async with navigating(2) as (server, navigator, _):
+            server.provide_action("/navigate_to_pose", drives)
+            with pytest.raises(DeviceError, match="no path"):
+                await soon(navigator.go(Pose(0, -90, 0), 30))
+            assert navigator.reading().facts == {"path": "none"}
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await soon(began.wait())
+            await navigator.cancel()
+            with pytest.raises(DeviceError):
+                await soon(going)
+            assert ended.is_set()
+            assert navigator.state == "idle"
+
+    async def test_a_bridge_that_hears_nothing_while_a_goal_is_under_way_still_hears_a_stop(
+        self,
+    ) -> None:
+        """Some of ROS 2 read no more of a connection until the goal that it sent is over."""
+        sought, cancelled, heard = asyncio.Event(), asyncio.Event(), list[Any]()
+
+        async def attend(link: ServerConnection) -> None:
+            async for text in link:
+                message = json.loads(text)
+                if message["op"] == "send_action_goal":
+                    sought.set()
+                    await cancelled.wait()
+                    answer = {"op": "action_result", "id": message["id"], "status": 5}
+                    await link.send(json.dumps({**answer, "result": True, "values": {}}))
+                elif message["op"] == "cancel_action_goal":
+                    cancelled.set()
+                elif message["op"] == "publish":
+                    heard.append(message["topic"])
+
+        async with serve(attend, "127.0.0.1", 0) as server:
+            port = next(iter(server.sockets)).getsockname()[1]
+            bridge = Rosbridge(f"ws://127.0.0.1:{port}", ros=2)
+            await bridge.start()
+            assert await bridge.wait_connected(SOON)
+            navigator = RosNavigator(bridge)
+            await navigator.start()
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await soon(sought.wait())
+            bridge.publish("/cmd_vel", {}, urgent=True)
+            await until(lambda: heard == ["/cmd_vel"])
+            await navigator.cancel()
+            with pytest.raises(DeviceError, match="was cancelled"):
+                await soon(going)
+            await navigator.close()
+            await bridge.close()
+
+    async def test_a_goal_whose_link_was_lost_is_cancelled_when_it_is_back(self) -> None:
+        began, ended = asyncio.Event(), asyncio.Event()
+
+        async def drives(_goal: Any, _feedback: Any) -> dict[str, Any]:
+            began.set()
+            try:
+                await asyncio.sleep(60)
+            finally:
+                ended.set()
+            return {}
+
+        async with navigating(2) as (server, navigator, _):
+            server.provide_action("/navigate_to_pose", drives)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await soon(began.wait())
+            server.drop()
+            with pytest.raises(DeviceError, match="link was lost"):
+                await soon(going)
+            await soon(ended.wait())
+            assert navigator.state == "failed"
+            assert navigator.reading().facts == {"path": "clear"}
