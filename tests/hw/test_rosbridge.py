@@ -319,6 +319,24 @@ class TestLink:
             server.resume()
             assert await soon(other) == {"done": True}
 
+    async def test_what_was_said_in_a_pause_is_heard_after_it_and_the_newest_last(self) -> None:
+        async with linked() as (server, bridge):
+            heard: list[Any] = []
+            server.on_message("/cmd_vel", lambda message: heard.append(message["n"]))
+            server.pause()
+            bridge.subscribe("/odom", "", print)
+            for number in range(1_500):
+                bridge.publish("/cmd_vel", {"n": number})
+            server.provide("/done", done)
+            call = asyncio.create_task(bridge.call("/done", {}, SOON))
+            await asyncio.sleep(0.3)
+            assert heard == []
+            assert not server.is_subscribed("/odom")
+            server.resume()
+            assert await soon(call)
+            assert heard[-1] == 1_499
+            assert server.is_subscribed("/odom")
+
     async def test_a_client_that_does_not_read_delays_nobody(self) -> None:
         async with (
             linked() as (server, bridge),

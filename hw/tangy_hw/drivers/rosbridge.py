@@ -283,6 +283,7 @@ class Rosbridge:
                     else:
                         text = self._queue.popleft()
                     await socket.send(text)
+                    await asyncio.sleep(0)  # much that waits delays nobody else
                 self._idle.set()
                 self._wake.clear()
                 await self._wake.wait()

@@ -13,6 +13,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 BACKLOG = 4 << 20  # characters that wait for a slow client before its oldest messages are lost
+HELD = 1_000  # messages of a client that are kept for after a pause
 EARLY_SECONDS = 1e-6  # by which a throttled message may come early: clocks round
 
 
@@ -95,8 +96,16 @@ class Client:
                     _, text = self._queue.popleft()
                     self._size -= len(text)
                     await self.connection.send(text)
+                    await asyncio.sleep(0)  # much that waits delays nobody else
                 self._wake.clear()
                 await self._wake.wait()
+
+    def hold(self, message: dict[str, Any]) -> None:
+        """Keep what it said for after a pause; of much that it published the newest counts."""
+        if len(self.held) >= HELD:
+            oldest = (at for at, held in enumerate(self.held) if held["op"] == "publish")
+            del self.held[next(oldest, 0)]
+        self.held.append(message)
 
     def _put(self, loses: bool, text: str) -> None:
         self._queue.append((loses, text))

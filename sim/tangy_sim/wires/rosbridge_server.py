@@ -27,7 +27,6 @@ Service = Callable[[Message], Coroutine[Any, Any, Message]]
 Action = Callable[[Message, Feedback], Coroutine[Any, Any, Message]]
 
 LARGEST = 16 << 20  # bytes of a message that is taken
-HELD = 1_000  # messages of a client that are kept for after a pause
 CLOSING_SECONDS = 0.5  # for which a client's goodbye is waited for
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # as action_msgs/GoalStatus numbers them
 
@@ -190,8 +189,8 @@ class RosbridgeServer:
         name = next((message[key] for key in ("topic", "service", "action") if key in message), "")
         if not self._silent(full_name(str(name))):
             self._do(client, message)
-        elif len(client.held) < HELD:
-            client.held.append(message)
+        else:
+            client.hold(message)
 
     def _do(self, client: Client, message: dict[str, Any]) -> None:
         does = {
