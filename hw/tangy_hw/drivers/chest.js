@@ -1,0 +1,125 @@
+// Draws what the robot says, as large as there is room, and answers that it was drawn.
+// Written for browsers of ten years ago: no framework, no build, nothing newer than EventSource.
+(function () {
+  "use strict";
+  var SILENT = 2000, AGAIN = 500;  // ms: without an event the link is lost; until it is tried again
+  var page = String(Math.random()).slice(2) + String(Date.now());
+  var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null;
+
+  function get(id) { return document.getElementById(id); }
+
+  function put(id, words) { get(id).textContent = words; }
+
+  // Put a line word by word, so that it breaks between words alone: never within "N-40".
+  function putWords(id, line) {
+    var words = line.split(/\s+/), i, span;
+    put(id, "");
+    for (i = 0; i < words.length; i += 1) {
+      span = document.createElement("span");
+      span.textContent = words[i];
+      get(id).appendChild(span);
+      get(id).appendChild(document.createTextNode(" "));
+    }
+  }
+
+  // Make an element as large as its box allows; it may break between words, never within one.
+  function fit(element, box, least, most) {
+    var style = window.getComputedStyle(box);
+    var wide = box.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    var high = box.clientHeight - parseFloat(style.paddingTop) - parseFloat(style.paddingBottom);
+    var others = 0, i, child;
+    for (i = 0; i < box.children.length; i += 1) {
+      child = box.children[i];
+      if (child !== element) { others += child.offsetHeight || 0; }
+    }
+    while (most - least > 1) {
+      var size = Math.floor((least + most) / 2);
+      element.style.fontSize = size + "px";
+      if (element.scrollWidth <= wide + 1 && element.offsetHeight <= high - others) { least = size; }
+      else { most = size; }
+    }
+    element.style.fontSize = least + "px";
+  }
+
+  function draw() {
+    var shown = picture, classes = [], called, i, chip, height = window.innerHeight;
+    if (document.body.className.indexOf("lost") >= 0) { classes.push("lost"); }
+    if (shown.number) { classes.push("number"); } else { classes.push(shown.text ? "said" : "idle"); }
+    if (shown.number && shown.text && shown.text !== shown.number) { classes.push("worded"); }
+    if (shown.asks) { classes.push("asked"); }
+    if (shown.before.length) { classes.push("followed"); }
+    called = /^([^\d\s\-\u2010-\u2013]{1,2})[\s\-\u2010-\u2013]*(\d+)$/.exec(shown.number) || ["", "", shown.number];
+    put("letter", called[1]);
+    put("number", called[2]);
+    putWords("text", shown.text);
+    put("asked", shown.asks);
+    put("before", "");
+    for (i = 0; i < shown.before.length && i < 5; i += 1) {
+      chip = document.createElement("span");
+      chip.textContent = shown.before[i];
+      get("before").appendChild(chip);
+    }
+    document.body.className = classes.join(" ");
+    get("text").style.fontSize = "";
+    if (shown.asks) { fitLine(get("asked"), get("asks"), get("asks").clientHeight * 0.76); }
+    if (shown.before.length) { fitLine(get("before"), get("before"), get("before").clientHeight * 0.62); }
+    if (shown.number) { fit(get("call"), get("main"), 20, 2000); }
+    else if (shown.text) { fit(get("text"), get("main"), 16, height * 0.5); }
+  }
+
+  // Make an element so large, or as much smaller as its row asks for.
+  function fitLine(element, row, size) {
+    for (; size > 10; size *= 0.92) {
+      element.style.fontSize = size + "px";
+      if (row.scrollWidth <= row.clientWidth + 1) { return; }
+    }
+  }
+
+  function lost(so) {
+    var body = document.body, was = body.className.indexOf("lost") >= 0;
+    if (so !== was) {
+      body.className = so ? body.className + " lost" : body.className.replace(/ ?lost/, "");
+      if (picture) { draw(); }
+    }
+  }
+
+  function answer(number) {
+    var request = new XMLHttpRequest();
+    request.open("POST", "seen?page=" + page + "&number=" + number);
+    request.send();
+  }
+
+  function hear(number) {
+    heard = Date.now();
+    lost(false);
+    answer(number);
+  }
+
+  function connect() {
+    if (waiting) { window.clearTimeout(waiting); waiting = null; }
+    if (source) { source.close(); }
+    source = new EventSource("events?page=" + page);
+    source.addEventListener("show", function (event) {
+      picture = JSON.parse(event.data);
+      draw();
+      hear(picture.n);
+    });
+    source.addEventListener("alive", function (event) { hear(event.data); });
+    source.onerror = function () {
+      source.close();
+      if (!waiting) { waiting = window.setTimeout(connect, AGAIN); }
+    };
+  }
+
+  window.setInterval(function () {
+    var silent = Date.now() - heard;
+    if (silent > SILENT) {
+      lost(true);
+      dots = (dots + 1) % 4;
+      put("dots", "...".slice(0, dots));
+      if (!waiting && silent % (4 * SILENT) < 500) { waiting = window.setTimeout(connect, AGAIN); }
+    }
+  }, 500);
+  window.addEventListener("resize", function () { if (picture) { draw(); } });
+  connect();
+}());

@@ -1,0 +1,170 @@
+"""The chest screen in a real browser: what people read, how large it is, and when the link goes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+
+import cv2
+import pytest
+
+from tangy_hw.devices import Picture
+from tangy_hw.drivers.chest import WebChestScreen
+from tests.hw.waiting import until
+from tests.real.browser import CHROMIUM, Browser, Tab, chromium
+from tests.real.conftest import PATIENCE
+
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed: no browser to look"),
+    pytest.mark.xdist_group("chromium"),
+]
+
+CALL = Picture("Next number", "B-12", ("N-40", "O-75", "I-17", "G-52", "B-3"))
+SMALL, LARGE = (800, 480), (1280, 800)
+LETTER = 0.35
+"""Share of the window's height that a digit has at least: 32 mm on a tablet of seven inches, which
+is 28 minutes of arc at four metres; five are what a good eye needs."""
+
+
+@pytest.fixture
+async def screen() -> AsyncIterator[WebChestScreen]:
+    made = WebChestScreen(port=0)
+    await made.start()
+    yield made
+    await made.close()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with chromium(tmp_path_factory.mktemp("profile")) as running:
+        yield running
+
+
+@pytest.fixture
+async def browser(address: str) -> AsyncIterator[Browser]:
+    made = Browser(address)
+    yield made
+    await made.close()
+
+
+async def opened(browser: Browser, screen: WebChestScreen, size: tuple[int, int]) -> Tab:
+    """Open the page, and wait until it has answered."""
+    tab, pages = await browser.tab(), screen.pages
+    await tab.open(screen.url, *size)
+    await until(lambda: screen.pages > pages, PATIENCE)
+    return tab
+
+
+async def read(tab: Tab, element: str) -> str:
+    """Return what stands in an element and can be seen."""
+    return str(await tab.value(f"document.getElementById('{element}').innerText")).strip()
+
+
+async def outside(tab: Tab) -> str:
+    """Name what is shown beyond the window, or the box it is in; "" if all is within."""
+    return str(
+        await tab.value(
+            """(function () {
+              var all = "#asked, #letter, #number, #text span, #before span";
+              var shown = document.querySelectorAll(all);
+              var main = document.getElementById("main").getBoundingClientRect();
+              for (var i = 0; i < shown.length; i += 1) {
+                var box = shown[i].getBoundingClientRect();
+                if (!box.width) { continue; }
+                var seen = box.left >= 0 && box.right <= window.innerWidth + 1 &&
+                           box.top >= 0 && box.bottom <= window.innerHeight + 1;
+                if (document.getElementById("main").contains(shown[i])) {
+                  seen = seen && box.top >= main.top - 1 && box.bottom <= main.bottom + 1;
+                }
+                if (!seen) { return shown[i].id + ": " + shown[i].textContent; }
+              }
+              return "";
+            }())"""
+        )
+    )
+
+
+async def test_a_called_number_is_very_large_and_black_on_white(
+    screen: WebChestScreen, browser: Browser, tmp_path: Path
+) -> None:
+    for size in (SMALL, LARGE):
+        tab = await opened(browser, screen, size)
+        await screen.show(CALL)
+        assert (await read(tab, "letter"), await read(tab, "number")) == ("B", "12")
+        assert await read(tab, "text") == "Next number"
+        assert (await read(tab, "before")).split() == list(CALL.before)
+        assert await outside(tab) == ""
+        # Digits as they were drawn: the rows of the right half that have ink in them.
+        picture = tmp_path / f"{size[0]}.png"
+        await tab.screenshot(picture)
+        seen = cv2.imread(str(picture), cv2.IMREAD_GRAYSCALE)
+        assert seen is not None and seen.shape == size[::-1]
+        digits = seen[: round(size[1] * 0.66), size[0] // 2 :]
+        inked = (digits < 60).any(axis=1)
+        assert inked.sum() / size[1] >= LETTER
+        assert digits.min() < 30 and digits.max() > 245
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
+async def test_whatever_is_said_is_all_on_the_screen(
+    screen: WebChestScreen, browser: Browser, size: tuple[int, int]
+) -> None:
+    tab = await opened(browser, screen, size)
+    for picture in (
+        Picture("Please mark: B-7, N-40, O-75", asks="Annemarie"),
+        Picture("BINGO! Annemarie wins!"),
+        Picture("on and on " * 30, before=CALL.before),
+        Picture(
+            "Donaudampfschifffahrtsgesellschaftskapitän", asks="Wilhelmina van der Meer-Schmidt"
+        ),
+        CALL._replace(asks="Ana", text="Is it on your card? Please look again, there is time."),
+        Picture("", "O-75"),
+    ):
+        await screen.show(picture)
+        assert await outside(tab) == "", picture
+        assert (await read(tab, "text")).split() == picture.text.split()
+        assert await read(tab, "asked") == picture.asks
+
+
+async def test_what_looks_like_a_page_is_shown_as_it_is_written(
+    screen: WebChestScreen, browser: Browser
+) -> None:
+    tab = await opened(browser, screen, LARGE)
+    wicked = "<img src=x onerror=document.title='got-you'>&amp;</script>\u2028`${1}"
+    await screen.show(Picture(wicked, wicked, (wicked,), wicked))
+    assert await tab.value("document.getElementById('number').textContent") == wicked
+    assert await tab.value("document.getElementById('asked').textContent") == wicked
+    assert await tab.value("document.images.length + document.scripts.length") == 1
+    assert await tab.value("document.title") == "Chest screen"
+
+
+async def test_it_says_that_the_link_is_lost_and_comes_back_by_itself(browser: Browser) -> None:
+    screen = WebChestScreen(port=0)
+    await screen.start()
+    tab = await opened(browser, screen, SMALL)
+    await screen.show(CALL)
+    assert await tab.value("document.getElementById('lost').offsetHeight") == 0
+    port = screen.port
+    await screen.close()
+    await tab.until("document.getElementById('lost').offsetHeight > 40")
+    assert (await read(tab, "lost")).startswith("No link to the robot")
+    assert await read(tab, "number") == "12"  # what was called stays, pale
+    again = WebChestScreen(port=port)
+    await again.start()
+    await until(lambda: again.pages == 1, PATIENCE)
+    await again.show(Picture("", "O-75"))
+    await tab.until("document.getElementById('lost').offsetHeight === 0")
+    assert await read(tab, "number") == "75"
+    await again.close()
+
+
+async def test_a_tablet_that_hangs_is_noticed(screen: WebChestScreen, browser: Browser) -> None:
+    tab = await opened(browser, screen, SMALL)
+    assert screen.reading().state == "OK"
+    hanging = asyncio.ensure_future(
+        tab.value("(function () { var end = Date.now() + 2500; while (Date.now() < end) {} }())")
+    )
+    await until(lambda: screen.reading().state == "STALE", PATIENCE)
+    await hanging
+    await until(lambda: screen.reading().state == "OK", PATIENCE)
