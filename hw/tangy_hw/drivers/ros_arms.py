@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from tangy_hw.devices import DeviceError
+from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
 from tangy_hw.drivers.ros_messages import Message, joints_of, trajectory_message
-from tangy_hw.drivers.ros_newest import Newest, awaited
+from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, Reading
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Limb
-
-TOLERANCE = 3.0  # degrees from where a joint should be, within which it is there
-GRACE_SECONDS = 2.0  # beyond half as long again as a movement should take, until it is too late
 
 
 class RosArms:
@@ -47,7 +44,6 @@ class RosArms:
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics
         self._trajectory, self._states, self._torque = trajectory, states, torque
-        self._tolerance = math.radians(tolerance)
         known = names or {}
         self._joints: dict[str, tuple[str, ...]] = {
             limb.name: tuple(
@@ -56,16 +52,15 @@ class RosArms:
             for limb in limbs.values()
         }
         self._newest: Newest[dict[str, float]] = Newest(bridge.clock)
-        self._positions: dict[str, float] = {}
         self._own = {joint for joints in self._joints.values() for joint in joints}
-        self._moves: set[_Move] = set()
+        self._moves = JointMoves(name, math.radians(tolerance), bridge.clock)
         self._limp = False
         self._begun = False
 
     @property
     def positions(self) -> Mapping[str, float]:
         """The newest position of each joint, in radians, by the robot's own name of it."""
-        return self._positions
+        return self._moves.positions
 
     async def start(self) -> None:
         """Begin to hear where joints are."""
@@ -108,32 +103,20 @@ class RosArms:
             self._limp = False
         message = trajectory_message(goals, max(seconds, 0.0), self._bridge.ros)
         self._bridge.publish(self._trajectory, message)
-        await self._arrive(_Move(goals), self._bridge.clock() + 1.5 * seconds + GRACE_SECONDS)
+        try:
+            await self._moves.arrive(goals, seconds, self._well)
+        except DeviceError:
+            self._fail_on_error()
+            if not self._bridge.connected:
+                raise DeviceError(f"{self.name}: the link was lost on the way.") from None
+            raise
 
     async def relax(self) -> None:
         """Let all of it hang without torque."""
-        for move in self._moves:
-            move.end(f"{self.name} was let hang.")
+        self._moves.end(f"{self.name} was let hang.")
         self._limp = True
         with suppress(DeviceError):
             self._bridge.publish(self._torque, {"data": False}, urgent=True)
-
-    async def _arrive(self, move: _Move, until: float) -> None:
-        for other in self._moves:
-            if other.goals.keys() & move.goals.keys():
-                other.end(f"{self.name} was told otherwise meanwhile.")
-        self._moves.add(move)
-        try:
-            there = await awaited(move.over, until, self._bridge.clock, self._well)
-        finally:
-            self._moves.discard(move)
-        self._fail_on_error()
-        if not there:
-            far = [name for name in move.goals if not self._is_there(name, move.goals[name])]
-            unheard = [name for name in far if name not in self._positions]
-            what = "says nothing" if unheard else "is not there in time"
-            raise DeviceError(plain(f"{self.name}: {(unheard or far or ['it'])[0]} {what}."))
-        move.over.result()
 
     def _well(self) -> bool:
         return self._bridge.connected and state_told(self._diagnostics, self.name) != ERROR
@@ -143,34 +126,7 @@ class RosArms:
         if told is not None and told.state == ERROR:
             raise DeviceError(plain(f"{self.name}: {told.says or 'a servo reports an error'}"))
 
-    def _is_there(self, joint: str, goal: float) -> bool:
-        here = self._positions.get(joint)
-        return here is not None and abs(here - goal) <= self._tolerance
-
     def _hear(self, message: Message) -> None:
         positions = joints_of(message)
         self._newest.take(positions)
-        self._positions.update((name, positions[name]) for name in self._own & positions.keys())
-        for move in self._moves:
-            move.heard |= positions.keys() & move.goals.keys()
-            if move.heard == move.goals.keys() and all(
-                self._is_there(name, goal) for name, goal in move.goals.items()
-            ):
-                move.end()
-
-
-class _Move:
-    """A movement that is waited for; each of its joints must be heard of since it began."""
-
-    def __init__(self, goals: Mapping[str, float]) -> None:
-        self.goals = goals
-        self.heard: set[str] = set()
-        self.over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
-
-    def end(self, why: str = "") -> None:
-        if not self.over.done():
-            if why:
-                self.over.set_exception(DeviceError(why))
-            else:
-                self.over.set_result(None)
+        self._moves.hear({joint: positions[joint] for joint in self._own & positions.keys()})

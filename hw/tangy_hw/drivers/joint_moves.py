@@ -1,0 +1,96 @@
+"""Movements of joints that are waited for, until each joint is where it should be."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.drivers.ros_newest import awaited
+from tangy_profiles.reading import plain
+
+TOLERANCE = 3.0  # degrees from where a joint should be, within which it is there
+GRACE_SECONDS = 2.0  # beyond half as long again as a movement should take, until it is too late
+
+
+class JointMoves:
+    """The movements of one device that are under way; angles in radians, by the joint's name."""
+
+    def __init__(self, name: str, tolerance: float, clock: Callable[[], float]) -> None:
+        """Begin at rest.
+
+        Args:
+            name: of the device, for its errors.
+            tolerance: how far a joint may be from where it should be, and is there.
+        """
+        self.positions: dict[str, float] = {}
+        """The newest position of each joint that was heard of."""
+        self._name, self._tolerance, self._clock = name, tolerance, clock
+        self._moves: set[_Move] = set()
+
+    async def arrive(
+        self, goals: Mapping[str, float], seconds: float, goes_on: Callable[[], bool]
+    ) -> None:
+        """Wait until joints that were just told to move are where they should be.
+
+        A movement that shares a joint with this one ends: the newer counts.
+
+        Args:
+            seconds: how long the movement should take.
+            goes_on: whether there is still a reason to wait.
+
+        Raises:
+            DeviceError: a joint is not there in time, or the movement was ended.
+        """
+        move = _Move(goals)
+        for other in self._moves:
+            if other.goals.keys() & goals.keys():
+                other.end(f"{self._name} was told otherwise meanwhile.")
+        self._moves.add(move)
+        until = self._clock() + 1.5 * max(seconds, 0.0) + GRACE_SECONDS
+        try:
+            there = await awaited(move.over, until, self._clock, goes_on)
+        finally:
+            self._moves.discard(move)
+        if not there:
+            far = [joint for joint in goals if not self._is_there(joint, goals[joint])]
+            unheard = [joint for joint in far if joint not in move.heard]
+            what = "says nothing" if unheard else "is not there in time"
+            raise DeviceError(plain(f"{self._name}: {(unheard or far or ['it'])[0]} {what}."))
+        move.over.result()
+
+    def hear(self, positions: Mapping[str, float]) -> None:
+        """Take new positions."""
+        self.positions.update(positions)
+        for move in self._moves:
+            move.heard |= positions.keys() & move.goals.keys()
+            if move.heard == move.goals.keys() and all(
+                self._is_there(joint, goal) for joint, goal in move.goals.items()
+            ):
+                move.end()
+
+    def end(self, why: str) -> None:
+        """End all of them with an error."""
+        for move in self._moves:
+            move.end(why)
+
+    def _is_there(self, joint: str, goal: float) -> bool:
+        here = self.positions.get(joint)
+        return here is not None and abs(here - goal) <= self._tolerance
+
+
+class _Move:
+    """A movement; each of its joints must be heard of since it began."""
+
+    def __init__(self, goals: Mapping[str, float]) -> None:
+        self.goals = goals
+        self.heard: set[str] = set()
+        self.over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self.over.add_done_callback(lambda over: over.cancelled() or over.exception())
+
+    def end(self, why: str = "") -> None:
+        if not self.over.done():
+            if why:
+                self.over.set_exception(DeviceError(why))
+            else:
+                self.over.set_result(None)
