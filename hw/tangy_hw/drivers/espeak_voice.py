@@ -1,0 +1,147 @@
+"""The robot's voice, where its loudspeaker hangs on this machine: espeak-ng and a player."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.sound.player import Player, PlayerError, examine_output, open_player
+from tangy_hw.sound.synthesis import USUAL, Synthesiser
+from tangy_hw.sound.voice import Voice
+from tangy_profiles.cards import Deck
+from tangy_profiles.health import ERROR, OK, WARN, Reading
+from tangy_profiles.voice import VoicePreference
+
+
+class SpokenVoice:
+    """Says one line after the other; that nothing is heard is an error of who wanted it said.
+
+    What has failed stays so until it is closed and started anew: a player that lost its sound card
+    is not tried again.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str = "voice",
+        sink: str = "auto",
+        preference: VoicePreference = USUAL,
+        deck: Deck | None = None,
+        folder: Path | None = None,
+        player: Player | None = None,
+        which: Callable[[str], str | None] = shutil.which,
+        on_begin: Callable[[], None] | None = None,
+        on_end: Callable[[], None] | None = None,
+    ) -> None:
+        """Prepare a voice; nothing is looked for before `start`.
+
+        Args:
+            name: what the robot's profile calls it.
+            sink: what plays, as `open_player` has it: `auto`, a program, or `null`.
+            preference: how fast, and in which voice.
+            deck: whose calls are said as a caller says them.
+            folder: where spoken texts are kept; the user's cache folder if not given.
+            player: plays in place of a sink.
+            which: finds a program on the path.
+            on_begin: is called before sound comes out (a microphone is shut).
+            on_end: is called when no more comes (it is opened).
+        """
+        self.name = name
+        self._sink, self._preference, self._deck = sink, preference, deck
+        self._folder, self._player, self._which = folder, player, which
+        self._on_begin, self._on_end = on_begin, on_end
+        self._voice: Voice | None = None
+        self._trying: asyncio.Task[tuple[str, str]] | None = None
+        self._dead = f"{name} was not started."
+        self._failed = ""
+        self._hushes = 0
+
+    @property
+    def why(self) -> str:
+        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        return self._dead or self._failed
+
+    async def start(self) -> None:
+        """Look for what speaks and what plays; a moment of silence is played to try it.
+
+        It returns at once: what the trial finds is seen in the reading.
+        """
+        if self._voice is not None:
+            return
+        self._dead = self._failed = ""
+        synthesiser = Synthesiser(self._folder, which=self._which)
+        player = self._player
+        try:
+            player = player or open_player(self._sink, self._which)
+        except PlayerError as error:
+            self._dead = f"{self.name}: {error}"
+        if synthesiser.reason:
+            self._dead = f"{self.name}: {synthesiser.reason}"
+        self._voice = Voice(
+            synthesiser,
+            player,
+            deck=self._deck,
+            usual=self._preference,
+            on_begin=self._on_begin,
+            on_end=self._on_end,
+            tell=self._hear,
+        )
+        if self._player is None and self._sink == "auto" and not self._dead:
+            self._trying = asyncio.create_task(asyncio.to_thread(examine_output, self._which))
+            self._trying.add_done_callback(self._tried)
+
+    async def close(self) -> None:
+        """Cut what is said, and end for good, or until it is started anew."""
+        voice, self._voice = self._voice, None
+        self._dead = f"{self.name} does not run."
+        self._hushes += 1
+        if self._trying is not None:
+            self._trying.remove_done_callback(self._tried)
+            self._trying.cancel()
+            self._trying = None
+        if voice is not None:
+            await voice.close()
+
+    async def say(self, text: str) -> None:
+        """Say something, and wait until it was said, or was cut by `hush`.
+
+        Whoever gives up waiting cuts it.
+
+        Raises:
+            DeviceError: it cannot be heard.
+        """
+        voice, hushes = self._voice, self._hushes
+        if voice is None or self._dead:
+            raise DeviceError(self._dead)
+        self._failed = ""
+        try:
+            heard = await voice.say(text)
+        except asyncio.CancelledError:
+            await self.hush()
+            raise
+        if heard or self._hushes > hushes:
+            return
+        self._failed = self._failed or f"{self.name}: it was not heard."
+        if voice.silent:
+            self._dead = self._failed
+        raise DeviceError(self._failed)
+
+    async def hush(self) -> None:
+        """Be quiet now."""
+        self._hushes += 1
+        if self._voice is not None:
+            self._voice.hush()
+
+    def reading(self) -> Reading:
+        """Return its state: ERROR while nothing can be heard, WARN when the last line was not."""
+        return Reading(self.name, 0.0, ERROR if self._dead else WARN if self._failed else OK)
+
+    def _hear(self, sentence: str) -> None:
+        self._failed = f"{self.name}: {sentence}"
+
+    def _tried(self, trying: asyncio.Task[tuple[str, str]]) -> None:
+        if not trying.cancelled() and trying.exception() is None and trying.result()[1]:
+            self._dead = f"{self.name}: {trying.result()[1]}."

@@ -1,0 +1,162 @@
+"""The robot's voice says what it is told, or says that nobody heard it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.drivers.espeak_voice import SpokenVoice
+from tangy_hw.sound.player import NullPlayer, Player, PlayerError, ProgramPlayer
+from tangy_profiles.activity import load_activity
+from tangy_profiles.voice import VoicePreference
+from tests.hw.speakers import Clock, Speaker, program
+from tests.hw.waiting import PATIENCE, until
+
+SECONDS = 2.0  # of every line
+
+
+class Scene:
+    """Voices with a synthesiser that is a script, and a clock."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.clock = Clock()
+        self.speaker = Speaker(folder / "speaker", seconds=SECONDS)
+        self.gate: list[str] = []
+        self.made: list[SpokenVoice] = []
+
+    async def voice(self, player: Player | None = None) -> SpokenVoice:
+        """Make a voice, and start it."""
+        voice = SpokenVoice(
+            player=player or NullPlayer(self.clock.sleep),
+            preference=VoicePreference(120, "en-gb"),
+            deck=load_activity("bingo").deck,
+            folder=self.folder / "cache",
+            which=self.speaker.which,
+            on_begin=lambda: self.gate.append("shut"),
+            on_end=lambda: self.gate.append("open"),
+        )
+        self.made.append(voice)
+        await voice.start()
+        return voice
+
+
+@pytest.fixture
+async def scene(tmp_path: Path) -> AsyncIterator[Scene]:
+    made = Scene(tmp_path)
+    yield made
+    for voice in made.made:
+        await voice.close()
+
+
+async def test_saying_ends_when_it_was_heard(scene: Scene) -> None:
+    voice = await scene.voice()
+    saying = asyncio.create_task(voice.say("The next number is B-12."))
+    async with asyncio.timeout(PATIENCE):
+        await scene.clock.somebody_sleeps()
+    assert not saying.done() and scene.gate == ["shut"]
+    scene.clock.pass_by(SECONDS)
+    async with asyncio.timeout(PATIENCE):
+        await saying
+    assert voice.reading().state == "OK" and voice.why == ""
+    assert "-s 120" in scene.speaker.asked[-1] and "-v en-gb" in scene.speaker.asked[-1]
+    assert "1 2" in scene.speaker.heard[-1]  # as a caller says it
+    await until(lambda: scene.gate == ["shut", "open"])
+
+
+@pytest.mark.parametrize("by", ["hush", "cancel", "close"])
+async def test_it_is_cut_at_once(scene: Scene, by: str) -> None:
+    voice = await scene.voice()
+    saying = asyncio.create_task(voice.say("This goes on and on."))
+    async with asyncio.timeout(PATIENCE):
+        await scene.clock.somebody_sleeps()
+        if by == "hush":
+            await voice.hush()
+            await saying  # it is no error: somebody wanted it so
+            assert voice.reading().state == "OK"
+        elif by == "close":
+            await voice.close()
+            await saying
+            assert voice.reading().state == "ERROR"
+        else:
+            saying.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await saying
+    await until(lambda: scene.gate == ["shut", "open"])
+
+
+class Broken:
+    """A player whose sound card is gone."""
+
+    name = "aplay"
+
+    def __init__(self) -> None:
+        self.works = False
+
+    async def play(self, wav: Path) -> None:
+        if not self.works:
+            raise PlayerError("No sound comes out of aplay: no card.")
+
+    def stop(self) -> None:
+        pass
+
+
+async def test_what_cannot_be_heard_is_an_error_until_it_is_started_anew(scene: Scene) -> None:
+    player = Broken()
+    voice = await scene.voice(player)
+    assert voice.reading().state == "OK"
+    for _ in range(2):
+        with pytest.raises(DeviceError, match="No sound comes out of aplay: no card"):
+            await voice.say("Hello.")
+        assert voice.reading().state == "ERROR"
+    player.works = True
+    await voice.close()
+    await voice.start()
+    await voice.say("Hello.")
+    assert (voice.reading().state, voice.why) == ("OK", "")
+
+
+async def test_a_line_that_cannot_be_made_is_a_warning_until_the_next(scene: Scene) -> None:
+    player = Broken()
+    player.works = True
+    voice = await scene.voice(player)
+    with pytest.raises(DeviceError, match=r"^voice: "):
+        await voice.say("word " * 2000)
+    assert voice.reading().state == "WARN"
+    await voice.say("Hello.")
+    assert (voice.reading().state, voice.why) == ("OK", "")
+
+
+async def test_without_a_synthesiser_it_says_what_is_missing(tmp_path: Path) -> None:
+    voice = SpokenVoice(player=NullPlayer(), folder=tmp_path, which=lambda name: None)
+    assert voice.reading().state == "ERROR"
+    await voice.start()
+    assert "espeak-ng is not installed" in voice.why
+    with pytest.raises(DeviceError, match="espeak-ng is not installed"):
+        await voice.say("Hello.")
+    await voice.hush()
+    await voice.close()
+
+
+async def test_a_player_that_plays_nothing_is_found_out_before_the_first_line(
+    scene: Scene, tmp_path: Path
+) -> None:
+    player = program(tmp_path / "bin" / "aplay", "echo 'no card' >&2; exit 1")
+    known = {"espeak-ng": scene.speaker.which("espeak-ng"), "aplay": str(player)}
+    voice = SpokenVoice(folder=tmp_path / "cache", which=known.get)
+    await voice.start()
+    await until(lambda: voice.reading().state == "ERROR")
+    assert "no card" in voice.why
+    await voice.close()
+
+
+async def test_a_real_player_is_waited_for(scene: Scene, tmp_path: Path) -> None:
+    player = program(tmp_path / "bin" / "aplay", f"echo played >> {tmp_path}/played")
+    voice = await scene.voice(ProgramPlayer([[str(player)]]))
+    async with asyncio.timeout(PATIENCE):
+        await voice.say("Hello.")
+    assert (tmp_path / "played").read_text() == "played\n"
