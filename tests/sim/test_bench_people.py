@@ -18,6 +18,7 @@ from tangy_sim.bench.world import BenchWorld
 from tests.sim.bench_game import ACTIVITY, ROBOT, Player, bench, drive_to, say
 
 PEOPLE = (*load_people(3), Person("ann", "Ann"), Person("anna", "Anna O'Neil-Smith"))
+HEARING = Hearing(ACTIVITY, ROBOT, PEOPLE)
 WAYS = [
     (behaviour.name, strategy)
     for behaviour in ACTIVITY.behaviours.values()
@@ -46,10 +47,9 @@ class TestHearing:
     def test_all_that_the_robot_may_say_is_understood(
         self, behaviour: str, strategy: str, person: Person
     ) -> None:
-        hearing = Hearing(ACTIVITY, ROBOT, PEOPLE)
         template = ACTIVITY.behaviours[behaviour].speech[strategy]
         numbers = (7,) if "{call}" in template else (71, 5, 33)
-        heard = hearing.hear(ACTIVITY.fill(template, person.name, numbers))
+        heard = HEARING.hear(ACTIVITY.fill(template, person.name, numbers))
         assert heard is not None and heard.behaviour is not None
         assert (heard.behaviour.name, heard.strategy) == (behaviour, strategy)
         assert heard.person == (person.id if "{name}" in template else "")
@@ -57,17 +57,16 @@ class TestHearing:
         assert heard.numbers == (numbers if asked else ())
 
     def test_calls_for_help_are_understood_and_whom_they_are_about(self) -> None:
-        hearing = Hearing(ACTIVITY, ROBOT, PEOPLE)
         rules = [rule for rule in load_faults(ROBOT).rules if rule.aloud]
         assert rules
         for rule in rules:
-            heard = hearing.hear(rule.fill(rule.aloud, name="Ann", object=ACTIVITY.object))
+            heard = HEARING.hear(rule.fill(rule.aloud, name="Ann", object=ACTIVITY.object))
             assert heard is not None and heard.fault == rule.code
             assert heard.person == ("ann" if "{name}" in rule.aloud else "")
 
     @given(st.text(max_size=60))
     def test_anything_else_is_not(self, text: str) -> None:
-        assert Hearing(ACTIVITY, ROBOT, PEOPLE).hear(f"{text} perhaps") is None
+        assert HEARING.hear(f"{text} perhaps") is None
 
     def test_speaking_takes_its_time(self) -> None:
         world = bench()
@@ -170,7 +169,7 @@ class TestPlaying:
                 world.step(0.05)
             took, response = world.now - since, world.people.game.responses[-1]
             assert response.complied == (took <= ACTIVITY.patience - 0.9) and response.followed
-            assert took >= ACTIVITY.patience + 0.9 or response.complied
+            assert 11 - 0.1 <= took <= 19.1 or response.complied
             assert took == pytest.approx(response.seconds, abs=0.2)
             done[response.complied] += 1
         assert done[True] / 60 == pytest.approx(

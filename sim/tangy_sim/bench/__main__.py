@@ -28,7 +28,6 @@ LONGEST_LINE = 1 << 20
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the bench until its stdin is closed or it is told to stop."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it closes its stdin
     told = _parser().parse_args(arguments)
     try:
         people = _people(told.users, told.person)
@@ -43,6 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     faces = {person.id: number for number, person in enumerate(people, 1)}
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it closes its stdin
     asyncio.run(_serve(Bench(world, stepped=told.stepped, faces=faces, seed=told.seed)))
     return 0
 

@@ -17,7 +17,7 @@ from tangy_sim.wires.mjpeg_server import MjpegServer
 
 HEAD, INFRARED = "/head", "/infrared"
 PAUSE = 0.08  # s of real time from one frame of the head's camera to the next
-SIGNS_PAUSE = 0.1  # s, of the infrared camera
+SIGNS_PAUSE = 0.05  # s, of the infrared camera
 CLOSE_UP = ("card", "face")
 
 

@@ -31,7 +31,8 @@ SLIPS = (1.0, 8.0)  # s after a call in which another number is
 ASKS = (0.5, 2.0)  # s from having a reason to ask to having the sign up
 TURNS_DOWN = (0.4, 1.2)  # s from being helped to having it down
 HELPS_AFTER = (3.0, 8.0)  # s from a robot's asking everybody for help to its being given
-AFTER_PATIENCE = 1.0  # s: nobody does anything so near the window's end that nobody could tell
+CLEAR = 1.0  # s: nobody does anything so near a window's end that one could not tell
+GIVES_UP = 3  # times that somebody who does not comply is asked, until the sign comes down
 HIDES = ("away", "edge", "sheet")
 """How a card is out of view: not there, mostly beyond the picture's edge, under a sheet."""
 
@@ -43,7 +44,8 @@ class Sitter:
     """One of the people, with a card on the table and a sign for asking.
 
     `asks_since` is when (s) the sign was put up, None while it is down; `hides` how the card is
-    out of the robot's view, "" while it is not; `moved` counts how often the card was laid anew.
+    out of the robot's view, "" while it is not; `moved` counts how often the card was laid anew,
+    `refused` how often nothing was done about what was asked.
     """
 
     player: Player
@@ -51,6 +53,7 @@ class Sitter:
     asks_since: float | None = None
     hides: str = ""
     moved: int = 0
+    refused: int = 0
 
     @property
     def id(self) -> str:
@@ -272,17 +275,23 @@ class People:
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
         asked = behaviour.effect in (*_CORRECTS, "bring card closer")
         if asked and self._faults.concerns("never-complies", sitter.id):
-            late = response._replace(followed=False, complied=False, seconds=2 * patience)
-            self.game.responses.append(late)
+            self._refuses(sitter, response)
             return
         if behaviour.effect in _CORRECTS and self._faults.lift("no-effect"):
-            late = response._replace(followed=False, complied=False, seconds=2 * patience)
-            self.game.responses.append(late)
+            self._refuses(sitter, response)
             return
-        scale = (patience - AFTER_PATIENCE) / patience if response.complied else 1.0
-        seconds = response.seconds * scale + (0.0 if response.complied else AFTER_PATIENCE)
+        seconds = _shown(response.seconds, response.complied, patience)
         self.game.responses.append(response._replace(seconds=seconds))
         self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard))
+
+    def _refuses(self, sitter: Sitter, response: Response) -> None:
+        """Let somebody do nothing about what they were asked, and give up the third time."""
+        patience = self.activity.patience
+        gone = response._replace(followed=False, complied=False, seconds=2 * patience)
+        self.game.responses.append(gone)
+        sitter.refused += 1
+        if sitter.refused >= GIVES_UP:
+            self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
     def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
         player, before = sitter.player, sitter.player.marked
@@ -296,11 +305,12 @@ class People:
                 player.marked &= ~named | self.activity.deck.free
             case "set missing marks":
                 player.marked |= named
-        settled = self.activity.card_states[-1].name
-        if behaviour.closes == "always" or (
+        if behaviour.closes == "always":
+            self._closed(sitter)
+        elif (
             behaviour.closes == "when correct"
             and player.marked != before
-            and self.judged(sitter.id) == settled
+            and self.judged(sitter.id) == self.activity.card_states[-1].name
         ):
             self._after(TURNS_DOWN, partial(self._closed, sitter))
 
@@ -346,3 +356,10 @@ class People:
     def _after(self, between: tuple[float, float], happens: Callable[[], object]) -> None:
         low, high = between
         self._agenda.at(self.now + low + (high - low) * self._moments(), happens)
+
+
+def _shown(seconds: float, complied: bool, patience: float) -> float:
+    """Return when it is to be seen: clearly within the window of patience, or in the next one."""
+    if complied:
+        return seconds * (patience - CLEAR) / patience
+    return patience + CLEAR + (seconds - patience) * (patience - 2 * CLEAR) / patience

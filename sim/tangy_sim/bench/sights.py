@@ -109,8 +109,8 @@ class HeadCamera:
         who = self._people.index(scene.person)
         now = np.random.default_rng([self._seed, 5, scene.game, who, scene.moved])
         if scene.hides == "away":
-            table = background(*SIZE, now)
-            return [np.asarray(np.clip(table * 255 * 0.8, 0, 255), np.uint8)]
+            table = np.clip(background(*SIZE, now) * 255 * 0.8, 0, 255)
+            return [_with_napkin(np.asarray(table, np.uint8), now)]
         view = some_view(
             now,
             pixels=float(now.uniform(27, 34)),
@@ -149,7 +149,7 @@ class HeadCamera:
             shift = SIZE[1] + 12 - float(corners[:, 1].min())
             move = np.array([[1, 0, 0], [0, 1, shift]], np.float32)
             moved = cv2.warpAffine(picture, move, SIZE, borderMode=cv2.BORDER_REPLICATE)
-            picture = np.asarray(moved, np.uint8)
+            picture = _with_napkin(np.asarray(moved, np.uint8), random)
         elif scene.hides == "sheet":
             middle = corners.mean(0)
             sheet = (middle + (corners - middle) * 1.25).astype(np.int32)
@@ -202,6 +202,20 @@ class HeadCamera:
             cv2.rectangle(around, (x, y), (x + wide, y + high), tone, -1)
             cv2.rectangle(around, (x, y), (x + wide, y + high), [60.0, 60.0, 60.0], 5)
         return np.asarray(np.clip(around, 0, 255), np.uint8)
+
+
+def _with_napkin(picture: Picture, random: np.random.Generator) -> Picture:
+    """Lay a checked napkin on the table, by which an eye knows that it sees sharply."""
+    check, across, down = 26, 18, 9
+    x = int(random.uniform(40, SIZE[0] - check * across - 40))
+    y = int(random.uniform(20, 180))
+    cv2.rectangle(picture, (x, y), (x + check * across, y + check * down), [235.0] * 3, -1)
+    for row in range(down):
+        for column in range(row % 2, across, 2):
+            corner = x + check * column, y + check * row
+            end = corner[0] + check - 1, corner[1] + check - 1
+            cv2.rectangle(picture, corner, end, [60.0, 60.0, 190.0], -1)
+    return picture
 
 
 def _chip(seat: int) -> Chip:

@@ -1,0 +1,68 @@
+"""A tablet on the bench: it opens the page of the chest screen and answers what it is shown.
+
+It does in a thread what a browser does that has the page open: it takes the events of the page and
+says of each that it was drawn.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from contextlib import suppress
+from http.client import HTTPConnection, HTTPException
+from typing import Any
+from urllib.parse import urlsplit
+
+SECONDS = 2.0  # without an event after which the page is opened again
+
+
+class Tablet:
+    """A tablet that shows a page until it is closed; `picture` is what it shows."""
+
+    def __init__(self, url: str) -> None:
+        """Open the page at an address."""
+        parts = urlsplit(url)
+        self._place = (parts.hostname or "127.0.0.1", parts.port or 80)
+        self.picture: dict[str, Any] = {}
+        self.on = True
+        """Whether it is switched on; one that is not answers nothing, and shows nothing."""
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="tablet", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Close the page."""
+        self._over.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._over.wait(0.05):
+            if self.on:
+                with suppress(OSError, HTTPException, ValueError):
+                    self._show()
+
+    def _show(self) -> None:
+        page = HTTPConnection(*self._place, timeout=SECONDS)
+        answers = HTTPConnection(*self._place, timeout=SECONDS)
+        try:
+            page.request("GET", "/events?page=bench")
+            told, kind = page.getresponse(), ""
+            while self.on and not self._over.is_set():
+                line = told.readline().decode()
+                if not line:
+                    return
+                if line.startswith("event:"):
+                    kind = line.partition(":")[2].strip()
+                elif line.startswith("data:"):
+                    self._answer(answers, kind, line.partition(":")[2].strip())
+        finally:
+            page.close()
+            answers.close()
+
+    def _answer(self, answers: HTTPConnection, kind: str, data: str) -> None:
+        number = data
+        if kind == "show":
+            self.picture = json.loads(data)
+            number = str(self.picture["n"])
+        answers.request("POST", f"/seen?page=bench&number={number}")
+        answers.getresponse().read()

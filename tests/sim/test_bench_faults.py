@@ -1,0 +1,253 @@
+"""What goes wrong on the bench goes wrong in its devices and people, and is put right again."""
+
+from __future__ import annotations
+
+from collections import Counter
+from math import hypot
+
+import pytest
+
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.state import FRONT
+from tangy_sim.bench.drive import RADIUS
+from tangy_sim.bench.world import BenchWorld
+from tangy_sim.injection import KINDS
+from tests.sim.bench_game import ACTIVITY, ROBOT, bench, drive_to, say
+
+RULES = {rule.code: rule for rule in load_faults(ROBOT).rules}
+
+
+def opened(seed: int = 1) -> BenchWorld:
+    """Make a world in which a game was greeted."""
+    world = bench(seed)
+    world.begin()
+    say(world, "greeting")
+    return world
+
+
+def asks(world: BenchWorld, person: str, marked: int = 0, called: int = 0) -> None:
+    """Let somebody's sign be up, with such a card, and the robot be there."""
+    sitter = world.people.sitters[person]
+    sitter.asks_since = world.now
+    sitter.player.marked, sitter.player.called = marked, called
+    assert drive_to(world, person)
+
+
+def ask_aloud(world: BenchWorld, code: str, name: str = "") -> None:
+    """Let the robot ask for help about a fault, to the end of the sentence and some time."""
+    world.say(RULES[code].fill(RULES[code].aloud, name=name, object=ACTIVITY.object))
+    world.step(20.0)
+
+
+class TestAnyKind:
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_it_comes_is_told_and_is_mended_by_the_right_diagnosis(self, kind: str) -> None:
+        world = opened()
+        world.inject(kind)
+        (told,) = world.truth()["faults"]
+        assert (told["kind"], told["code"]) == (kind, KINDS[kind].code)
+        world.step(1.0)
+        assert world.mend("some other fault") == []
+        assert world.mend(KINDS[kind].code) == [kind]
+        assert not world.truth()["faults"] and not world.floor.dropped
+
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_the_next_game_begins_without_it(self, kind: str) -> None:
+        world = opened()
+        world.inject(kind)
+        world.begin()
+        assert not world.faults.present and not world.floor.dropped
+
+    def test_neither_voice_nor_screen_is_mended_as_one(self) -> None:
+        world = opened()
+        world.inject("voice-dead")
+        world.inject("screen-dead")
+        assert set(world.mend("mute")) == {"voice-dead", "screen-dead"}
+
+    def test_an_unknown_kind_is_refused(self) -> None:
+        with pytest.raises(KeyError):
+            bench().inject("rain")
+
+    @pytest.mark.parametrize("kind", ["camera-occluded", "laser-occluded", "path-blocked"])
+    def test_mostly_somebody_helps_who_is_asked_aloud(self, kind: str) -> None:
+        helped = 0
+        world = opened()
+        for _ in range(40):
+            world.inject(kind)
+            ask_aloud(world, KINDS[kind].code)
+            helped += kind not in world.faults
+            world.lift(kind)
+        assert 24 <= helped <= 39  # .8 of 40
+
+
+class TestDriving:
+    @pytest.mark.parametrize("kind", ["emergency-stop", "base-failed", "base-stuck"])
+    def test_the_robot_stands_until_it_is_mended(self, kind: str) -> None:
+        world = opened()
+        world.inject(kind)
+        assert not drive_to(world, "user1", 5.0) and world.people.place == FRONT
+        world.mend(KINDS[kind].code)
+        assert drive_to(world, "user1")
+
+    def test_an_emergency_stop_ends_what_it_is_driving(self) -> None:
+        world = opened()
+        for _ in range(20):
+            world.drive(0.5, 0.0)
+            world.step(0.05)
+        there = world.wheels.pose
+        world.inject("emergency-stop")
+        world.drive(0.5, 0.0)
+        world.step(0.5)
+        assert world.wheels.pose == there and world.wheels.forward == 0.0
+
+    def test_on_a_rug_the_wheels_turn_and_the_robot_does_not_go_along(self) -> None:
+        world = opened()
+        there = world.wheels.pose
+        world.inject("wheels-slip")
+        for _ in range(60):
+            world.drive(0.5, 0.0)
+            world.step(0.05)
+        gone = hypot(world.wheels.pose.x - there.x, world.wheels.pose.y - there.y)
+        assert gone < 0.15 and world.wheels.odometry.x > 1.0
+
+    def test_chairs_block_every_way_out(self) -> None:
+        world = opened()
+        start = world.wheels.pose
+        world.inject("path-blocked")
+        for way in range(12):
+            assert any(hypot(c.x - start.x, c.y - start.y) < 1.3 for c in world.floor.dropped)
+            world.wheels.pose = start._replace(heading=way * 0.5236 - 3.14)
+            for _ in range(80):
+                world.drive(1.0, 0.0)
+                world.step(0.05)
+            assert hypot(world.wheels.pose.x - start.x, world.wheels.pose.y - start.y) < 1.3
+        world.lift("path-blocked")
+        assert not world.floor.dropped
+
+    def test_a_chair_comes_into_the_way_of_a_robot_that_drives_and_leaves_a_way_round(self) -> None:
+        world = opened()
+        world.inject("path-detour")
+        world.step(5.0)
+        assert not world.floor.dropped  # it stands
+        assert not drive_to(world, "user2", 12.0)  # it drives straight, and bumps
+        (chair,) = world.floor.dropped
+        assert world.truth()["faults"][0]["shown"] and world.wheels.bumped
+        for side in (-1, 1):
+            assert world.floor.clear(chair.x + side * 0.7, chair.y, RADIUS)
+        world.lift("path-detour")
+        assert drive_to(world, "user2")
+
+    def test_a_robot_that_is_carried_off_is_elsewhere_and_its_wheels_do_not_know(self) -> None:
+        for seed in range(8):
+            world = bench(seed)
+            there, counted = world.wheels.pose, world.wheels.odometry
+            world.inject("carried-off")
+            pose = world.wheels.pose
+            assert hypot(pose.x - there.x, pose.y - there.y) > 2.0
+            assert world.wheels.odometry == counted
+            assert world.floor.clear(pose.x, pose.y, RADIUS) and pose.y < world.room.table[1]
+
+
+class TestSensing:
+    def test_a_covered_laser_sees_what_covers_it(self) -> None:
+        world = opened()
+        world.inject("laser-occluded")
+        assert (world.ranges() < 0.15).mean() > 0.6
+        world.lift("laser-occluded")
+        assert (world.ranges() < 0.15).mean() == 0
+
+    @pytest.mark.parametrize(("kind", "scene"), [("camera-occluded", "dark"),
+                                                 ("camera-frozen", "frozen")])  # fmt: skip
+    def test_a_camera_sees_otherwise(self, kind: str, scene: str) -> None:
+        world = opened()
+        assert world.head_scene().kind == "room"
+        world.inject(kind)
+        assert world.head_scene().kind == scene
+
+    def test_a_broken_arm_leaves_the_head(self) -> None:
+        world = opened()
+        world.inject("arm-failed")
+        world.joints.move(["left_arm/elbow", "head/neck nod"], [1.0, -0.3], 0.5)
+        world.step(2.0)
+        assert world.joints.angle("left_arm/elbow") == 0
+        assert world.joints.angle("head/neck nod") < -15
+
+
+class TestPeople:
+    def test_a_card_is_out_of_sight_until_its_owner_is_helped(self) -> None:
+        world = opened()
+        asks(world, "user2")
+        world.people.sitters["user2"].hides = ""
+        world.inject("card-out-of-sight")
+        assert world.people.sitters["user2"].hides
+        say(world, "move card closer", "User 2")
+        world.step(25.0)
+        assert world.people.sitters["user2"].hides  # it was moved, and still is not seen
+        while world.people.sitters["user2"].hides:
+            ask_aloud(world, "card-out-of-sight", "User 2")
+        assert "card-out-of-sight" not in world.faults
+
+    def test_a_sign_stays_up_until_it_is_asked_to_be_turned_down(self) -> None:
+        world = opened()
+        world.inject("request-stuck")
+        asks(world, "user3")
+        say(world, "encourage", "User 3")
+        world.step(25.0)
+        assert world.asking == ("user3",) and world.truth()["faults"][0]["person"] == "user3"
+        while world.asking:
+            ask_aloud(world, "request-stuck", "User 3")
+        assert "request-stuck" not in world.faults
+
+    def test_one_of_those_who_wait_asks_no_more_and_never_the_one_the_robot_is_with(self) -> None:
+        world = opened()
+        world.inject("request-withdrawn")
+        asks(world, "user3")
+        world.step(5.0)
+        assert world.asking == ("user3",) and "request-withdrawn" in world.faults
+        world.people.sitters["user1"].asks_since = world.now
+        world.step(1.0)
+        assert world.asking == ("user3",) and "request-withdrawn" not in world.faults
+
+    def test_somebody_follows_nothing_and_at_last_takes_the_sign_down(self) -> None:
+        world = opened()
+        world.inject("never-complies")
+        asks(world, "user4", marked=0b11)
+        player = world.people.sitters["user4"].player
+        for _ in range(3):
+            say(world, "remove markers", "User 4", *player.cells(0b11))
+            assert world.asking == ("user4",)
+            world.step(2 * ACTIVITY.patience)
+        assert player.marked == 0b11 and not world.asking
+        assert [r.followed for r in world.people.game.responses] == [False] * 3
+
+    def test_a_request_comes_to_nothing_once(self) -> None:
+        world = opened()
+        world.inject("no-effect")
+        asks(world, "user4", marked=0b11)
+        player = world.people.sitters["user4"].player
+        say(world, "remove markers", "User 4", *player.cells(0b11))
+        world.step(25.0)
+        assert player.marked == 0b11 and "no-effect" not in world.faults
+        say(world, "remove markers", "User 4", *player.cells(0b11))
+        world.step(25.0)
+        assert player.marked == 0
+
+    def test_a_dead_voice_is_not_heard_and_may_come_back_when_switched_on_again(self) -> None:
+        came = Counter[bool]()
+        for seed in range(30):
+            world = bench(seed)
+            world.inject("voice-dead")
+            world.say("Hello, everybody. I am Tangy, and today we play Bingo.")
+            world.step(10.0)
+            assert not world.said and not world.people.game.opened
+            world.hush()
+            came["voice-dead" not in world.faults] += 1
+        assert 6 <= came[True] <= 24
+
+    def test_people_say_that_they_would_like_help_once_signs_cannot_be_seen(self) -> None:
+        world = opened()
+        world.people.sitters["user1"].asks_since = world.now
+        world.inject("requests-silent")
+        assert not world.truth()["spoken"]
+        ask_aloud(world, "requests-silent")
+        assert world.truth()["spoken"] == ["user1"]
