@@ -57,7 +57,8 @@ class SteppedClock:
             new = sent - self._sent.get(wire, sent)
             self._sent[wire] = sent
             count = self._counts.get(wire)
-            while count is not None and count() < had[wire] + new and loop.time() < until:
+            wanted = had.get(wire, 0) + new
+            while count is not None and count() < wanted and loop.time() < until:  # noqa: ASYNC110
                 await asyncio.sleep(0.0005)
 
     def _tick(self, message: Mapping[str, Any]) -> None:

@@ -15,16 +15,19 @@ TICK = 0.05
 """Seconds between two ticks: a base wants a command ten times a second, and staleness is to stop
 it within .35 s."""
 
+AT_REST = 0.2
+"""Seconds that a bench in a hurry may step at once while the robot stands: no data is stale yet."""
+
 
 class PassingTime:
     """The ticks of a robot: `run` lets them come, `until` waits for what comes about with them."""
 
-    def __init__(self, clock: Clock, tick: Callable[[], None], *, stepped: bool = False) -> None:
+    def __init__(self, clock: Clock, tick: Callable[[], bool], *, stepped: bool = False) -> None:
         """Prepare.
 
         Args:
             clock: the robot's time.
-            tick: is called at each tick.
+            tick: is called at each tick; it says whether the robot moves.
             stepped: time stands still while nobody waits for it.
         """
         self.clock = clock
@@ -36,12 +39,14 @@ class PassingTime:
 
     async def run(self) -> None:
         """Tick until it is cancelled."""
+        step = TICK
         while True:
             if self._stepped and not self._waiting:
                 self._wanted.clear()
                 await self._wanted.wait()
-            await self.clock.sleep(TICK)
-            self._tick()
+            await self.clock.sleep(step)
+            moves = self._tick()
+            step = TICK if moves or not self._stepped else AT_REST
             come, self._next = self._next, None
             if come is not None:
                 come.set_result(None)

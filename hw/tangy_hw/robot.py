@@ -152,6 +152,15 @@ class LiveRobot:
         return self._watchdogs.health()
 
     @property
+    def screen_url(self) -> str:
+        """The address at which tablets open the chest screen, "" where it is no page."""
+        return str(getattr(self._body.screen, "url", ""))
+
+    def state_of(self, reading: Reading) -> str:
+        """Return the state of a device: STALE where its data is too old."""
+        return self._watchdogs.state(reading)
+
+    @property
     def pose(self) -> Pose:
         """Where it believes to be."""
         estimate = self.navigator.estimate
@@ -314,8 +323,8 @@ class LiveRobot:
             raise BrokenOff(hazard)
         return arrived
 
-    def _tick(self) -> None:
-        """Look, decide, and tell the base."""
+    def _tick(self) -> bool:
+        """Look, decide, and tell the base; say whether it drives, or is about to."""
         base, laser = self._body.base, self._body.laser
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
@@ -333,6 +342,7 @@ class LiveRobot:
             command = STILL
         if command != STILL or self._driven != STILL:
             self._send(command)
+        return command != STILL or self.going != ""
 
     def _send(self, command: Twist) -> None:
         """Tell the base; a command that could not be handed over is followed by the next."""

@@ -288,9 +288,9 @@ async def run() -> int:
         out.write({"failed": str(error)})
         await asyncio.sleep(0.1)  # until it is written
         return 2
-    process = RobotProcess(wired, out.write, stepped=setup.stepped)
     async with wired:
-        out.write({"ready": True})
+        process = RobotProcess(wired, out.write, stepped=setup.stepped)
+        out.write({"ready": True, "done": {"screen": wired.robot.screen_url}})
         beating = asyncio.create_task(process.beat())
         try:
             while line := await lines.readline():

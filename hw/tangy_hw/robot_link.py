@@ -27,11 +27,15 @@ from tangy_profiles.worker_log import open_log
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_child")
 BEAT_SECONDS = 0.1
-SILENT_SECONDS = 0.3
-"""Without a word from it for so long, the robot process hangs or is dead."""
+SILENT_SECONDS = 0.6
+"""Without a word from it for so long, the robot process hangs; its end is known at once."""
+SILENT_STEPPED = 10.0  # on a bench in a hurry, where a busy machine may take its time
 START_SECONDS = 30.0
 ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itself before
 END_SECONDS = 3.0
+
+
+NOWHERE = Pose(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +48,7 @@ class RobotState:
     number: int = 0
     time: float = 0.0
     health: Health = ()
-    pose: Pose = Pose(0.0, 0.0, 0.0)
+    pose: Pose = NOWHERE
     going: str = ""
     path: tuple[tuple[float, float], ...] = ()
     particles: tuple[tuple[float, float], ...] = ()
@@ -89,6 +93,8 @@ class RobotLink:
         self.setup = setup
         self.changed: Callable[[], None] = _nothing
         """Is called, from the reader's thread, when the robot has told something."""
+        self.screen = ""
+        """The address of the chest screen's page, where it is one."""
         self._log = log
         self._process: subprocess.Popen[bytes] | None = None
         self._told = _Told()
@@ -114,7 +120,7 @@ class RobotLink:
             with suppress(OSError):
                 log = open_log(self._log)
         try:
-            self._process = subprocess.Popen(
+            self._process = subprocess.Popen(  # noqa: S603 - it is our own program
                 CHILD,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -136,7 +142,7 @@ class RobotLink:
         for thread in self._threads:
             thread.start()
         try:
-            ready.result(START_SECONDS)
+            self.screen = str(ready.result(START_SECONDS).get("screen", ""))
         except TooLate:
             self.close()
             raise DeviceError("The robot process does not begin.") from None
@@ -182,8 +188,9 @@ class RobotLink:
         told = self._told
         if told.ended:
             return told.ended
+        patience = SILENT_STEPPED if self.setup.stepped else SILENT_SECONDS
         quiet = time.monotonic() - told.heard
-        return "the robot process does not answer" if quiet > SILENT_SECONDS else ""
+        return "the robot process does not answer" if quiet > patience else ""
 
     def health(self) -> Health:
         """Return the newest reading of each device; all are stale where the process is silent."""

@@ -28,10 +28,12 @@ from tangy_hw.robot_setup import RobotSetup, Setting
 from tangy_hw.senses import Senses
 from tangy_hw.sensors import Sensors, camera_sources
 from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.health import OK
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 
+WAKE_SECONDS = 8.0  # in which devices that are switched on begin to speak
 SETTLE_LOOKS = 5  # pictures after which a sign that went up or down is believed to
 SETTLE_SECONDS = 1.0  # of real time at most
 
@@ -57,6 +59,19 @@ class Settings:
         if isinstance(value, str | bool):
             raise self.wrong(f"{key} must be a number.")
         return float(value)
+
+    def numbers(self, key: str, count: int, default: float | None = None) -> list[float]:
+        """Take as many numbers, in a text with commas between them."""
+        words = self.text(key, None if default is None else "").replace(",", " ").split()
+        if not words and default is not None:
+            return [default] * count
+        try:
+            values = [float(word) for word in words]
+        except ValueError:
+            values = []
+        if len(values) != count:
+            raise self.wrong(f"{key} must be {count} numbers with commas between them.")
+        return values
 
     def flag(self, key: str, default: bool) -> bool:
         """Take true or false."""
@@ -174,9 +189,56 @@ def _scip(wiring: Wiring, settings: Settings) -> Device:
     )
 
 
+def _page(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.chest import PORT, WebChestScreen
+
+    return WebChestScreen(
+        settings.text("host", "127.0.0.1"),
+        int(settings.number("port", PORT)),
+        name=settings.device,
+        stale_after=wiring.robot.devices[settings.device].stale_after,
+    )
+
+
+def _spoken(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.espeak_voice import SpokenVoice
+
+    return SpokenVoice(
+        name=settings.device,
+        sink=settings.text("sink", "auto"),
+        deck=wiring.activity.deck,
+    )
+
+
+def _dynamixel(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.dynamixel import CENTRE, DynamixelArms, Servo
+
+    limbs = wiring.robot.limbs
+    joints = [f"{limb.name}/{joint}" for limb in limbs.values() for joint in limb.joints]
+    ids = settings.numbers("ids", len(joints))
+    turns = settings.numbers("turns", len(joints), 1.0)
+    zeros = settings.numbers("zeros", len(joints), CENTRE)
+    servos = {
+        joint: Servo(int(id), int(turn), zero)
+        for joint, id, turn, zero in zip(joints, ids, turns, zeros, strict=True)
+        if id > 0  # a joint with the id 0 has no servo
+    }
+    return DynamixelArms(
+        settings.text("at"),
+        limbs,
+        servos,
+        name=settings.device,
+        baud=int(settings.number("baud", 1_000_000)),
+        clock=wiring.clock.now,
+    )
+
+
 DRIVERS: Mapping[str, tuple[tuple[str, ...], Opens]] = {
     "rosbridge": (("base", "laser", "stop_button", "arms", "voice"), _rosbridge),
     "scip": (("laser",), _scip),
+    "page": (("screen",), _page),
+    "spoken": (("voice",), _spoken),
+    "dynamixel": (("arms",), _dynamixel),
 }
 """The kinds of drivers: for which devices each is, and what opens it."""
 
@@ -221,6 +283,7 @@ class Wired:
             self._open.push_async_callback(self.robot.close)
             await self.robot.start()
             await self._senses.prepare()
+            await self._wake()
         except BaseException:
             await self._open.aclose()
             raise
@@ -228,6 +291,15 @@ class Wired:
 
     async def __aexit__(self, *_: object) -> None:
         await self._open.aclose()
+
+    async def _wake(self) -> None:
+        """Wait until every device has said something; what does not is seen by its reading."""
+        robot = self.robot
+        await self._sensors.settled(WAKE_SECONDS)
+        await robot.passing.until(
+            lambda: all(robot.state_of(reading) == OK for reading in robot.health()), WAKE_SECONDS
+        )
+        await self.settle()
 
     async def settle(self) -> None:
         """Wait, in real time, until signs that are up or down now have been believed."""

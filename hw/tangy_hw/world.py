@@ -9,7 +9,7 @@ request that was put to them is observed, within the activity's patience or late
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
 from math import pi
 from random import Random
 from typing import Any
@@ -38,16 +38,6 @@ WITHDRAWN_SECONDS = 3.0  # without a sign after which somebody does not ask any 
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
-
-
-@dataclass
-class Seen:
-    """What was seen of cards and faces in a game, to be counted."""
-
-    reads: list[tuple[str, int | None, int, int, str]] = field(default_factory=list)
-    """Person, card, marked and hidden cells, state: each card that was looked at for its state."""
-    identities: list[tuple[str, str | None]] = field(default_factory=list)
-    """Whom the robot went to, and whose face it saw there (None: it could not tell)."""
 
 
 class LiveWorld:
@@ -82,8 +72,12 @@ class LiveWorld:
         self.activity = activity
         self.people = tuple(people)
         self.over = True
+        self.broken = ""
+        """Why the last behaviour was not carried out to its end."""
         self.link = link
-        self.seen = Seen()
+        self.looked: Callable[[str, str, Any], None] = _unheeded
+        """Is told of each card ("card") and face ("face") that was looked at, with whose place it
+        is at, and what was seen."""
         self.diagnosed: Callable[[Health], Mapping[str, bool]] = _nothing
         """Says which faults the devices show, by code, and whether each is critical: the robot
         then stops in the midst of whatever it does."""
@@ -100,13 +94,10 @@ class LiveWorld:
         self.tracker = Tracker(activity, self.people)
         self.called: list[int] = []
         self._numbers = activity.deck.shuffled(self._order.random)
-        self._cards: dict[str, int] = {}
         self._card: CardView | None = None
         self._by_word: dict[str, float] = {}  # who asked otherwise than by a sign, and when
         self._without_sign: dict[str, float] = {}
         self._due = 0.0  # when the next number may be called
-        self._did: dict[str, str] = {}
-        self.seen = Seen()
 
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
@@ -131,16 +122,16 @@ class LiveWorld:
         numbers: tuple[int, ...] = ()
         response: Response | None = None
         succeeded = False
+        self.broken = ""
         try:
             if self.tracker.allows(behaviour):
                 found = self._numbers_of(action)
                 if found is not None:
                     numbers = found
                     response, succeeded = self._carry_out(action, numbers)
-        except BrokenOff:
-            numbers = ()
-        except DeviceError:
-            pass
+        except DeviceError as error:
+            self.broken = str(error)
+            numbers = () if isinstance(error, BrokenOff) else numbers
         self._executed(behaviour, succeeded)
         self._settle()
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
@@ -215,7 +206,7 @@ class LiveWorld:
         self._card = None
         if place != FRONT:
             if self._knows_faces:
-                self.seen.identities.append((place, self._do("face").get("person")))
+                self.looked("face", place, self._do("face").get("person"))
             if place in self.tracker.queue:
                 self._read_card(place)
         return True
@@ -224,7 +215,7 @@ class LiveWorld:
         """Look at the card beside the robot, and keep what is seen of it."""
         card = self._look(after)
         state = str(card["state"])
-        self.seen.reads.append((person, card["card"], card["marked"], card["hidden"], state))
+        self.looked("card", person, card)
         self.tracker.seen = state if state != self.activity.unread else None
 
     def _look(self, after: float = 0.0) -> dict[str, Any]:
@@ -234,7 +225,6 @@ class LiveWorld:
         if card["card"] is not None:
             deck, place = self.activity.deck, self.tracker.place
             numbers = numbers_of(deck, card["card"], self.link.setup.deck_seed)
-            self._cards[place] = card["card"]
             called = called_cells(deck, numbers, set(self.called))
             if card["state"] != self.activity.unread:
                 self._card = CardView(place, numbers, card["marked"], called)
@@ -252,7 +242,6 @@ class LiveWorld:
             now = self.link.time
             seconds = (before + now) / 2 - began  # it was done between two looks
             if done:
-                self._did[person] = "does it"
                 return Response(person, action.strategy, True, seconds <= patience, seconds)
             if now - began > PATIENCES * patience:
                 return Response(person, action.strategy, False, False, now - began)
@@ -282,8 +271,7 @@ class LiveWorld:
             wanted = asked if behaviour.effect == "set missing marks" else 0
             done = card["marked"] & asked == wanted and not card["hidden"] & asked
         if done:
-            row = (place, card["card"], card["marked"], card["hidden"], str(state))
-            self.seen.reads.append(row)
+            self.looked("card", place, card)
         if place in self.tracker.queue:
             self.tracker.seen = state if state != self.activity.unread else None
         return bool(done)
@@ -324,8 +312,7 @@ class LiveWorld:
         """Take note of who asks, and of who waits and does not ask any more."""
         signs, tracker, now = self._signs(), self.tracker, self.link.time
         for person, _ in sorted(signs.items(), key=lambda item: item[1]):
-            if tracker.ask(person):
-                self._did[person] = "asks for help"
+            tracker.ask(person)
         for person in list(tracker.queue):
             if person in signs or person == tracker.place:
                 self._without_sign.pop(person, None)
@@ -370,10 +357,8 @@ class LiveWorld:
         if remedy.kind == "halt":  # before and beside anything else
             self.link.stop(remedy.fault)
             return 0.0
-        try:
+        with suppress(DeviceError):  # what has not helped is seen by what the devices report
             self._recover(remedy)
-        except DeviceError:
-            pass  # what has not helped is seen by what the devices report
         return max(0.0, self.link.time - began)
 
     def _recover(self, remedy: Remedy) -> None:
@@ -428,10 +413,15 @@ class LiveWorld:
         asked = self.link.ask(do, **what)
         broken = False
         while not self.link.wait(asked):
-            if not broken and any(self.diagnosed(self.health()).values()):
+            if not broken and (critical := self._critical()):
                 broken = True
-                self.link.ask("cancel", why="a fault is critical")
+                self.link.ask("cancel", why=critical)
         return asked.result()
+
+    def _critical(self) -> str:
+        """Name a critical fault that the devices show, "" if they show none."""
+        found = self.diagnosed(self.health())
+        return next((code for code, critical in found.items() if critical), "")
 
     def _settle(self) -> None:
         """Let the robot see what is there now, where its time stands still meanwhile."""
@@ -445,6 +435,10 @@ def _numbers_at(card: CardView, cells: int) -> tuple[int, ...]:
 
 def _posture(robot: Robot, name: str) -> dict[str, list[float]]:
     return {limb: list(angles) for limb, angles in robot.postures[name].items()}
+
+
+def _unheeded(_what: str, _place: str, _seen: Any) -> None:
+    """Take no note."""
 
 
 def _nothing(_: Health) -> Mapping[str, bool]:

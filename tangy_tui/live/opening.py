@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot_link import RobotLink
@@ -14,25 +13,20 @@ from tangy_hw.world import FACING, PACE_SECONDS, LiveWorld
 from tangy_profiles.health import Health
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
+from tangy_sim.injection import Injection
 from tangy_tui.live.bench import Bench
+from tangy_tui.live.benched import BenchedWorld
 
 if TYPE_CHECKING:
     from tangy_profiles.faults import FaultBook
     from tangy_profiles.robot import Robot
     from tangy_tui.house import House
 
+W = TypeVar("W", bound=LiveWorld)
+
 LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
 PICTURES = 10  # of each drawn face that the bench's people are known by
 CAMERA = "camera"
-
-
-@dataclass(frozen=True)
-class Opened:
-    """A world that is there, and the bench if it is only one."""
-
-    world: LiveWorld
-    link: RobotLink
-    bench: Bench | None
 
 
 @contextmanager
@@ -43,7 +37,8 @@ def open_bench(
     stepped: bool,
     pace: float = PACE_SECONDS,
     book: FaultBook | None = None,
-) -> Iterator[Opened]:
+    injections: Sequence[Injection] = (),
+) -> Iterator[BenchedWorld]:
     """Open the robot's own devices as a bench simulates them.
 
     Args:
@@ -51,6 +46,7 @@ def open_bench(
         stepped: in a hurry: time passes as fast as it can be computed.
         pace: s between calls.
         book: the fault rules, by which a behaviour is broken off.
+        injections: the faults that are to come in each game.
 
     Raises:
         TangyError: the bench or the robot process does not begin.
@@ -72,7 +68,7 @@ def open_bench(
             drivers={
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
                 "laser": {"kind": "scip", "at": bench.wires.scip},
-                # SCREEN
+                "screen": {"kind": "page", "port": 0},
             },
             cameras={CAMERA: bench.wires.head},
             requests=f"signs:{bench.wires.infrared}",
@@ -83,8 +79,11 @@ def open_bench(
             faces=_drawn_people(bench.wires.faces),
             log=str(folder / LOG),
         )
-        with _linked(setup, house, seed=seed, pace=pace, book=book) as world:
-            yield Opened(world, world.link, bench)
+        with _linked(BenchedWorld, setup, house, seed=seed, pace=pace, book=book) as world:
+            try:
+                yield world.on(bench, injections, seed)
+            finally:
+                world.leave()
     finally:
         bench.close()
 
@@ -104,7 +103,7 @@ def open_robot(
     requests: str = "",
     corners: tuple[tuple[float, float], ...] = (),
     map_: str = "",
-) -> Iterator[Opened]:
+) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile.
 
     Raises:
@@ -132,18 +131,24 @@ def open_robot(
         map=map_,
         log=str(house.store.folder / LOG),
     )
-    with _linked(setup, house, seed=seed, pace=pace, book=book) as world:
-        yield Opened(world, world.link, None)
+    with _linked(LiveWorld, setup, house, seed=seed, pace=pace, book=book) as world:
+        yield world
 
 
 @contextmanager
 def _linked(
-    setup: RobotSetup, house: House, *, seed: int, pace: float, book: FaultBook | None
-) -> Iterator[LiveWorld]:
+    kind: type[W],
+    setup: RobotSetup,
+    house: House,
+    *,
+    seed: int,
+    pace: float,
+    book: FaultBook | None,
+) -> Iterator[W]:
     link = RobotLink(setup, log=house.store.folder / LOG)
     try:
         link.start()
-        world = LiveWorld(
+        world = kind(
             house.activity,
             list(house.names),
             link,

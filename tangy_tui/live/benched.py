@@ -1,0 +1,235 @@
+"""A world on the bench: faults are brought about in its devices, and what is seen is checked.
+
+The bench knows how things really are; the robot does not. Only the count of what was read rightly
+(`Score`) is told, when it has been read.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import hypot
+from random import Random
+from typing import Any
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.world import LiveWorld
+from tangy_profiles.behaviour import Action
+from tangy_profiles.faults import Remedy
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_sim import injection
+from tangy_sim.bench.tablet import Tablet
+from tangy_sim.injection import KINDS, Injection, Kind
+from tangy_tui.live.bench import Bench
+
+DRIVES = ("go to user", "go to front")
+ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
+EXPERT_SECONDS = 300.0  # that an expert takes to come, as in the simulated world
+NOTICED_SECONDS = 4.0  # of real time, in which devices that real time passes for show a fault
+
+
+@dataclass
+class Score:
+    """What was read and found rightly, of how much."""
+
+    reads: Counter[str] = field(default_factory=Counter)
+    identities: Counter[str] = field(default_factory=Counter)
+    off: list[float] = field(default_factory=list)
+    """How far off the robot believed to be after each drive, in metres."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as `tangy live --json` prints it."""
+        off = sorted(self.off)
+
+        def quantile(share: float) -> float | None:
+            return round(off[min(len(off) - 1, int(share * len(off)))], 4) if off else None
+
+        return {
+            "reads": {name: self.reads[name] for name in ("right", "hidden", "wrong")},
+            "identities": {name: self.identities[name] for name in ("right", "unknown", "wrong")},
+            "pose_error_m": {"median": quantile(0.5), "p95": quantile(0.95)},
+        }
+
+
+class BenchedWorld(LiveWorld):
+    """A real world whose devices a bench simulates. Between games everything is put right."""
+
+    bench: Bench
+    injections: Sequence[Injection] = ()
+
+    def on(self, bench: Bench, injections: Sequence[Injection] = (), seed: int = 1) -> BenchedWorld:
+        """Name the bench that it is on, and the faults that are to come in each game."""
+        self.bench = bench
+        self.injections = tuple(injections)
+        self.score = Score()
+        self.came: list[tuple[int, str]] = []
+        self._to_come: list[Injection] = []
+        self._chance = Random(f"{seed}/faults").random
+        self.looked = self._check
+        self._tablet = Tablet(self.link.screen) if self.link.screen else None
+        return self
+
+    def leave(self) -> None:
+        """Close what looks at the robot from outside."""
+        if self._tablet is not None:
+            self._tablet.close()
+
+    def begin(self) -> ActivityState:
+        """Begin a game on the bench, with other cards, and nothing wrong."""
+        self.bench.do("begin")
+        self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+        self.came = []
+        self._to_come = list(self.injections)
+        return super().begin()
+
+    @property
+    def still_to_come(self) -> list[str]:
+        """The injections that have not come about in this game, but for those by chance."""
+        return [str(one) for one in self._to_come if one.chance is None]
+
+    @property
+    def present(self) -> list[str]:
+        """The kinds of fault that are there."""
+        return [fault["kind"] for fault in self.truth()["faults"]]
+
+    def truth(self) -> dict[str, Any]:
+        """Return how things really are."""
+        told: dict[str, Any] = self.bench.do("truth")["truth"]
+        return told
+
+    # ------------------------------------------------------------------------ faults
+
+    def inject(self, kind: str) -> None:
+        """Bring about a fault; what devices show at once is waited for.
+
+        Raises:
+            KeyError: there is no such kind.
+        """
+        chosen = KINDS[kind]
+        self.bench.do("inject", kind=kind)
+        self.came.append((self.tracker.step + 1, kind))
+        if kind == "navigation-failed":  # there is no such program on the bench
+            self.link.do("fail", device="navigator", state="ERROR")
+        self._switch_tablet()
+        if chosen.shows == injection.AT_ONCE:
+            self._let_show(chosen)
+
+    def _let_show(self, kind: Kind) -> None:
+        """Wait until devices show a fault, where the bench's time does not pass by itself."""
+        if not self.link.setup.stepped:
+            return
+        until = time.monotonic() + NOTICED_SECONDS
+        while kind.code not in self.diagnosed(self.health()) and time.monotonic() < until:
+            try:
+                self.link.do("wait", seconds=0.2)
+            except DeviceError:
+                return
+            self.link.beat()
+
+    def lift(self, kind: str) -> None:
+        """Put a fault right."""
+        self.bench.do("lift", kind=kind)
+        if kind == "navigation-failed":
+            self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+
+    def _switch_tablet(self) -> None:
+        if self._tablet is not None:
+            self._tablet.on = "screen-dead" not in self.present
+
+    def can_show(self, kind: Kind, action: Action) -> bool:
+        """Say whether a fault of a kind would be seen if it came with an action."""
+        tracker, behaviour = self.tracker, action.behaviour
+        beside = tracker.place in tracker.queue
+        match kind.shows:
+            case injection.DRIVING:
+                return behaviour.effect in DRIVES
+            case injection.LOOKING:
+                if tracker.seen is None:
+                    return beside and behaviour.effect == "bring card closer"
+                return behaviour.effect in ("clear wrong marks", "set missing marks")
+            case injection.ASKING:
+                return beside and behaviour.effect in ASKED_FOR and tracker.allows(behaviour)
+            case injection.CLOSING:
+                settled = self.activity.card_states[-1].name
+                return beside and behaviour.closes == "always" and tracker.seen == settled
+            case injection.WAITING:
+                return len(tracker.queue) > 1
+            case injection.MOVING_ON:
+                return behaviour.effect in DRIVES
+            case _:
+                return True
+
+    def execute(self, action: Action) -> Outcome:
+        """Let faults come that are due, and carry out the action."""
+        if not self.over:
+            self._let_faults_come(action)
+        outcome = super().execute(action)
+        self._note_place()
+        return outcome
+
+    def _let_faults_come(self, action: Action) -> None:
+        step, left = self.tracker.step + 1, list[Injection]()
+        for one in self._to_come:
+            if one.chance is not None:
+                left.append(one)
+                comes = self._chance() < one.chance
+            elif one.step is not None:
+                comes = one.step == step
+            else:
+                comes = not one.in_recovery and self.can_show(one.kind, action)
+            if comes:
+                self.inject(one.kind.name)
+            elif one.chance is None:
+                left.append(one)
+        self._to_come = left
+
+    def recover(self, remedy: Remedy) -> float:
+        """Let the robot, somebody at the table or an expert do something about a fault."""
+        if remedy.kind == "call expert":
+            return self._expert_comes(remedy)
+        if remedy.kind == "restart":
+            self.bench.do("restart", device=remedy.device)
+            self._switch_tablet()
+        return super().recover(remedy)
+
+    def _expert_comes(self, remedy: Remedy) -> float:
+        began = self.link.time
+        for kind in self.bench.do("mend", fault=remedy.fault)["lifted"]:
+            if kind == "navigation-failed":
+                self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+        if self.link.setup.stepped:
+            self.link.do("wait", seconds=EXPERT_SECONDS)
+            until = time.monotonic() + NOTICED_SECONDS
+            while remedy.fault in self.diagnosed(self.health()) and time.monotonic() < until:
+                self.link.do("wait", seconds=0.2)
+                self.link.beat()
+        return max(0.0, self.link.time - began)
+
+    # ------------------------------------------------------------------------ what is counted
+
+    def _check(self, what: str, place: str, seen: Any) -> None:
+        """Count something that was seen, by how it really is."""
+        if what == "face":
+            word = "unknown" if seen is None else "right" if seen == place else "wrong"
+            self.score.identities[word] += 1
+            return
+        there = self.truth()["people"][place]
+        if seen["card"] is None or seen["state"] == self.activity.unread:
+            self.score.reads["hidden"] += 1
+            return
+        told = ~seen["hidden"]
+        same = seen["card"] == there["card"] and not (seen["marked"] ^ there["marked"]) & told
+        self.score.reads["right" if same else "wrong"] += 1
+
+    def _note_place(self) -> None:
+        """Note how far off the robot believes to be, while it stands."""
+        if not self.link.setup.stepped:
+            return
+        x, y, _ = self.truth()["pose"]
+        pose = self.link.beat().pose
+        self.score.off.append(hypot(pose.x - x, pose.y - y))
