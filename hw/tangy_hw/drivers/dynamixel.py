@@ -1,0 +1,263 @@
+"""Arms of Dynamixel servos (X series, protocol 2.0) on a serial port, without ROS.
+
+Robotis' own package speaks to the bus, in a thread of its own; it comes with the extra `dynamixel`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from functools import partial
+from typing import NamedTuple
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning
+from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
+from tangy_hw.drivers.ros_newest import Newest
+from tangy_profiles.health import ERROR, OK, Reading
+from tangy_profiles.reading import plain
+from tangy_profiles.robot import Limb
+
+POLL_SECONDS = 0.1  # between two looks at where joints are
+ERRORS_EVERY = 5  # looks, at one of which servos are asked for errors as well
+AGAIN_SECONDS = 1.0  # until a port that is not there is tried again
+CENTRE = 180.0  # degrees of a servo at which a joint is at zero, unless the profile says otherwise
+
+
+class Servo(NamedTuple):
+    """The servo of a joint: its id on the bus, which way it turns, where the joint is at zero."""
+
+    id: int
+    turns: int = 1
+    zero: float = CENTRE
+
+    def angle(self, joint: float) -> float:
+        """Return the servo's angle in degrees for a joint's in radians."""
+        return self.zero + self.turns * math.degrees(joint)
+
+    def joint(self, angle: float) -> float:
+        """Return the joint's angle in radians for the servo's in degrees."""
+        return math.radians(self.turns * (angle - self.zero))
+
+
+def servos_of(text: str) -> dict[str, Servo]:
+    """Read which servos joints have, as a profile says: "limb/joint = 12, other/joint = -7@175".
+
+    An id, with a minus where the servo turns the other way; after @ its angle where the joint is
+    at zero, in degrees.
+
+    Raises:
+        DeviceError: it is not of that form, or an id is there twice.
+    """
+    servos: dict[str, Servo] = {}
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        joint, _, what = (piece.strip() for piece in part.partition("="))
+        number, _, zero = what.partition("@")
+        try:
+            servo = Servo(abs(int(number)), -1 if number.startswith("-") else 1)
+            servo = servo._replace(zero=float(zero) if zero else CENTRE)
+        except ValueError:
+            raise DeviceError(plain(f"{part}: write LIMB/JOINT = ID, or -ID@ZERO.")) from None
+        known = servo.id in (other.id for other in servos.values()) or joint in servos
+        if not joint or known or not 0 <= servo.id <= 252 or not 0 <= servo.zero <= 360:
+            raise DeviceError(plain(f"{part}: a joint has one servo, with an id from 0 to 252."))
+        servos[joint] = servo
+    return servos
+
+
+class DynamixelArms:
+    """Limbs of servos that take postures; they hang until the first."""
+
+    def __init__(
+        self,
+        port: str,
+        limbs: Mapping[str, Limb],
+        servos: Mapping[str, Servo],
+        *,
+        name: str = "arms",
+        baud: int = 1_000_000,
+        clock: Callable[[], float] = time.monotonic,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        """Name the port and the servos; nothing is opened before `start`.
+
+        Args:
+            port: of the bus, as /dev/ttyUSB0.
+            limbs: of the robot's profile, which name the joints and their limits.
+            servos: by "limb/joint"; a joint without one does nothing.
+            tolerance: degrees from where a joint should be, within which it is there.
+
+        Raises:
+            DeviceError: a servo is of no joint.
+        """
+        self.name = name
+        self._port, self._baud, self._clock = port, baud, clock
+        self._limbs, self._servos = limbs, dict(servos)
+        joints = {f"{limb.name}/{joint}" for limb in limbs.values() for joint in limb.joints}
+        if unknown := self._servos.keys() - joints:
+            raise DeviceError(plain(f"{name}: there is no joint {min(unknown)}."))
+        self._by_id = {servo.id: joint for joint, servo in self._servos.items()}
+        self._newest: Newest[None] = Newest(clock)
+        self._moves = JointMoves(name, math.radians(tolerance), clock)
+        self._errors: dict[int, str] = {}
+        self._bus: Bus | None = None
+        self._limp = True
+        self._thread: ThreadPoolExecutor | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def positions(self) -> Mapping[str, float]:
+        """The newest position of each joint, in radians."""
+        return self._moves.positions
+
+    async def start(self) -> None:
+        """Begin to look where joints are; a port that is not there is tried again.
+
+        Raises:
+            DeviceError: the package for it is not installed.
+        """
+        if self._task is None:
+            Bus.check()
+            self._newest.restart()
+            self._thread = ThreadPoolExecutor(1, thread_name_prefix="dynamixel")
+            self._task = asyncio.create_task(self._live())
+
+    async def close(self) -> None:
+        """Let the arms hang, and end."""
+        task, self._task = self._task, None
+        if task is None or self._thread is None:
+            return
+        await self.relax()
+        task.cancel()
+        await asyncio.wait({task})
+        await self._do(self._hang_up)
+        self._thread.shutdown(wait=False)
+        self._thread = None
+
+    def reading(self) -> Reading:
+        """Return how long ago all joints were heard of, and whether a servo reports an error."""
+        broken = bool(self._errors)
+        facts = {"hardware_error": broken}
+        return self._newest.reading(self.name, ERROR if broken else OK, facts)
+
+    @property
+    def why(self) -> str:
+        """What is wrong with it, in one sentence; "" if nothing is known to be."""
+        if self._errors:
+            number, what = next(iter(self._errors.items()))
+            return plain(f"{self.name}: the servo of {self._by_id[number]} reports {what}.")
+        return "" if self._bus is not None else plain(f"{self.name}: {self._port} is not there.")
+
+    async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
+        """Move limbs to joint angles (degrees, by limb) within so many s, and wait for it.
+
+        Raises:
+            DeviceError: there is no such limb, a servo reports an error or cannot turn so far,
+                other angles are wanted meanwhile, or it is not there in time.
+        """
+        goals: dict[str, float] = {}
+        for name, degrees in angles.items():
+            joints = self._limbs[name].joints if name in self._limbs else ()
+            if len(joints) != len(degrees) or not all(map(math.isfinite, degrees)):
+                raise DeviceError(plain(f"{self.name} cannot take {name} to {list(degrees)}."))
+            for joint, angle in zip(joints, degrees, strict=True):
+                if f"{name}/{joint}" in self._servos:
+                    goals[f"{name}/{joint}"] = math.radians(angle)
+        wanted = {self._servos[j].id: self._servos[j].angle(goal) for j, goal in goals.items()}
+        if not goals:
+            return
+        for number, angle in wanted.items():
+            if not 0 <= angle < 360:
+                wrong = f"{self._by_id[number]} cannot turn to {angle:.0f} degrees of its servo."
+                raise DeviceError(plain(f"{self.name}: {wrong}"))
+        if self._bus is None or self._errors:
+            raise DeviceError(self.why)
+        limp, self._limp = self._limp, False
+        arriving = asyncio.create_task(self._moves.arrive(goals, seconds, self._well))
+        try:
+            await self._do(lambda: self._move(wanted, seconds, limp))
+        except BusError as error:
+            self._limp = self._limp or limp
+            arriving.cancel()
+            raise DeviceError(plain(f"{self.name}: {error}")) from None
+        try:
+            await arriving
+        except DeviceError:
+            if self._errors or self._bus is None:
+                raise DeviceError(self.why) from None
+            raise
+        finally:
+            arriving.cancel()
+
+    async def relax(self) -> None:
+        """Let all of it hang without torque; never raises."""
+        self._moves.end(f"{self.name} was let hang.")
+        self._limp = True
+        with suppress(BusError):
+            await self._do(self._let_go)
+
+    def _well(self) -> bool:
+        return self._bus is not None and not self._errors
+
+    async def _do(self, work: Callable[[], object]) -> None:
+        """Do something in the thread of the bus, where one thing is done at a time."""
+        if self._thread is not None:
+            await asyncio.get_running_loop().run_in_executor(self._thread, work)
+
+    async def _live(self) -> None:
+        turn = 0
+        while True:
+            try:
+                await self._do(partial(self._look, errors=turn % ERRORS_EVERY == 0))
+                turn += 1
+                self._take()
+                await asyncio.sleep(POLL_SECONDS)
+            except BusError:
+                await self._do(self._hang_up)
+                self._limp = True
+                await asyncio.sleep(AGAIN_SECONDS)
+
+    def _take(self) -> None:
+        """Take what the thread has found."""
+        bus = self._bus
+        if bus is None:
+            return
+        self._errors = {number: meaning(bits) for number, bits in bus.errors.items() if bits}
+        found = bus.angles
+        self._moves.hear(
+            {
+                self._by_id[n]: self._servos[self._by_id[n]].joint(angle)
+                for n, angle in found.items()
+            }
+        )
+        if len(found) == len(self._by_id):
+            self._newest.take(None)
+        else:
+            self._limp = True  # one that was without power has forgotten its torque
+
+    # ---------------------------------------------------------------- in the thread of the bus
+
+    def _look(self, *, errors: bool) -> None:
+        if self._bus is None:
+            self._bus = Bus(self._port, self._baud, tuple(self._by_id))
+        self._bus.look(errors=errors)
+
+    def _move(self, wanted: Mapping[int, float], seconds: float, limp: bool) -> None:
+        if self._bus is None:
+            raise BusError(f"{self._port} is not there.")
+        if limp:
+            self._bus.hold()
+        self._bus.move(wanted, seconds)
+
+    def _let_go(self) -> None:
+        if self._bus is not None:
+            self._bus.torque(on=False)
+
+    def _hang_up(self) -> None:
+        bus, self._bus = self._bus, None
+        if bus is not None:
+            bus.close()
