@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import locale
 import os
 import shutil
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tangy_hw.drivers.camera_devices import list_cameras
 from tangy_hw.sound.arecord import list_microphones
@@ -19,6 +21,11 @@ from tangy_hw.sound.wav import SoundError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
+
+if TYPE_CHECKING:
+    from tangy_hw.sensors import Sources
+    from tangy_profiles.activity import Activity
+    from tangy_profiles.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +63,27 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
         _microphone(which("arecord")),
         _camera(),
     ]
+
+
+def examine_robot(
+    robot: Robot, activity: Activity, cameras: Sources, seconds: float = 5.0
+) -> list[Finding]:
+    """Try every device of a robot that its profile says how to reach; nothing is moved.
+
+    Args:
+        robot: whose devices they are.
+        activity: what it is for.
+        cameras: where its cameras' pictures come from, by device.
+        seconds: for which is waited for a device at most.
+    """
+    from tangy_hw.trial import try_robot
+
+    def label(device: str) -> str:
+        known = robot.devices.get(device)
+        return f"{robot.title}'s {known.label if known is not None else device}"
+
+    tried = asyncio.run(try_robot(robot, activity, cameras, seconds))
+    return [Finding(label(one.device), one.ok, one.text, not one.absent) for one in tried]
 
 
 def _camera() -> Finding:

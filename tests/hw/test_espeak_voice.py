@@ -149,8 +149,13 @@ async def test_a_player_that_plays_nothing_is_found_out_before_the_first_line(
     known = {"espeak-ng": scene.speaker.which("espeak-ng"), "aplay": str(player)}
     voice = SpokenVoice(folder=tmp_path / "cache", which=known.get)
     await voice.start()
+    assert (voice.reading().state, voice.why) == ("WARN", "voice is being tried.")
     await until(lambda: voice.reading().state == "ERROR")
     assert "no card" in voice.why
+    await voice.close()
+    program(player, "exit 0")
+    await voice.start()
+    await until(lambda: voice.reading().state == "OK")
     await voice.close()
 
 

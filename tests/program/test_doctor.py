@@ -10,8 +10,10 @@ import pytest
 from tangy_hw.sound.arecord import list_microphones
 from tangy_hw.sound.wav import SoundError
 from tangy_profiles import log_file
+from tangy_profiles.activity import load_activity
+from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
-from tangy_tui.doctor import Finding, examine
+from tangy_tui.doctor import Finding, examine, examine_robot
 from tests.hw.speakers import Speaker, program
 
 
@@ -147,3 +149,17 @@ def test_a_folder_that_may_not_be_looked_into_is_broken(
     monkeypatch.setattr(Path, "exists", barred)
     monkeypatch.setattr(os, "access", lambda path, mode: False)
     assert data_folder(tmp_path / "new").state == "broken"
+
+
+def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path: Path) -> None:
+    robot = tmp_path / "mine.toml"
+    driver = 'laser = { kind = "scip", at = "/dev/no-such-port" }'
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    robot.write_text(f"{shipped}\n[drivers]\n{driver}\n", encoding="utf-8")
+    found = {
+        one.part: one
+        for one in examine_robot(load_robot(str(robot)), load_activity("bingo"), {}, 0.3)
+    }
+    laser = found["Tangy's laser scanner"]
+    assert (laser.state, "/dev/no-such-port cannot be opened" in laser.text) == ("broken", True)
+    assert found["Tangy's wheels"].state == "missing"

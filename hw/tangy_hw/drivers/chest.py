@@ -11,6 +11,7 @@ import asyncio
 import contextlib
 import json
 import math
+import socket
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -96,9 +97,8 @@ class WebChestScreen:
 
     @property
     def url(self) -> str:
-        """The address of the page, as this machine opens it."""
-        host = "127.0.0.1" if self.host in ("", "0.0.0.0") else self.host  # noqa: S104
-        return f"http://{host}:{self.port}/"
+        """The address of the page, as a tablet opens it."""
+        return f"http://{_reached_at(self.host)}:{self.port}/"
 
     @property
     def pages(self) -> int:
@@ -240,10 +240,11 @@ class WebChestScreen:
         ):
             writer.write(response(503, b"There are too many pages open.\n"))
             return
+        page = _Page()
         if (before := self._pages.get(name)) is not None:  # the same page, after a lost link
-            before.over = True
+            page.heard, before.over = before.heard, True
             before.changed.set()
-        page = self._pages[name] = _Page()
+        self._pages[name] = page
         writer.write(stream_head())
         sent = -1
         try:
@@ -258,6 +259,19 @@ class WebChestScreen:
         finally:
             if self._pages.get(name) is page:
                 del self._pages[name]
+
+
+def _reached_at(host: str) -> str:
+    """Return by which address others reach what listens at all of this machine's."""
+    if host not in ("", "0.0.0.0"):  # noqa: S104
+        return host
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            # Nothing is sent: it only has the system choose the way out (RFC 5737).
+            probe.connect(("192.0.2.1", 9))
+            return str(probe.getsockname()[0])
+        except OSError:
+            return "127.0.0.1"
 
 
 def _drawn(number: int, picture: Picture) -> str:

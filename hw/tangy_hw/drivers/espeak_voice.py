@@ -62,7 +62,8 @@ class SpokenVoice:
     @property
     def why(self) -> str:
         """What is wrong with it, in one sentence; "" if nothing is known to be."""
-        return self._dead or self._failed
+        trying = f"{self.name} is being tried." if self._trying is not None else ""
+        return self._dead or self._failed or trying
 
     async def start(self) -> None:
         """Look for what speaks and what plays; a moment of silence is played to try it.
@@ -136,12 +137,16 @@ class SpokenVoice:
             self._voice.hush()
 
     def reading(self) -> Reading:
-        """Return its state: ERROR while nothing can be heard, WARN when the last line was not."""
-        return Reading(self.name, 0.0, ERROR if self._dead else WARN if self._failed else OK)
+        """Return its state: ERROR while nothing can be heard, WARN when the last line was not.
+
+        It is WARN, too, while it is tried.
+        """
+        return Reading(self.name, 0.0, ERROR if self._dead else WARN if self.why else OK)
 
     def _hear(self, sentence: str) -> None:
         self._failed = f"{self.name}: {sentence}"
 
     def _tried(self, trying: asyncio.Task[tuple[str, str]]) -> None:
+        self._trying = None
         if not trying.cancelled() and trying.exception() is None and trying.result()[1]:
             self._dead = f"{self.name}: {trying.result()[1]}."

@@ -41,7 +41,7 @@ SEEN = 0.8
 
 ANSWER_SECONDS = 1.0  # for a command; scanners answer within 10 ms
 SILENT_SECONDS = 2.0  # without a scan, after which the connection is made anew
-AGAIN_SECONDS = (0.1, 0.25, 0.5, 1.0)  # until it is tried again; the last for ever
+AGAIN_SECONDS = (0.05, 0.1, 0.2, 0.5)  # until it is tried again; the last for ever
 CLOCK = 1 << 24  # ms after which the scanner's clock begins again
 NEVER = 3600.0
 

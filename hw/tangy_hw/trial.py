@@ -1,0 +1,117 @@
+"""A trial of a robot's devices: each driver is opened and listened to, and nothing is moved."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tangy_hw.devices import Device, DeviceError, MachineClock
+from tangy_hw.drivers.camera import Camera
+from tangy_hw.sensors import Sources
+from tangy_hw.wiring import DRIVERS, Wiring, open_device
+from tangy_profiles.activity import Activity
+from tangy_profiles.health import ERROR, OK, WARN
+from tangy_profiles.robot import Robot
+
+SECONDS = 5.0  # in which a device that works has said something: cameras take the longest
+TICK_SECONDS = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What was found of one device: whether it works, and a sentence about it.
+
+    `absent`: nothing says what drives it, so nothing was tried.
+    """
+
+    device: str
+    ok: bool
+    text: str
+    absent: bool = False
+
+
+async def try_robot(
+    robot: Robot, activity: Activity, cameras: Sources, seconds: float = SECONDS
+) -> list[Trial]:
+    """Open every driver and camera that a robot's profile names, and listen to what they say.
+
+    Args:
+        robot: whose devices they are.
+        activity: what it is for.
+        cameras: where its cameras' pictures come from, by device.
+        seconds: for which is waited for a device at most.
+
+    Returns:
+        What was found, in the order of the profile.
+    """
+    wiring = Wiring(robot, activity, MachineClock())
+    found: dict[str, Trial] = {}
+    opened: dict[str, Device | Camera] = {
+        name: Camera(source, device=name) for name, source in cameras.items()
+    }
+    for name, driver in robot.drivers.items():
+        try:
+            opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
+        except DeviceError as error:
+            found[name] = Trial(name, False, str(error))
+    shared: Sequence[Any] = (*wiring.links.values(), *wiring.diagnosing.values())
+    started: list[Any] = []
+    try:
+        for one in (*shared, *opened.values()):
+            started.append(one)
+            await one.start()
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if all(one.reading().state == OK for one in opened.values()):
+                break
+            await asyncio.sleep(TICK_SECONDS)
+        for name, one in opened.items():
+            found[name] = _tried(robot, name, one, wiring, seconds)
+    finally:
+        for one in reversed(started):
+            await one.close()
+    for name, device in robot.devices.items():
+        if device.looks_at and name not in found:
+            what = (
+                f"nothing says where its pictures come from; name its source in {robot.file.name}."
+            )
+            found[name] = Trial(name, False, what, absent=True)
+    for name in {device for devices, _ in DRIVERS.values() for device in devices}:
+        if name in robot.devices and name not in found:
+            what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
+            found[name] = Trial(name, False, what, absent=True)
+    return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
+            if name in found]  # fmt: skip
+
+
+def _tried(
+    robot: Robot, name: str, device: Device | Camera, wiring: Wiring, seconds: float
+) -> Trial:
+    where = _where(robot, name, device)
+    reading = device.reading()
+    if reading.state == OK:
+        return Trial(name, True, f"{where} works.")
+    if isinstance(device, Camera):
+        return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
+    why = str(getattr(device, "why", ""))
+    if why:
+        return Trial(name, False, why)
+    link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))
+    if link is not None and not link.connected:
+        return Trial(name, False, f"nobody answers at {link.url}.")
+    if reading.state == ERROR:
+        return Trial(name, False, f"{where} reports an error.")
+    if reading.state == WARN:
+        return Trial(name, False, f"{where} warns that something is wrong with it.")
+    return Trial(name, False, f"{where} has sent nothing within {seconds:g} s.")
+
+
+def _where(robot: Robot, name: str, device: Device | Camera) -> str:
+    if isinstance(device, Camera):
+        return device.name
+    driver = robot.drivers[name]
+    at = driver.settings.get("at", "")
+    return f"{driver.kind} at {at}" if at else driver.kind

@@ -1,0 +1,99 @@
+"""A trial of a robot says of each device whether it works, and if not, what is missing."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangy_hw.trial import Trial, try_robot
+from tangy_profiles.activity import load_activity
+from tangy_profiles.robot import Robot, load_robot
+from tangy_sim.wires.scip_server import ScipServer
+
+SECONDS = 0.4
+
+
+def driven(folder: Path, **drivers: str) -> Robot:
+    """Return the shipped robot with drivers of its own."""
+    path = folder / "mine.toml"
+    lines = [f"{name} = {{ {settings} }}" for name, settings in drivers.items()]
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    path.write_text(f"{shipped}\n[drivers]\n" + "\n".join(lines), encoding="utf-8")
+    return load_robot(str(path))
+
+
+async def tried(robot: Robot, seconds: float = SECONDS) -> dict[str, Trial]:
+    """Return what is found, by device."""
+    found = await try_robot(robot, load_activity("bingo"), {}, seconds)
+    assert len({one.device for one in found}) == len(found)
+    return {one.device: one for one in found}
+
+
+@contextmanager
+def turning(server: ScipServer) -> Iterator[None]:
+    """Let a scanner measure."""
+
+    async def turn() -> None:
+        for number in range(1000):
+            server.send(np.linspace(1, 2, server.scanner.beams), 100 * number)
+            await asyncio.sleep(0.02)
+
+    task = asyncio.create_task(turn())
+    yield
+    task.cancel()
+
+
+async def test_each_device_is_told_in_a_sentence(tmp_path: Path) -> None:
+    server = ScipServer()
+    await server.start()
+    robot = driven(
+        tmp_path,
+        base='kind = "rosbridge", at = "ws://127.0.0.1:9"',
+        laser=f'kind = "scip", at = "{server.url}"',
+        arms='kind = "rosbrige", at = "ws://127.0.0.1:9"',
+    )
+    with turning(server):
+        found = await tried(robot)
+    assert found["laser"] == Trial("laser", True, f"scip at {server.url} works.")
+    assert found["base"] == Trial("base", False, "nobody answers at ws://127.0.0.1:9.")
+    assert "did you mean 'rosbridge'?" in found["arms"].text
+    assert found["stop_button"].absent
+    assert "[drivers] in mine.toml" in found["stop_button"].text
+    assert list(found)[:2] == ["stop_button", "laser"]  # as in the profile
+    await asyncio.sleep(0)
+    assert not server.measuring  # what was opened is closed
+    await server.close()
+
+
+@pytest.mark.parametrize(
+    ("fault", "says"),
+    [("70", "cannot measure"), ("", "nothing any more"), ("closed", "broke off")],
+    ids=["broken", "silent", "closed"],
+)
+async def test_a_scanner_that_does_not_measure_says_why(
+    tmp_path: Path, fault: str, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_hw.drivers.scip.ANSWER_SECONDS", 0.05)
+    monkeypatch.setattr("tangy_hw.drivers.scip.SILENT_SECONDS", 0.1)
+    server = ScipServer()
+    await server.start()
+    if fault == "closed":
+        server.closed = True
+    else:
+        server.fault = fault
+    found = await tried(driven(tmp_path, laser=f'kind = "scip", at = "{server.url}"'))
+    assert not found["laser"].ok and not found["laser"].absent
+    assert says in found["laser"].text and server.url in found["laser"].text
+    await server.close()
+
+
+async def test_a_robot_without_drivers_lacks_them_all() -> None:
+    found = await tried(load_robot())
+    assert {"base", "laser", "arms", "voice", "stop_button"} <= set(found)
+    assert all(one.absent and not one.ok for one in found.values())
+    assert "name its source in tangy.toml" in found["camera"].text
