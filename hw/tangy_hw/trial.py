@@ -75,8 +75,8 @@ async def try_robot(
             await one.close()
     for name, device in robot.devices.items():
         if device.looks_at and name not in found:
-            what = f"nothing says where its pictures come from; name its source in {here}."
-            found[name] = Trial(name, False, what, absent=True)
+            what = "nothing says where its pictures come from; name its source in"
+            found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
     for name in {device for devices, _ in DRIVERS.values() for device in devices}:
         if name in robot.devices and name not in found:
             what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
