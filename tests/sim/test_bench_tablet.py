@@ -1,0 +1,40 @@
+"""The bench's tablet does to the chest screen's driver what a real one does."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from tangy_hw.devices import Picture
+from tangy_hw.drivers import chest
+from tangy_hw.drivers.chest import WebChestScreen
+from tangy_sim.bench.tablet import Tablet
+from tests.hw.waiting import PATIENCE, until
+
+
+async def test_it_shows_what_it_is_told_until_it_is_switched_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name, seconds in (("ALIVE_SECONDS", 0.02), ("GONE_SECONDS", 0.4)):
+        monkeypatch.setattr(chest, name, seconds)
+    screen = WebChestScreen(port=0, stale_after=0.2)
+    await screen.start()
+    tablet = Tablet(screen.url)
+    await until(lambda: screen.reading().state == "OK")
+    async with asyncio.timeout(PATIENCE):
+        await screen.show(Picture("Next \u2028\n", "B-12", ("N-40",), "Ana"))
+    assert tablet.picture["text"] == "Next \u2028\n" and tablet.picture["before"] == ["N-40"]
+    tablet.on = False
+    await until(lambda: screen.reading().state == "STALE" and not screen.pages)
+    await screen.show(Picture("for whoever comes"))
+    tablet.on = True
+    await until(lambda: tablet.picture["text"] == "for whoever comes")
+    # The robot's process ends, and begins anew.
+    port = screen.port
+    await screen.close()
+    again = WebChestScreen(port=port)
+    await again.start()
+    await until(lambda: again.reading().state == "OK")
+    await asyncio.to_thread(tablet.close)
+    await again.close()
