@@ -240,13 +240,17 @@ class RobotLink:
         except TooLate:
             raise DeviceError(f"The robot process does not answer ({do}).") from None
 
+    def tell(self, do: str, **what: Any) -> None:
+        """Tell the robot something, and wait for no answer."""
+        self._write(json.dumps({"do": do, **what}))
+
     def stop(self, why: str) -> None:
         """Stop the robot now; it waits behind nothing, and latches until `release`."""
-        self.ask("stop", why=why)
+        self.tell("stop", why=why)
 
     def release(self) -> None:
         """Let the robot move again."""
-        self.ask("release")
+        self.tell("release")
 
     # ------------------------------------------------------------------------- the threads
 

@@ -323,6 +323,19 @@ class LiveWorld:
         """Ask for help on behalf of a person who did not, or could not."""
         self._by_word[person] = self.link.time
 
+    def call_again(self) -> None:
+        """Say and show the last number once more.
+
+        Raises:
+            DeviceError: it could not be said.
+        """
+        if self.called:
+            label = self.activity.deck.label(self.called[-1])
+            before = tuple(
+                self.activity.deck.label(n) for n in self.called[-2 : -LAST_CALLS - 2 : -1]
+            )
+            self._do("perform", text=label, picture=Picture(label, label, before)._asdict())
+
     def void_call(self) -> int | None:
         """Take the last call back: its number counts as not called, and comes again later."""
         if not self.called:

@@ -168,7 +168,8 @@ class BenchedWorld(LiveWorld):
         if not self.over:
             self._let_faults_come(action)
         outcome = super().execute(action)
-        self._note_place()
+        if action.behaviour.effect in DRIVES and outcome.completed:
+            self._note_place()
         return outcome
 
     def _let_faults_come(self, action: Action) -> None:
@@ -227,7 +228,7 @@ class BenchedWorld(LiveWorld):
         self.score.reads["right" if same else "wrong"] += 1
 
     def _note_place(self) -> None:
-        """Note how far off the robot believes to be, while it stands."""
+        """Note how far off the robot believes to be, now that it has arrived."""
         if not self.link.setup.stepped:
             return
         x, y, _ = self.truth()["pose"]

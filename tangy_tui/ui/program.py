@@ -177,7 +177,7 @@ class Program(SoundingApp):
             return
         if not await settle_conflicts(self, self.house, "let Tangy learn"):
             return
-        policy = await self._in_thread("Tangy is learning ...", lambda: learn(self.house))
+        policy = await self.in_thread("Tangy is learning ...", lambda: learn(self.house))
         if policy is not None:
             await self._open_policy(policy)
 
@@ -228,7 +228,7 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.drill import DrillScreen
 
         house = self.house
-        made = await self._in_thread(
+        made = await self.in_thread(
             "Tangy is preparing the drill ...",
             lambda: Drill.of(
                 house.activity,
@@ -257,7 +257,7 @@ class Program(SoundingApp):
         wanted = await choose_two(self, house, first)
         if len(wanted) < 2:
             return
-        found = await self._in_thread(
+        found = await self.in_thread(
             "Tangy is recalling both ...",
             lambda: [find_policy(house.store, house.activity, one) for one in wanted],
         )
@@ -310,7 +310,7 @@ class Program(SoundingApp):
     async def _load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""
         house = self.house
-        loaded = await self._in_thread(
+        loaded = await self.in_thread(
             "Tangy is recalling what it learnt ...",
             lambda: policies.load_policy(house.store, house.activity, wanted),
         )
@@ -336,7 +336,7 @@ class Program(SoundingApp):
 
         await self.push_screen_wait(MessageDialog(text, title=title))
 
-    async def _in_thread(self, what: str, work: Callable[[], T]) -> T | None:
+    async def in_thread(self, what: str, work: Callable[[], T]) -> T | None:
         """Do slow work beside the screen; None if it failed for a reason that was shown."""
         if self._busy:
             return None
@@ -388,7 +388,7 @@ class Program(SoundingApp):
             )
             if not complete:
                 return
-        policy = await self._in_thread("Tangy is learning ...", lambda: learn(house))
+        policy = await self.in_thread("Tangy is learning ...", lambda: learn(house))
         if policy is None:
             return
         await self._open_policy(policy, leave_after=6.0)

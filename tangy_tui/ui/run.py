@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_tui.house import House
 from tangy_tui.ui.app import run_app
+from tangy_tui.ui.live_games import Opening, play_live
 from tangy_tui.ui.program import Program, Start
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
@@ -14,6 +15,7 @@ from tangy_tui.ui.writer import outlive_terminal
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors
     from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.speech.ears import Ears
 
 
@@ -84,6 +86,25 @@ def run_playing(
         sensors=sensors,
         live=sensors is not None,
     )
+
+
+def run_live(
+    house: House,
+    opening: Opening,
+    policy: Policy,
+    *,
+    games: int,
+    seed: int,
+    teacher: str,
+    ascii_only: bool,
+) -> int:
+    """Switch the robot on, play on the live screen, and end with it; return the exit status."""
+
+    async def start(program: Program) -> None:
+        await play_live(program, opening, policy, games=games, seed=seed, teacher=teacher)
+        program.leave()
+
+    return _run(house, start, ascii_only)
 
 
 def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_only: bool) -> int:

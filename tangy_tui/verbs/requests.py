@@ -55,7 +55,7 @@ def requests(
 
     async def run() -> dict[str, Any]:
         opened = open_requests(
-            source, load_room(room), [person.id for person in people], corners=_corners(table)
+            source, load_room(room), [person.id for person in people], corners=read_corners(table)
         )
         rows: list[dict[str, Any]] = []
         opened.tell = lambda sentence: print(f"tangy: {sentence}", file=sys.stderr, flush=True)
@@ -100,7 +100,7 @@ def _row(ask: Ask, began: float) -> dict[str, Any]:
     return {"seat": ask.seat, "person": ask.person, "since": since, "sure": round(ask.sure, 2)}
 
 
-def _corners(text: str) -> list[tuple[float, float]]:
+def read_corners(text: str) -> list[tuple[float, float]]:
     try:
         numbers = [float(word) for word in text.split(",")] if text else []
     except ValueError:

@@ -230,7 +230,7 @@ class PlayScreen(PlayAsking):
         """Play one game, or the rest of one that was held."""
         supervision = self._supervision
         if supervision.over:
-            self._tell(supervision.begin())
+            self._tell(await self._begin_game())
         owed = 0.0  # s of the game that are to pass after what is done against a fault
         while not supervision.over:
             await self._going.wait()
@@ -247,8 +247,10 @@ class PlayScreen(PlayAsking):
             if self._single:
                 self._single = False
                 self._going.clear()
+            if not await self._may_step():
+                continue
             before = supervision.seconds
-            events, rest = supervision.step(), list[Event]()
+            events, rest = await self._step(), list[Event]()
             if not self._skipping and self._going.is_set():
                 events, rest = self._faults.parts(events)
             self._tell(events)
@@ -267,6 +269,16 @@ class PlayScreen(PlayAsking):
                 self._faults.done()
                 self._tell(rest)
         self._skipping = False
+
+    async def _begin_game(self) -> list[Event]:
+        return self._supervision.begin()
+
+    async def _may_step(self) -> bool:
+        """Say whether the next behaviour may be done now."""
+        return True
+
+    async def _step(self) -> list[Event]:
+        return self._supervision.step()
 
     def _stand_still(self, reason: str) -> None:
         """Do nothing more, after a failure, until somebody lets it try again."""

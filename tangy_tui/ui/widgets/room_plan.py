@@ -117,6 +117,13 @@ class Grid:
         column = self.column(point.x) - SPRITE_WIDTH // 2
         return min(plan.width - SPRITE_WIDTH, max(0, column)), row
 
+    def floor(self, point: Point) -> tuple[int, int]:
+        """Return column and row of a place on the floor, as the middle of the robot is there."""
+        plan = self._plan
+        share = min(1.0, max(0.0, (point.y - self._top) / self._depth))
+        row = plan.floor_row + round(share * (plan.floor - plan.sprite)) + plan.sprite // 2
+        return self.column(point.x), row
+
 
 class Line:
     """One line of cells to place pieces of text on, later ones over earlier ones."""

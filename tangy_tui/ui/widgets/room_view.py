@@ -29,6 +29,9 @@ from tangy_tui.ui.widgets.rows import Row, draw
 
 FRAME_SECONDS = 0.1
 
+Mark = tuple[Point, str, str]
+"""Something on the floor: where, the character that it is drawn with, and the ink."""
+
 EMPTY = Scene(FRONT, (), {}, (), None)
 
 
@@ -97,6 +100,7 @@ class RoomView(Widget):
         self._seen = self._from = self._to = self._at
         self._going: str | None = None
         self._held = False
+        self._marks: dict[tuple[int, int], tuple[str, str]] = {}
         self._share = 0.0
         self._seconds = 0.0
         self._last = 0.0
@@ -141,6 +145,21 @@ class RoomView(Widget):
         """Put the robot in a place at once, without walking."""
         self._halt()
         self._at = self._stand(place)
+        self._draw_again()
+
+    def track(self, at: Point, heading: str, marks: Sequence[Mark]) -> None:
+        """Draw the robot where it believes to be, and what it knows of the floor round it.
+
+        Args:
+            heading: an arrow, "" while it stands.
+            marks: points in metres with a character and an ink each, later ones over earlier ones.
+        """
+        self._halt()
+        self._at, self._heading = at, heading
+        self._marks = {}
+        if self._grid is not None:
+            for point, character, ink in marks:
+                self._marks[self._grid.floor(point)] = (character, ink)
         self._draw_again()
 
     def say(self, speech: str) -> None:
@@ -297,7 +316,7 @@ class RoomView(Widget):
             self._scene,
             speech=self._speech,
             label=self._label,
-            robot=self._sprite_at[0] if self._going is None else None,
+            robot=self._sprite_at[0] if self._going is None and not self._heading else None,
         )
         width = self.size.width
         changed: list[Region] = []
@@ -315,6 +334,11 @@ class RoomView(Widget):
         if y >= len(self._base):
             return Line(self._plan.width)
         line = self._base[y]
+        marked = [(x, mark) for (x, row), mark in self._marks.items() if row == y]
+        if marked:
+            line = line.copy()
+            for x, (character, ink) in marked:
+                line.put(x, character, ink)
         x, top = self._sprite_at
         if not top <= y < top + self._plan.sprite:
             return line

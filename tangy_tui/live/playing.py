@@ -1,0 +1,97 @@
+"""Live games without a screen: played to their end by scripted people, and added up."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.world import LiveWorld
+from tangy_tui.interaction.facilitation import Acted, GameEnded
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.monitoring.fault import fault_documents
+from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+
+
+class LiveGames:
+    """Games that were played live, and what they add up to."""
+
+    def __init__(self, house: House, supervision: Supervision) -> None:
+        """Begin to count."""
+        self.tally = Tally()
+        self.faults: list[dict[str, Any]] = []
+        self.absent: dict[str, int] = {}
+        self.seconds = 0.0
+        """How long the games took in the robot's time."""
+        self.took = 0.0
+        self._house = house
+        self._supervision = supervision
+
+    def play(
+        self,
+        games: Iterable[int],
+        *,
+        expert: bool,
+        tell: Callable[[list[Event]], None] = lambda _: None,
+    ) -> None:
+        """Play games, one after another.
+
+        Args:
+            games: as many as it gives.
+            expert: staff are there to clear what halts the robot.
+            tell: is told what happens.
+        """
+        for _ in games:
+            began = time.monotonic()
+            self._play(expert, tell)
+            self.took += time.monotonic() - began
+
+    def _play(self, expert: bool, tell: Callable[[list[Event]], None]) -> None:
+        game, world = self._supervision, self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        events = game.begin()
+        self.tally.add(events)
+        tell(events)
+        since = world.link.time
+        stopped = None
+        while not game.over:
+            events = go_on_by_script(game, expert=expert)
+            self.tally.add(events)
+            stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), stopped)
+            tell(events)
+        self.seconds += world.link.time - since
+        self.faults += fault_documents(game.faults, stopped)
+        if isinstance(world, BenchedWorld):
+            for kind in world.still_to_come:
+                self.absent[kind] = self.absent.get(kind, 0) + 1
+
+    def document(self) -> dict[str, Any]:
+        """Return what `tangy live --json` prints."""
+        world = self._supervision.world
+        beliefs = self._supervision.persuasion.beliefs
+        found = self.tally.to_json(self._house.activity.situations, beliefs, self.faults)
+        if isinstance(world, BenchedWorld):
+            found |= world.score.to_json()
+            found["real_time_factor"] = round(self.seconds / self.took, 2) if self.took else None
+            if world.injections:
+                found["did_not_come_about"] = self.absent
+        return found
+
+
+def told(house: House, event: Event) -> str:
+    """Say in one line what happened, for whoever waits; "" of what needs no line."""
+    match event:
+        case Acted(number=number, action=action, outcome=outcome, speech=speech):
+            whom = "" if action.target is None else f" ({house.name(action.target)})"
+            done = "" if outcome.completed else "  not carried out"
+            return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
+        case GameEnded(steps=steps, stopped=None):
+            return f"The game was played to its end in {steps} steps."
+        case GameEnded(stopped=str(why)):
+            return f"The game was stopped: {why}"
+    return ""

@@ -1,0 +1,261 @@
+"""The live screen: a game among people, by a robot that is there, with staff who can step in.
+
+Behaviours take their time, so they are carried out beside the screen; nothing else touches the
+supervision meanwhile. What must not wait (a STOP, who asks, where the robot is) goes to the robot
+itself.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from math import pi
+from typing import ClassVar
+
+from textual.binding import BindingType
+
+from tangy_hw.world import LiveWorld
+from tangy_profiles.errors import TangyError
+from tangy_profiles.room import Point
+from tangy_profiles.state import FRONT
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Decision
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.driving import DrivingDialog
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.panels import KeyLine
+from tangy_tui.ui.screens import live_keys
+from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
+from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.room_view import Mark, RoomView
+
+TRACK_SECONDS = 0.2
+"""Between two pictures of where the robot is."""
+SURE = 0.9
+"""The share of votes from which a decision is not asked about where Tangy asks when unsure."""
+ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
+TOOK_OVER = "You say what Tangy does next."
+
+
+class LiveScreen(PlayScreen):
+    """Games among people. Dismissed with what they added up to."""
+
+    HELP = live_keys.HELP
+    BINDINGS: ClassVar[list[BindingType]] = live_keys.BINDINGS
+
+    def __init__(
+        self,
+        house: House,
+        supervision: Supervision,
+        world: LiveWorld,
+        *,
+        games: int = 1,
+        teacher: str = "",
+    ) -> None:
+        """Make the screen for games in a world that is there."""
+        super().__init__(house, supervision, games=games, speed=1, teacher=teacher)
+        self._world = world
+        self._autonomy = AUTONOMY[0]
+        self._taking_over = False
+        self._working = False
+
+    def on_mount(self) -> None:
+        """Show what is known, begin, and follow the robot."""
+        super().on_mount()
+        self.set_interval(TRACK_SECONDS, self._track)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave out what cannot be done among people."""
+        return action not in NOT_LIVE and super().check_action(action, parameters)
+
+    # ---------------------------------------------------------------------------------- game
+
+    async def _begin_game(self) -> list[Event]:
+        return await self._beside(self._supervision.begin)
+
+    async def _step(self) -> list[Event]:
+        return await self._beside(self._supervision.step)
+
+    async def _beside(self, work: object) -> list[Event]:
+        """Do something that takes its time, while the screen lives."""
+        self._working = self._faults.busy = True
+        self._show_status()
+        try:
+            events: list[Event] = await asyncio.to_thread(work)  # type: ignore[arg-type]
+            return events
+        finally:
+            self._working = False
+            self._faults.busy = self._learning
+
+    async def _wait(self, seconds: float) -> None:
+        """Wait for nothing: what was done has taken its time."""
+        self._left = 0.0
+
+    async def _may_step(self) -> bool:
+        """Ask first, where the dial says so, or let staff say what is done."""
+        supervision = self._supervision
+        if supervision.question is not None or supervision.waiting or supervision.over:
+            return True
+        state = self._world.observe()
+        decision = supervision.policy.decide(state.situation)
+        if self._taking_over:
+            self._taking_over = False
+            supervision.game.ask(TOOK_OVER, "Say what it does.", "took over")
+            if supervision.question is not None:
+                await self._ask(supervision.question)
+            return False
+        if not decision.sure or not self._asks_about(decision):
+            return True
+        return await self._confirmed(decision, state.attended)
+
+    def _asks_about(self, decision: Decision) -> bool:
+        unsure = self._autonomy == UNSURE and decision.share < SURE
+        return self._autonomy == EVERY or unsure
+
+    async def _confirmed(self, decision: Decision, attended: str | None) -> bool:
+        """Ask whether the next behaviour is to be done; if not, ask what else."""
+        behaviour = self._house.activity.behaviours[decision.behaviour]
+        whom = f" ({self._house.name(attended)})" if behaviour.attends and attended else ""
+        dialog = ConfirmDialog(
+            f"Next: {behaviour.name}{whom}?",
+            f"{decision.share:.0%} of the votes. i turns this off.",
+            yes="do it",
+            no="say what else",
+        )
+        does = await self.app.push_screen_wait(dialog)
+        if not does and not self._stopped:
+            self._taking_over = True
+        return does and self._going.is_set()
+
+    # ------------------------------------------------------------------------- staff's keys
+
+    def on_stop(self, message: Stop) -> None:
+        """Stop the robot itself, before anything is drawn."""
+        self._world.link.stop("staff stopped it")
+        super().on_stop(message)
+
+    def action_pause(self) -> None:
+        """Pause, or go on; after a STOP this is what lets the robot move again."""
+        if self._stopped and self._supervision.halted is None:
+            self._world.link.release()
+        super().action_pause()
+
+    def action_autonomy(self) -> None:
+        """Turn the dial of how much Tangy does of itself."""
+        self._autonomy = AUTONOMY[(AUTONOMY.index(self._autonomy) + 1) % len(AUTONOMY)]
+        self._tell_now(f"Tangy {_acts(self._autonomy)}.", "dim")
+        self._show_status()
+
+    def action_take_over(self) -> None:
+        """Let staff say what is done next, as soon as what is done now is over."""
+        if self._refused() or self._supervision.over:
+            return
+        self._taking_over = True
+        self._tell_now("When this is done, you say what Tangy does next.", "dim")
+        self._nudge.set()
+
+    def action_drive(self) -> None:
+        """Let staff drive; the game waits meanwhile."""
+        if self._working:
+            self._tell_now("Not in the middle of what it does: p pauses, ctrl+x stops it.", "warn")
+        elif not self._refused():
+            self.run_worker(self._drive(), name="drive", group="drive")
+
+    async def _drive(self) -> None:
+        going = self._going.is_set()
+        self._going.clear()
+        link = self._world.link
+        await self.app.push_screen_wait(
+            DrivingDialog(
+                lambda twist: link.tell("drive", forward=twist.forward, turn=twist.turn),
+                lambda: link.state.hazard,
+            )
+        )
+        self._faults.note("staff drove the robot by keys")
+        if going and not self._stopped:
+            self._going.set()
+
+    def action_call_again(self) -> None:
+        """Say the last number once more."""
+        if self._working or self._refused():
+            self._tell_now("Not now: Tangy is busy.", "dim")
+        elif not self._world.called:
+            self._tell_now("No number was called yet.", "dim")
+        else:
+            self.run_worker(self._call_again(), name="call", group="call")
+
+    async def _call_again(self) -> None:
+        await self._tried(self._world.call_again)
+
+    def action_void_call(self) -> None:
+        """Take the last call back."""
+        if self._working:
+            self._tell_now("Not now: Tangy is busy.", "dim")
+        elif (number := self._world.void_call()) is None:
+            self._tell_now("No number was called yet.", "dim")
+        else:
+            label = self._house.activity.deck.label(number)
+            self._faults.note(f"staff took a call back: {label}")
+            self._tell_now(f"{label} counts as not called; say so to the group.", "warn")
+            self.query_one(RoomView).show(self._world.scene())
+
+    def action_ask_for(self) -> None:
+        """Ask for help for somebody."""
+        if not self._supervision.over:
+            self.run_worker(self._ask_for(), name="ask", group="ask")
+
+    async def _ask_for(self) -> None:
+        options = [Option(person.id, person.name) for person in self._house.people]
+        person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
+        if person is not None:
+            self._world.ask_for(person)
+            name = self._house.name(person)
+            self._faults.note(f"staff asked for help for {person}")
+            self._tell_now(f"{name} asks for help.", "dim")
+
+    async def _tried(self, work: object) -> None:
+        self._working = self._faults.busy = True
+        try:
+            await asyncio.to_thread(work)  # type: ignore[arg-type]
+        except TangyError as error:
+            self._tell_now(str(error), "warn")
+        finally:
+            self._working = False
+            self._faults.busy = self._learning
+
+    # -------------------------------------------------------------------------------- picture
+
+    def _track(self) -> None:
+        """Draw where the robot is, and what it knows of the floor."""
+        room = self.query_one(RoomView)
+        state = self._world.link.state
+        if not state.number:
+            return
+        marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
+        marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
+        marks += [(Point(x, y), "*", "warn") for x, y in state.obstacles]
+        heading = state.pose.heading
+        arrow = ARROWS[round(heading / (pi / 2)) % 4]
+        at = Point(state.pose.x, state.pose.y)
+        room.track(at, arrow if state.going else "", marks)
+
+    def _show_status(self) -> None:
+        super()._show_status()
+        going, over = self._going.is_set(), self._supervision.over
+        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=over))
+
+    def _note(self) -> str:
+        """Say what the robot is doing, or what the keys would do next."""
+        if self._stopped or self._learning or self._supervision.over or not self._going.is_set():
+            return super()._note()
+        going = self._world.link.state.going
+        if going:
+            return f"drives to {'the front' if going == FRONT else self._house.name(going)}"
+        return self._autonomy if self._autonomy != AUTONOMY[0] else ""
+
+
+def _acts(autonomy: str) -> str:
+    return {EVERY: "asks before everything it does", UNSURE: "asks where it is less sure"}.get(
+        autonomy, "does all of it by itself"
+    )

@@ -1,0 +1,225 @@
+"""`tangy live`: a real robot runs real games, or the bench stands in for it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import (
+    ActivityName,
+    Ascii,
+    Data,
+    Games,
+    Json,
+    Seed,
+    Users,
+    full_screen,
+    open_house,
+    print_json,
+    say_notices,
+)
+from tangy_tui.verbs.sensors import Cameras, RobotName
+
+if TYPE_CHECKING:
+    from tangy_hw.world import LiveWorld
+    from tangy_profiles.faults import FaultBook
+    from tangy_tui.house import House
+    from tangy_tui.monitoring.supervision import Event, Supervision
+
+PACE = 30.0  # as in tangy_hw.world, which is not to be imported here
+SCRIPTED = "scripted"
+LARGEST_LIST = 100_000  # bytes of a list of faults
+
+
+def live(
+    robot: RobotName = "tangy",
+    bench: Annotated[
+        bool,
+        typer.Option("--bench", help="Without a robot: its devices are simulated, and its people."),
+    ] = False,
+    games: Games = 1,
+    users: Users = 4,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
+    ] = False,
+    activity: ActivityName = "bingo",
+    policy: Annotated[
+        str, typer.Option(help="The policy to play by: a name or a digest; default the last.")
+    ] = "",
+    inject: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KIND[@STEP|~P]|FILE",
+            help="Bring about a fault on the bench, as `tangy play --inject` does, or those that "
+            "stand in a file, one on each line. Repeatable.",
+        ),
+    ] = None,
+    teacher: Annotated[
+        str | None, typer.Option(help="Who answers where Tangy asks; 'scripted' knows the game.")
+    ] = None,
+    expert: Annotated[
+        str, typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you.")
+    ] = "",
+    pace: Annotated[
+        float, typer.Option(min=1, max=300, help="Seconds from one call to the next.")
+    ] = PACE,
+    camera: Cameras = None,
+    requests: Annotated[
+        str, typer.Option(help="Where requests come from, as for `tangy requests`.")
+    ] = "",
+    table: Annotated[
+        str, typer.Option(help="The table's corners in the pictures, as for `tangy requests`.")
+    ] = "",
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+    ascii_only: Ascii = False,
+) -> None:
+    """Let Tangy facilitate games with its devices, by the policy it has learnt.
+
+    The robot's profile names its drivers (see the README). With --bench the same drivers speak to
+    simulated devices over their own wires. Devices are watched all the time; what goes wrong is
+    diagnosed, and a critical fault stops the robot until staff clear it.
+    """
+    from tangy_tui.house import teacher_name
+    from tangy_tui.learning.policies import load_policy, need_policy
+    from tangy_tui.monitoring.games import uncleared
+
+    who = plain(teacher or teacher_name())[:40]
+    if expert not in ("", SCRIPTED):
+        raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
+    if inject and not bench:
+        raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
+    faults = tuple(_listed(inject or []))
+    screen = not (headless or as_json) and full_screen()
+    with open_house(data, activity, users, robot=robot) as house:
+        need_policy(house.store, house.activity, policy)
+        learnt, notices = load_policy(house.store, house.activity, policy)
+        left = None if as_json else uncleared(house.store)
+        if left is not None:
+            last = f"The last game ended with a fault that nobody cleared: {left.name}."
+            notices = [*notices, last]
+        say_notices(notices)
+        number = house.game_seed(seed)
+        opening = _opening(house, bench, number, faults, pace, camera, requests, table)
+        if screen:
+            from tangy_tui.ui.run import run_live
+
+            raise typer.Exit(
+                run_live(
+                    house,
+                    opening,
+                    learnt,
+                    games=games,
+                    seed=number,
+                    teacher=who,
+                    ascii_only=ascii_only,
+                )
+            )
+        with opening(bench) as world:
+            asks = who == SCRIPTED
+            supervision = house.supervision(learnt, number, asks=asks, world=world)
+            _play(house, supervision, games, as_json, expert=bool(expert))
+
+
+def _listed(given: list[str]) -> list[str]:
+    """Return the faults that were asked for: those of files line by line.
+
+    Raises:
+        TangyError: a file cannot be read.
+    """
+    found: list[str] = []
+    for text in given:
+        path = Path(text)
+        if not path.is_file():
+            found.append(text)
+            continue
+        try:
+            lines = path.read_bytes()[:LARGEST_LIST].decode().splitlines()
+        except (OSError, ValueError):
+            raise TangyError(plain(f"--inject {text}: is no list of faults.")) from None
+        found += [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    return found
+
+
+def _opening(
+    house: House,
+    bench: bool,
+    seed: int,
+    faults: tuple[str, ...],
+    pace: float,
+    camera: list[str] | None,
+    requests: str,
+    table: str,
+) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
+    """Return what opens the robot, or its bench (in a hurry, if that is asked for)."""
+    from tangy_profiles.fault_file import load_faults
+    from tangy_sim.injection import read_injection
+    from tangy_tui.live.opening import open_bench, open_robot
+
+    book: FaultBook = load_faults(house.robot)
+    to_come = [read_injection(text) for text in faults]
+
+    def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
+        if bench:
+            return open_bench(
+                house, seed=seed, stepped=stepped, pace=pace, book=book, injections=to_come
+            )
+        return open_robot(
+            house,
+            seed=seed,
+            pace=pace,
+            book=book,
+            cameras=camera or (),
+            requests=requests,
+            corners=_corners(table),
+        )
+
+    return opening
+
+
+def _corners(text: str) -> tuple[tuple[float, float], ...]:
+    if not text:
+        return ()
+    from tangy_tui.verbs.requests import read_corners
+
+    return tuple(read_corners(text))
+
+
+def _play(
+    house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
+) -> None:
+    from tangy_tui.live.playing import LiveGames, told
+    from tangy_tui.ui import reports
+
+    played = LiveGames(house, supervision)
+
+    def tell(events: list[Event]) -> None:
+        for event in events:
+            if not as_json and (line := told(house, event)):
+                print(plain(line), flush=True)
+
+    bar = reports.progress(range(games), "Playing", quiet=as_json or games < 2)
+    played.play(bar, expert=expert, tell=tell)
+    document = played.document()
+    if as_json:
+        print_json(document)
+        return
+    reports.print_tally(house, played.tally, supervision.persuasion.beliefs)
+    for name in ("reads", "identities"):
+        if name in document:
+            counts = ", ".join(f"{count} {word}" for word, count in document[name].items())
+            print(f"{name}: {counts}")
+    if "pose_error_m" in document:
+        off = document["pose_error_m"]
+        print(f"pose error: median {off['median']} m, p95 {off['p95']} m")
+        print(f"real-time factor: {document['real_time_factor']}")
+    if document["faults"]:
+        print(f"{len(document['faults'])} faults: `tangy log report last` tells.", file=sys.stderr)
