@@ -3,22 +3,28 @@
     apt-get install --no-install-recommends ros-base python3-rospy python3-sensor-msgs \
         python3-nav-msgs python3-geometry-msgs python3-diagnostic-msgs python3-trajectory-msgs \
         python3-move-base-msgs python3-actionlib
+
+And our server against a client that others wrote, PyPI's roslibpy.
 """
 
 from __future__ import annotations
 
 import asyncio
+import importlib.util
+import json
 import math
 import os
 import shutil
 import signal
 import socket
 import subprocess
+import sys
 import time
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 import websockets
@@ -33,6 +39,7 @@ from tangy_hw.drivers.ros_voice import RosVoice
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
+from tangy_sim.wires.rosbridge_server import RosbridgeServer
 
 HERE = Path(__file__).parent
 PYTHON = "/usr/bin/python3"
@@ -279,3 +286,41 @@ async def test_move_base_drives_to_a_goal_gives_one_up_and_finds_no_way(ros: Ros
         assert navigator.reading().facts == {"path": "none"}
         await navigator.close()
         await base.close()
+
+
+async def test_a_client_that_others_wrote_understands_our_server() -> None:
+    if importlib.util.find_spec("roslibpy") is None:
+        pytest.skip("roslibpy is not installed")
+
+    async def add(arguments: Mapping[str, Any]) -> dict[str, Any]:
+        return {"sum": arguments["a"] + arguments["b"]}
+
+    async def drives(_: Any, feedback: Callable[[Any], None]) -> dict[str, Any]:
+        feedback({"left": 1})
+        return {"there": True}
+
+    async def publish() -> None:
+        while True:
+            server.publish("/odom", "nav_msgs/Odometry", {"at": [1.5, math.inf]})
+            await asyncio.sleep(0.05)
+
+    server, driven = RosbridgeServer(), list[Any]()
+    server.on_message("/cmd_vel", driven.append)
+    server.provide("/add", add)
+    server.provide_action("/navigate_to_pose", drives)
+    await server.start()
+    publishing = asyncio.create_task(publish())
+    client = await asyncio.create_subprocess_exec(
+        sys.executable, str(HERE / "ros_client.py"), str(server.port), stdout=subprocess.PIPE
+    )
+    said, _ = await asyncio.wait_for(client.communicate(), 60)
+    publishing.cancel()
+    await server.close()
+    assert json.loads(said) == {
+        "odometry": {"at": [1.5, None]},
+        "sum": 3,
+        "refused": "service /none does not exist",
+        "feedback": [{"left": 1}],
+        "result": {"status": 4, "values": {"there": True}},
+    }
+    assert driven == [{"linear": {"x": 0.5}, "angular": {"z": 0.1}}]

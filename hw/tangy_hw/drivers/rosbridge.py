@@ -75,7 +75,6 @@ class Rosbridge:
         self._tell = tell
         self._told: set[str] = set()
         self._task: asyncio.Task[None] | None = None
-        self._socket: ClientConnection | None = None
         self._connected = asyncio.Event()
         self._heard: float | None = None
         self._began = clock()
@@ -260,7 +259,6 @@ class Rosbridge:
         self._urgent.clear()  # what was meant before a loss is not meant after it
         self._queue.clear()
         self._fragments = Fragments()
-        self._socket = socket
         self._connected.set()
         for does in self._on_connect:
             does()
@@ -297,11 +295,12 @@ class Rosbridge:
             await self._idle.wait()
 
     def _lose(self, reason: str) -> None:
-        if self._connected.is_set():
+        if self._task is None:
+            pass  # it was closed here
+        elif self._connected.is_set():
             self._tell(plain(f"The link to {self.url} was lost: {reason}"))
         else:
             self.tell_once(f"There is no link to {self.url}: {reason}")
-        self._socket = None
         self._connected.clear()
         self._waiting.lose(f"the link was lost: {reason}")
 
