@@ -70,6 +70,12 @@ async def ask(screen: WebChestScreen, method: str, target: str, more: bytes = b"
     return answer
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let pages be slow that share their processor with other tests."""
+    monkeypatch.setattr(chest, "SHOW_SECONDS", PATIENCE)
+
+
 @pytest.fixture
 async def screen() -> AsyncIterator[WebChestScreen]:
     made = WebChestScreen(port=0)
@@ -168,8 +174,7 @@ class TestReading:
         monkeypatch.setattr(chest, "ALIVE_SECONDS", 0.02)
         screen._stale_after = 0.15
         (page,) = await opened(screen, "one")
-        await until(lambda: page.alive > 10)
-        assert screen.reading().state == "OK"
+        await until(lambda: page.alive > 10 and screen.reading().state == "OK")
         page.answers = False
         await until(lambda: screen.reading().state == "STALE")
         page.answers = True

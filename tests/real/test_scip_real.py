@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import shutil
 import subprocess
 from collections.abc import AsyncIterator
@@ -177,6 +178,32 @@ async def test_the_driver_reads_over_a_serial_cable_and_after_it_was_pulled_out(
         async with asyncio.timeout(PATIENCE):
             await cable.wait()
         await until(lambda: laser.reading().state == "STALE" and not server.measuring)
+    await laser.close()
+    await server.close()
+
+
+async def test_the_driver_takes_over_from_who_left_a_scanner_measuring() -> None:
+    pytest.importorskip("serial", reason="pyserial is not installed")
+    server = ScipServer(URG)
+    path = server.serve_serial()
+    # Whoever had it before was killed in the middle of a command, while scans kept coming.
+    before = os.open(path, os.O_RDWR | os.O_NOCTTY)
+    os.write(before, b"BM\nMD0000035901000\nVV;half a comm")
+    async with asyncio.timeout(PATIENCE):
+        await server.somebody()
+    for turn in range(3):
+        server.send(SEEN * 0.5, 100 * turn)
+    laser = ScipLaser(path)
+    await laser.start()
+    await until(lambda: bool(laser.about) and server.measuring == 1)
+    async with asyncio.timeout(PATIENCE):
+        while laser.scan is None:
+            server.send(SEEN, 1000)
+            await asyncio.sleep(0.01)
+    assert (np.isfinite(laser.scan.value.ranges) == REACHED).all()
+    assert np.abs(laser.scan.value.ranges - SEEN)[REACHED].max() <= 0.0005
+    assert laser.connected == 1
+    os.close(before)
     await laser.close()
     await server.close()
 

@@ -194,9 +194,13 @@ class ScipLaser:
 
     async def _begin(self) -> None:
         """Bring the scanner to rest, ask what it is, light its laser."""
+        if "://" not in self.address:
+            # Old ones wake up with SCIP 1.1, in which they answer nothing else as we read it;
+            # newer ones do not know this command, and say so.
+            with contextlib.suppress(DeviceError):
+                await self._ask(b"SCIP2.0")
         # It may be measuring still for whoever had it before, or hold half a command of theirs.
         await self._ask(b"QT", tries=2)
-        await self._ask(b"SCIP2.0", also=("0", "0E", "0F", "0J"))
         self.optics = optics(named((await self._ask(b"PP")).lines))
         self.about = MappingProxyType(dict(named((await self._ask(b"VV")).lines)))
         await self._ask(b"BM", also=("02",))
