@@ -96,7 +96,9 @@ def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | Non
     for _ in errors(localisation, way[first : first + 60]):
         pass
     moved = [
-        Moment(compose(last.odometry, between(way[then].odometry, one.odometry)), one.scan, one.truth)
+        Moment(
+            compose(last.odometry, between(way[then].odometry, one.odometry)), one.scan, one.truth
+        )
         for one in way[then : then + 420]
     ]
     right = 0

@@ -11,7 +11,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from tangy_hw.devices import Pose, Scan, Twist
-from tangy_hw.navigation.occupancy import LEG, table_legs
+from tangy_hw.navigation.occupancy import seat_legs, table_legs
 from tangy_hw.navigation.poses import compose
 from tangy_profiles.room import Room
 
@@ -34,9 +34,10 @@ def sides(*boxes: tuple[float, float, float, float]) -> Segments:
 
 
 def room_sides(room: Room, *more: tuple[float, float, float, float]) -> Segments:
-    """Return the walls of a room, the legs of its table, and more boxes."""
-    half = LEG / 2
-    legs = [(p.x - half, p.y - half, p.x + half, p.y + half) for p in table_legs(room)]
+    """Return the walls of a room, the legs of its table and of all that sit, and more boxes."""
+    half = 0.03
+    stand = [*table_legs(room), *(leg for seat in room.seats for leg in seat_legs(room, seat))]
+    legs = [(p.x - half, p.y - half, p.x + half, p.y + half) for p in stand]
     return sides((0, 0, room.width, room.depth), *legs, *more)
 
 

@@ -2,30 +2,51 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt, label
 
 from tangy_hw.devices import Pose, Scan
-from tangy_hw.navigation.occupancy import FREE, OccupancyMap
-from tangy_hw.navigation.poses import HERE, Floats, endpoints
+from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
+from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 
 Field: TypeAlias = NDArray[np.float32]
 
 BEAMS = 60
+NEAREST = 0.15  # metres: what is nearer hangs on the robot
+COVERED = 0.4  # share of beams that end that near
 SIGMA = 0.12  # metres by which a beam's end and the wall it hit are apart, map and pose included
-FLOOR = (
-    0.1  # what a beam counts at least that ends where the map has nothing: somebody stands there
-)
+FLOOR = 0.1  # what a beam counts that ends where nothing is on the map: somebody may stand there
+SHORT = 0.3  # metres by which a beam goes past a wall, or stops before one
+MOST_STEPS = 60  # along a beam
+WALL = 15  # cells that hang together and make a wall; chairs have fewer, and are moved about
 
 
 def thin(scan: Scan, farthest: float, laser: Pose = HERE, beams: int = BEAMS) -> Floats:
     """Return the ends of some beams (n, 2) spread evenly over those that met something."""
-    points = endpoints(scan, farthest, laser)
+    points = endpoints(scan, farthest, laser, NEAREST)
     if len(points) <= beams:
         return points
     return points[np.linspace(0, len(points) - 1, beams).round().astype(np.intp)]
+
+
+def covered(scan: Scan) -> bool:
+    """Say whether so much hangs right before the scanner that it tells nothing about the room."""
+    return bool((scan.ranges < NEAREST).mean() > COVERED)
+
+
+class Evidence(NamedTuple):
+    """What beams say about one pose.
+
+    `score` is how well those fit that something on the map explains or contradicts; `share` is how
+    many of all beams those are. The others end before anything on the map: something is in the way,
+    which says nothing about where the robot is.
+    """
+
+    score: float
+    share: float
 
 
 class LikelihoodField:
@@ -39,7 +60,8 @@ class LikelihoodField:
         self._field = np.pad(inner, 1, constant_values=np.float32(FLOOR))
         self._flat: Field = self._field.ravel()
         self._width = self._field.shape[1]
-        self._free = np.pad(map_.cells == FREE, 1, constant_values=False)
+        self._free = np.pad(map_.cells == FREE, 1, constant_values=False).ravel()
+        self._room = np.pad(_room(map_), 1, mode="edge").ravel()
 
     def scores(self, poses: Floats, points: Floats) -> Floats:
         """Return how well beams fit at each of the poses (m, 3): the mean over them, 0 to 1.
@@ -69,10 +91,56 @@ class LikelihoodField:
         index = row.astype(np.int32) * np.int32(self._width) + column.astype(np.int32)
         return np.asarray(self._flat.take(index))
 
+    def evidence(self, pose: Pose, points: Floats) -> Evidence:
+        """Return what beams (n, 2: their ends, in the robot's frame) say about a pose."""
+        if not len(points):
+            return Evidence(0.0, 0.0)
+        fits = self.beams(np.asarray([pose]), points)[0]
+        # a beam that fits nowhere and went through a wall speaks against the pose
+        through = self._crosses(pose, points)
+        through &= fits < 0.5
+        tells = through | (fits > 2 * FLOOR)
+        if not tells.any():
+            return Evidence(0.0, 0.0)
+        return Evidence(float(np.where(through, FLOOR, fits)[tells].mean()), float(tells.mean()))
+
+    def _crosses(self, pose: Pose, points: Floats) -> NDArray[np.bool_]:
+        """Say of each beam whether it went through a wall, in steps as long as none is near."""
+        far = lengths(points)
+        reach = far - SHORT
+        ends = placed(points, pose)
+        unit = (ends - np.array([pose.x, pose.y])) / np.maximum(far, 1e-9)[:, None]
+        gone = np.zeros(len(points))
+        crossed = np.zeros(len(points), dtype=np.bool_)
+        left = np.flatnonzero(reach > 0)
+        for _ in range(MOST_STEPS):
+            if not len(left):
+                break
+            at = unit[left] * gone[left, None] + np.array([pose.x, pose.y])
+            room = self._room[self._index(at)]
+            hit = room < self.map.resolution
+            crossed[left[hit]] = True
+            gone[left] += np.maximum(room, self.map.resolution / 2)
+            left = left[~hit & (gone[left] < reach[left])]
+        return crossed
+
+    def _index(self, points: Floats) -> NDArray[np.intp]:
+        cells = (points - np.array(self.map.origin)) / self.map.resolution + 1
+        rows, columns = self._field.shape
+        column = np.clip(cells[:, 0], 0, columns - 1).astype(np.intp)
+        return np.asarray(np.clip(cells[:, 1], 0, rows - 1).astype(np.intp) * columns + column)
+
     def on_floor(self, poses: Floats) -> NDArray[np.bool_]:
         """Say of each pose (m, 3) whether it lies where the map is free."""
-        rows, columns = self._free.shape
-        column = (poses[:, 0] - self.map.origin[0]) / self.map.resolution + 1
-        row = (poses[:, 1] - self.map.origin[1]) / self.map.resolution + 1
-        column = np.clip(column, 0, columns - 1).astype(np.intp)
-        return np.asarray(self._free[np.clip(row, 0, rows - 1).astype(np.intp), column])
+        return np.asarray(self._free[self._index(poses[:, :2])])
+
+
+def _room(map_: OccupancyMap) -> Field:
+    """Return how far it is to what is occupied, and large enough to stay where it is."""
+    parts, _ = label(map_.cells == OCCUPIED, np.ones((3, 3)))
+    sizes = np.bincount(parts.ravel())
+    sizes[0] = 0
+    walls = (sizes >= WALL)[parts]
+    if not walls.any():
+        return np.full(map_.shape, max(map_.size), dtype=np.float32)
+    return np.asarray(distance_transform_edt(~walls, sampling=map_.resolution), dtype=np.float32)

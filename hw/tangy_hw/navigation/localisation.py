@@ -14,7 +14,7 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.devices import Pose, Scan
-from tangy_hw.navigation.likelihood import LikelihoodField, thin
+from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.particles import (
     MOST,
@@ -28,6 +28,7 @@ from tangy_hw.navigation.particles import (
 from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
 
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
+DOUBT = 0.95  # of the usual fit: below this a scan says little about what is usual
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which the particles are weighed again
 FAST, SLOW = 0.1, 0.002  # shares of a new value in the averages of the fit
 USUAL, BELIEF = (
@@ -39,6 +40,13 @@ START = (0.1, 0.1, 0.05)  # metres, metres, radians: how exactly a start is told
 FARTHEST = 20.0  # metres beyond which beams are not used
 FIRST_GLOBAL = 20_000  # poses that are tried first when nothing is known
 TRIED = 2000  # poses that are tried for each renewal while lost
+GLANCE = 10.0  # the exponent with which the first of all looks judges
+GENTLE = 0.1  # of the sharpness, while several places are possible
+WIDE = 120  # beams that count while several places are possible: few tell them apart
+UNSETTLED, SETTLING = 0.5, 20  # metres of spread, and scans without it until one place is believed
+FEWEST_BEAMS = 10  # that must have met something
+SEEN = 0.2  # share of the beams that something on the map must explain, or contradict
+BLIND = 0.02  # the squared error of the wheels, while only they are known: they do not spin
 BROAD = 0.3  # metres: the width of the field with which new places are looked for
 
 
@@ -97,6 +105,7 @@ class Localisation:
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
         self._fast = self._slow = USUAL
         self._scans = BELIEF
+        self._unsettled = SETTLING if pose is None else 0
         self._odometry = None
         self._sum_up()
 
@@ -119,26 +128,31 @@ class Localisation:
             self._odometry = odometry
         moved = hypot(step.x, step.y) > MOVED or abs(step.heading) > TURNED
         here = compose(self._anchor, step)
-        if len(points) < 10:  # it is blind: only the wheels count
-            if moved:
+        if self._global and len(points):
+            self._look_around(points)
+        evidence = self._field.evidence(here, points)
+        if len(points) < FEWEST_BEAMS or covered(scan) or evidence.share < SEEN:
+            if moved:  # only the wheels count
                 self._odometry = odometry
-                self._particles = move(self._particles, step, self._rng)
+                self._particles = move(self._particles, step, self._rng, BLIND)
                 self._sum_up()
                 here = self._anchor
             return self._told(here)
-        if self._global:
-            self._look_around(points)
-        lost = self._fast < LOST * self._slow
-        if moved or first or lost:
+        renewed = moved or first or self._fast < LOST * self._slow
+        if renewed:
             self._odometry = odometry
             self._particles = move(self._particles, step, self._rng)
-            self._weigh(points)
+            wide = self._unsettled > 0
+            self._weigh(thin(scan, FARTHEST, self._laser, WIDE) if wide else points)
+            self._unsettled = SETTLING if self._spread > UNSETTLED else max(0, self._unsettled - 1)
             here = self._anchor
-        score = float(self._field.scores(np.asarray([here]), points)[0])
-        self._fast += FAST * (score - self._fast)
-        if moved or first or lost:
+            evidence = self._field.evidence(here, points)
+        self._fast += FAST * (evidence.score - self._fast)
+        if renewed:
             self._scans += 1
-            self._slow += max(SLOW, 1 / self._scans) * (score - self._slow)
+            doubtful = self._fast < DOUBT * self._slow  # and so no measure of what is usual
+            share = SLOW if doubtful else max(SLOW, 1 / self._scans)
+            self._slow += share * (evidence.score - self._slow)
             self._renew(points)
         return self._told(here)
 
@@ -146,12 +160,15 @@ class Localisation:
         """Find the places at which a first scan fits, out of very many."""
         self._global = False
         tried = anywhere(self._free, self._map.resolution, FIRST_GLOBAL, self._rng)
-        weights = self._broad.scores(tried, points[::2]) ** (SHARPNESS / 3)
+        weights = self._broad.scores(tried, points) ** GLANCE
         self._particles = resample(tried, weights / weights.sum(), MOST, self._rng)
 
     def _weigh(self, points: Floats) -> None:
         scores = self._field.scores(self._particles, points)
-        weights = np.where(self._field.on_floor(self._particles), scores, 0.1 * scores) ** SHARPNESS
+        scores = np.where(self._field.on_floor(self._particles), scores, 0.1 * scores)
+        # chance decides how near to a place the nearest particle is: do not judge by that at first
+        sharpness = SHARPNESS if not self._unsettled else SHARPNESS * GENTLE
+        weights = scores**sharpness
         total = weights.sum()
         self._weights = weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
         self._sum_up()

@@ -111,6 +111,12 @@ class Navigator:
         self.state = "spinning"
         self._turned, self._turn_to = 0.0, angle
 
+    def replan(self) -> None:
+        """Look for a way to the goal anew, whatever stands in the one it has."""
+        if self.goal is not None and self.state not in ("arrived", "failed"):
+            self._since_plan = AGAIN
+            self._pursuit = None
+
     def cancel(self) -> None:
         """Stand still, and forget the goal."""
         self.state, self.why, self.goal = "idle", "", None

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tangy_hw.devices import Pose, Scan
+from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, wrap
 
 OFF = 0.2  # metres from everything on the map at which a thing is not on it
 RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
 SURE = 3  # scans in which a cell was hit until it counts
-KEPT = 15.0  # seconds after which what is not seen any more is forgotten
+KEPT = 30.0  # seconds after which what is not seen any more is forgotten
 BEHIND = 0.15  # metres by which a beam goes past a thing until that has gone
 
 
@@ -31,7 +32,7 @@ class Obstacles:
         if there.any():
             self._age[there] += dt
             self._clear(pose, scan)
-        points = placed(endpoints(scan, RANGE, self._laser), pose)
+        points = placed(endpoints(scan, RANGE, self._laser, NEAREST), pose)
         rows, columns = self._map.cells_of(points)
         hit = np.zeros(self._map.shape, dtype=np.bool_)
         hit[rows, columns] = True

@@ -20,8 +20,9 @@ FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """What a cell can be, in the numbers of nav_msgs/OccupancyGrid."""
 
 MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors end on the map
-LEG = 0.06  # metres: a table's leg, square
 LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg
+CHAIR, FEET = 0.42, 0.3  # metres between the legs of a chair; from its middle to somebody's feet
+SEAT = 0.3  # metres around a seat that are kept out of
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,12 +106,25 @@ def table_legs(room: Room) -> list[Point]:
     ]
 
 
-def map_of_room(room: Room, resolution: float = 0.05, seats: bool = True) -> OccupancyMap:
+def seat_legs(room: Room, seat: Point) -> list[Point]:
+    """Return where the legs of a chair are, and the feet of somebody who faces the table."""
+    half = CHAIR / 2
+    towards = FEET if room.table[1] > seat.y else -FEET
+    chair = [Point(seat.x + x, seat.y + y) for x in (-half, half) for y in (-half, half)]
+    return [*chair, *(Point(seat.x + x, seat.y + towards) for x in (-0.13, 0.13))]
+
+
+def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None) -> OccupancyMap:
     """Draw the map of a room from its profile.
 
-    A laser sees the walls and the legs of the table. The top of the table is kept out of, and so
-    are the seats (.25 m around each) unless `seats` is False: people and chairs come and go, so
-    they are not on the part of the map by which the robot finds its place.
+    A laser sees the walls, the legs of the table and of the chairs, and people's feet, which stand
+    nearly where they are drawn: without them a bare room looks the same from its other end. The
+    top of the table is kept out of, and so is .3 m around each seat.
+
+    Args:
+        room: the room.
+        resolution: metres to a cell.
+        people: how many seats there are; None: the room's own.
     """
     side = max(1, round(MARGIN / resolution))
     columns, rows = round(room.width / resolution) + 1, round(room.depth / resolution) + 1
@@ -119,14 +133,14 @@ def map_of_room(room: Room, resolution: float = 0.05, seats: bool = True) -> Occ
     cells[side + 1 : side + rows - 1, side + 1 : side + columns - 1] = FREE
     corner = -(side + 0.5) * resolution  # so that a wall runs through the middle of its cells
     drawn = OccupancyMap(cells, resolution, (corner, corner))
+    seats = room.seats if people is None else room.seated(people)
+    legs = [*table_legs(room), *(leg for seat in seats for leg in seat_legs(room, seat))]
+    rows_of, columns_of = drawn.cells_of(np.array([(leg.x, leg.y) for leg in legs]))
+    cells[rows_of, columns_of] = OCCUPIED
     xs = corner + (np.arange(cells.shape[1]) + 0.5) * resolution
     ys = corner + (np.arange(cells.shape[0]) + 0.5) * resolution
-    for leg in table_legs(room):
-        half = max(LEG / 2, resolution / 2)
-        across = np.abs(xs - leg.x) <= half + 1e-9
-        cells[np.ix_(np.abs(ys - leg.y) <= half + 1e-9, across)] = OCCUPIED
     left, near, right, far = room.table
     drawn.keep_out[np.ix_((ys >= near) & (ys <= far), (xs >= left) & (xs <= right))] = True
-    for seat in room.seats if seats else ():
-        drawn.keep_out[np.hypot(xs[None, :] - seat.x, ys[:, None] - seat.y) <= 0.25] = True
+    for seat in seats:
+        drawn.keep_out[np.hypot(xs[None, :] - seat.x, ys[:, None] - seat.y) <= SEAT] = True
     return drawn

@@ -58,15 +58,18 @@ def bearings(scan: Scan) -> Floats:
     return scan.first + scan.step * np.arange(len(scan.ranges), dtype=np.float64)
 
 
-def endpoints(scan: Scan, farthest: float = np.inf, laser: Pose = HERE) -> Floats:
+def endpoints(
+    scan: Scan, farthest: float = np.inf, laser: Pose = HERE, nearest: float = 0.0
+) -> Floats:
     """Return where beams end (m, 2), in the robot's frame; those that met nothing are left out.
 
     Args:
         scan: what was measured.
         farthest: metres beyond which a beam does not count.
         laser: where the scanner sits on the robot.
+        nearest: metres short of which a beam does not count.
     """
-    met = (scan.ranges > 0) & (scan.ranges < min(farthest, scan.farthest))
+    met = (scan.ranges > nearest) & (scan.ranges < min(farthest, scan.farthest))
     angles, ranges = bearings(scan)[met], scan.ranges[met]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
     return points if laser == HERE else placed(points, laser)

@@ -55,7 +55,8 @@ def read_log(path: Path) -> list[LoggedScan]:
     wheels: Pose | None = None
     number = 0
     try:
-        for number, line in enumerate(_lines(path), 1):
+        for line in _lines(path):
+            number += 1
             words = line.split()
             if not words:
                 continue
