@@ -15,6 +15,8 @@ TICK = 0.05
 """Seconds between two ticks: a base wants a command ten times a second, and staleness is to stop
 it within .35 s."""
 
+HOPS = 3  # turns of the event loop from a socket to whoever waits for it
+
 AT_REST = 0.2
 """Seconds that a bench in a hurry may step at once while the robot stands: no data is stale yet."""
 
@@ -45,14 +47,16 @@ class PassingTime:
                 self._wanted.clear()
                 await self._wanted.wait()
             await self.clock.sleep(step)
+            for _ in range(HOPS):  # what has come meanwhile is taken in before it is looked at
+                await asyncio.sleep(0)
             moves = self._tick()
             step = TICK if moves or not self._stepped else AT_REST
             come, self._next = self._next, None
             if come is not None:
                 come.set_result(None)
-            if self._stepped:
-                await asyncio.sleep(0)  # whoever waited goes on, and may wait again, before
-                await asyncio.sleep(0)  # more time passes
+            if self._stepped:  # whoever waited goes on, and may wait again, before time passes
+                for _ in range(HOPS):
+                    await asyncio.sleep(0)
 
     async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Let time pass until something holds; return whether it does, after at most so many s."""

@@ -46,6 +46,7 @@ SPEECH_SECONDS = 60.0  # for one line
 POSE_SECONDS = 1.5  # in which arms are where they should be
 POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
+HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
 KEPT_SECONDS = 3.0  # for which a drive that was broken off still says why
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
@@ -298,16 +299,20 @@ class LiveRobot:
 
     async def _drive(self, seconds: float) -> bool:
         """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
-        navigator, since = self.navigator, [self._clock.now()]
+        navigator, now = self.navigator, self._clock.now()
+        since = {"blocked": now, "hazard": now}
 
         def over() -> bool:
             now = self._clock.now()
             if navigator.state != "blocked":
-                since[0] = now
+                since["blocked"] = now
+            if not self.hazard:
+                since["hazard"] = now
             return (
-                bool(self.hazard)
+                bool(self.stopped)
                 or navigator.state in ("arrived", "failed", "idle")
-                or now - since[0] > BLOCKED_SECONDS
+                or now - since["blocked"] > BLOCKED_SECONDS
+                or now - since["hazard"] > HAZARD_SECONDS
             )
 
         await self.passing.until(over, seconds)
