@@ -30,8 +30,8 @@ Hears = Callable[[Message], None]
 Tells = Callable[[str], None]
 
 LARGEST = 16 << 20  # bytes of a message that is taken
-FIRST_WAIT, LONGEST_WAIT = 0.25, 5.0  # s between two attempts to connect; they grow
-OPENING_SECONDS = 5.0  # for which a handshake is waited for
+FIRST_WAIT, LONGEST_WAIT = 0.25, 2.0  # s between two attempts to connect; they grow
+OPENING_SECONDS = 3.0  # for which a handshake is waited for
 PING_SECONDS, PONG_SECONDS = 5.0, 10.0  # after which a cable that was pulled is noticed
 CLOSING_SECONDS = 0.2  # for which last words and goodbyes are waited for
 QUEUED = 2_000  # texts that wait to be sent, at most
@@ -248,7 +248,7 @@ class Rosbridge:
                     close_timeout=CLOSING_SECONDS,
                 ) as socket:
                     await self._talk(socket)
-            except (OSError, WebSocketException, TimeoutError, ValueError) as error:
+            except Exception as error:  # a link that ended for good would be worse than any reason
                 reason = str(error) or type(error).__name__
             finally:
                 self._lose(reason)
@@ -350,7 +350,7 @@ class Rosbridge:
         for hears in tuple(self._hears.get(topic, ())):
             try:
                 hears(message["msg"])
-            except (KeyError, TypeError, ValueError, AttributeError, LookupError) as error:
+            except Exception as error:  # whatever a message is, the link is there for the others
                 wrong = f"{type(error).__name__}: {error}"
                 self.tell_once(f"A message of {topic} cannot be read: {wrong}")
 

@@ -78,7 +78,7 @@ class Waiting:
         elif message["op"] == "action_feedback" and key in self._goals:
             feeds = self._goals[key].feeds
             if feeds is not None and isinstance(values, Mapping):
-                with suppress(KeyError, TypeError, ValueError, AttributeError):
+                with suppress(Exception):  # feedback that cannot be read is none
                     feeds(values)
         elif message["op"] == "action_result" and key in self._goals:
             self._end(self._goals.pop(key), message)
