@@ -10,6 +10,12 @@
 
   function put(id, words) { get(id).textContent = words; }
 
+  // Part "N-40" into letter and number; what is not of this kind is all number.
+  function parts(called) {
+    var found = /^([^\d\s\-\u2010-\u2013]{1,2})[\s\-\u2010-\u2013]*(\d+)$/.exec(called);
+    return found ? [found[1], found[2]] : ["", called];
+  }
+
   // Put a line word by word, so that it breaks between words alone: never within "N-40".
   function putWords(id, line) {
     var words = line.split(/\s+/), i, span;
@@ -48,30 +54,37 @@
     if (shown.number && shown.text && shown.text !== shown.number) { classes.push("worded"); }
     if (shown.asks) { classes.push("asked"); }
     if (shown.before.length) { classes.push("followed"); }
-    called = /^([^\d\s\-\u2010-\u2013]{1,2})[\s\-\u2010-\u2013]*(\d+)$/.exec(shown.number) || ["", "", shown.number];
-    put("letter", called[1]);
-    put("number", called[2]);
+    called = parts(shown.number);
+    put("letter", called[0]);
+    put("number", called[1]);
     putWords("text", shown.text);
     put("asked", shown.asks);
     put("before", "");
     for (i = 0; i < shown.before.length && i < 5; i += 1) {
+      called = parts(shown.before[i]);
       chip = document.createElement("span");
-      chip.textContent = shown.before[i];
+      chip.appendChild(document.createElement("i")).textContent = called[0];
+      chip.appendChild(document.createElement("b")).textContent = called[1];
       get("before").appendChild(chip);
     }
     document.body.className = classes.join(" ");
     get("text").style.fontSize = "";
     if (shown.asks) { fitLine(get("asked"), get("asks"), get("asks").clientHeight * 0.76); }
-    if (shown.before.length) { fitLine(get("before"), get("before"), get("before").clientHeight * 0.62); }
+    if (shown.before.length) { fitLine(get("before"), get("before"), get("before").clientHeight * 0.68); }
     if (shown.number) { fit(get("call"), get("main"), 20, 2000); }
     else if (shown.text) { fit(get("text"), get("main"), 16, height * 0.5); }
   }
 
   // Make an element so large, or as much smaller as its row asks for.
   function fitLine(element, row, size) {
+    var left;
     for (; size > 10; size *= 0.92) {
       element.style.fontSize = size + "px";
-      if (row.scrollWidth <= row.clientWidth + 1) { return; }
+      // A row that is centred runs over on both sides, of which scrollWidth knows only one.
+      left = row.firstElementChild.getBoundingClientRect().left;
+      if (row.lastElementChild.getBoundingClientRect().right - left <= 0.97 * row.clientWidth) {
+        return;
+      }
     }
   }
 
