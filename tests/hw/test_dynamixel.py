@@ -126,7 +126,7 @@ class TestArms:
         async with armed() as (bus, arms, _):
             bus.servos[2].sticks = True
             posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
-            await until(lambda: bus.servos[2].goal)
+            await until(lambda: bus.servos[1].position == 2048 + 512)
             bus.servos[2].error = 1 << 5
             with pytest.raises(DeviceError, match="the servo of arm/elbow reports overload"):
                 await soon(posing)
@@ -140,6 +140,13 @@ class TestArms:
             await until(lambda: arms.reading().state == OK)
             assert bus.servos[2].restarts == 1
             await soon(arms.pose({"arm": (45, 30)}, 0.2))
+
+    async def test_a_servo_that_has_an_error_before_it_moves_is_told_as_well(self) -> None:
+        async with armed() as (bus, arms, _):
+            bus.servos[2].error = 1 << 2
+            with pytest.raises(DeviceError, match="the servo of arm/elbow reports overheating"):
+                await soon(arms.pose({"arm": (45, 30)}, 0.2))
+            assert arms.reading().state == ERROR
 
     async def test_a_joint_that_sticks_is_named_in_time(self) -> None:
         async with armed() as (bus, arms, now):

@@ -180,12 +180,15 @@ class DynamixelArms:
         arriving = asyncio.create_task(self._moves.arrive(goals, seconds, self._well))
         try:
             await self._do(lambda: self._move(wanted, seconds, limp))
+            await arriving
         except BusError as error:
             self._limp = self._limp or limp
-            arriving.cancel()
-            raise DeviceError(plain(f"{self.name}: {error}")) from None
-        try:
-            await arriving
+            with suppress(BusError):  # a servo with an error is why
+                await self._do(partial(self._look, errors=True))
+                self._take()
+            raise DeviceError(
+                self.why if self._errors else plain(f"{self.name}: {error}")
+            ) from None
         except DeviceError:
             if self._errors or self._bus is None:
                 raise DeviceError(self.why) from None
