@@ -76,9 +76,14 @@ class Film:
 
     async def _film_head(self) -> None:
         loop, camera = asyncio.get_running_loop(), self._server.camera[HEAD]
+        game = 0
         while True:
             due = loop.time() + PAUSE
             if camera.viewers and not camera.hangs:
+                if game != self._world.games:
+                    game = self._world.games
+                    cards = [sitter.card for sitter in self._world.people.sitters.values()]
+                    await loop.run_in_executor(self._thread, self._head.prepare, game, cards)
                 scene = self._world.head_scene()
                 jpeg = await loop.run_in_executor(self._thread, self._head.frame, scene)
                 if not _outdated(scene, self._world.head_scene()):

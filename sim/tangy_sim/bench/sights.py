@@ -18,7 +18,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_sim.bench.world import HeadScene
 from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import CardCamera, View, some_view
+from tangy_sim.card_frames import CardCamera, View
 from tangy_sim.card_things import background, tone_of
 from tangy_sim.faces import drawn_face
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     Draws = Callable[[HeadScene], "list[Picture]"]
 
 SIZE = (1280, 720)
+MAT = 440  # pixels to a side of what lies under a card
 QUALITY = 88  # of the head camera's JPEG
 NOISE = 2.5  # grey levels
 VARIANTS = 6  # frames of one scene with other noise, which then come round again
@@ -60,6 +61,7 @@ class HeadCamera:
         self._noise = np.random.default_rng([seed, 3])
         self._frames: OrderedDict[HeadScene, deque[bytes]] = OrderedDict()
         self._pictures: OrderedDict[HeadScene, list[Picture]] = OrderedDict()
+        self._tables: dict[tuple[int, int], Picture] = {}
         self._last = b""
 
     def frame(self, scene: HeadScene) -> bytes:
@@ -105,57 +107,54 @@ class HeadCamera:
     # ------------------------------------------------------------------------------ scenes
 
     def _card(self, scene: HeadScene) -> list[Picture]:
-        """Draw the card that lies before a person: in good light, a little turned and tilted."""
+        """Draw the card before a person on a mat: in good light, a little turned and tilted."""
         who = self._people.index(scene.person)
         now = np.random.default_rng([self._seed, 5, scene.game, who, scene.moved])
+        picture = self._table(scene.game, who).copy()
         if scene.hides == "away":
-            table = np.clip(background(*SIZE, now) * 255 * 0.8, 0, 255)
-            return [_with_napkin(np.asarray(table, np.uint8), now)]
-        view = some_view(
-            now,
-            pixels=float(now.uniform(27, 34)),
-            tilt=float(now.uniform(5, 25)),
-            spin=float(now.normal(0, 6)),
-            wide=1.1,
-            light=float(now.uniform(0.72, 0.92)),
-            slope=float(now.uniform(0, 0.15)),
-            warm=float(now.uniform(-0.06, 0.1)),
-            shadow=0.0,
-            glare=0.0,
-            blur=0.5,
-            motion=0.0,
-            noise=0.0,
-            quality=100,
-            bend=float(now.uniform(0, 0.4)),
-            hand="",
-            grey=False,
-        )
-        return [self._photograph(scene, view, who, now)]
-
-    def _photograph(
-        self, scene: HeadScene, view: View, who: int, random: np.random.Generator
-    ) -> Picture:
-        face = self._camera.face
-        cells = face.deck.rows * len(face.deck.columns)
-        chips: dict[int, Chip] = {}
-        for cell in range(cells):
-            if scene.marked >> cell & 1 and not face.deck.free >> cell & 1:
-                thrown = np.random.default_rng([self._seed, 6, scene.game, who, cell])
-                chips[cell] = _chip(who).thrown(thrown, face.middle(cell), face.cell, 0.0)
-        frame = self._camera.take(scene.card, chips, view, random)
-        picture: Picture = np.asarray(frame.picture, np.uint8)
-        corners = np.array(frame.corners, np.float32)
+            return [picture]
+        mat, corners = self._mat(scene, who, now)
+        x, y = int(now.integers(0, SIZE[0] - MAT)), int(now.integers(0, SIZE[1] - MAT))
         if scene.hides == "edge":  # what is above the grid is all that can be seen
-            shift = SIZE[1] + 12 - float(corners[:, 1].min())
-            move = np.array([[1, 0, 0], [0, 1, shift]], np.float32)
-            moved = cv2.warpAffine(picture, move, SIZE, borderMode=cv2.BORDER_REPLICATE)
-            picture = _with_napkin(np.asarray(moved, np.uint8), random)
+            y = SIZE[1] + 12 - int(corners[:, 1].min())
         elif scene.hides == "sheet":
             middle = corners.mean(0)
             sheet = (middle + (corners - middle) * 1.25).astype(np.int32)
-            tone = [float(c * 255) for c in tone_of(random.uniform(0, 360), 0.3, 0.85)]
-            cv2.fillPoly(picture, [sheet], tone, cv2.LINE_AA)
-        return picture
+            tone = [float(c * 255) for c in tone_of(now.uniform(0, 360), 0.3, 0.85)]
+            cv2.fillPoly(mat, [sheet], tone, cv2.LINE_AA)
+        picture[y : y + MAT, x : x + MAT] = mat[: SIZE[1] - y]
+        return [picture]
+
+    def _mat(
+        self, scene: HeadScene, who: int, random: np.random.Generator
+    ) -> tuple[Picture, NDArray[np.float32]]:
+        """Return the mat with the card as the camera sees it, and the corners of its grid."""
+        face = self._camera.face
+        chips: dict[int, Chip] = {}
+        for cell in range(face.deck.rows * len(face.deck.columns)):
+            if scene.marked >> cell & 1 and not face.deck.free >> cell & 1:
+                thrown = np.random.default_rng([self._seed, 6, scene.game, who, cell])
+                chips[cell] = _chip(who).thrown(thrown, face.middle(cell), face.cell, 0.0)
+        frame = self._camera.take(scene.card, chips, _view(random), random)
+        return np.array(frame.picture, np.uint8), np.array(frame.corners, np.float32)
+
+    def _table(self, game: int, who: int) -> Picture:
+        """Draw the table before a person, which stays as it is for a game."""
+        key = game, who
+        if key not in self._tables:
+            random = np.random.default_rng([self._seed, 9, game, who])
+            table = np.clip(background(*SIZE, random) * 255 * 0.8, 0, 255).astype(np.uint8)
+            self._tables[key] = _with_napkin(table, random)
+            while len(self._tables) > len(self._people):
+                del self._tables[next(iter(self._tables))]
+        return self._tables[key]
+
+    def prepare(self, game: int, cards: Sequence[int]) -> None:
+        """Draw ahead what takes longest: the faces of a game's cards, and the tables under them."""
+        random = np.random.default_rng(self._seed)
+        for who, card in enumerate(cards):
+            self._table(game, who)
+            self._camera.take(card, {}, _view(random), random)
 
     def _face(self, scene: HeadScene) -> list[Picture]:
         """Draw a person before the room, in a few pictures."""
@@ -202,6 +201,25 @@ class HeadCamera:
             cv2.rectangle(around, (x, y), (x + wide, y + high), tone, -1)
             cv2.rectangle(around, (x, y), (x + wide, y + high), [60.0, 60.0, 60.0], 5)
         return np.asarray(np.clip(around, 0, 255), np.uint8)
+
+
+def _view(random: np.random.Generator) -> View:
+    """Draw how a camera over a mat sees the card on it."""
+    return View(
+        pixels=float(random.uniform(27, 34)),
+        tilt=float(random.uniform(5, 25)),
+        tilted_to=float(random.uniform(-180, 180)),
+        spin=float(random.uniform(-12, 12)),
+        wide=1.1 * SIZE[0] / MAT,
+        light=float(random.uniform(0.72, 0.92)),
+        slope=float(random.uniform(0, 0.15)),
+        warm=float(random.uniform(-0.06, 0.1)),
+        blur=0.5,
+        noise=0.0,
+        quality=100,
+        bend=float(random.uniform(0, 0.4)),
+        size=(MAT, MAT),
+    )
 
 
 def _with_napkin(picture: Picture, random: np.random.Generator) -> Picture:

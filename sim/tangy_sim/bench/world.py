@@ -141,12 +141,8 @@ class BenchWorld:
         self._speech.append(text)
 
     def hush(self) -> None:
-        """Break off what is being said; nobody understands half a sentence.
-
-        A voice that does not work is hushed when it is switched off and on again: then it may.
-        """
+        """Break off what is being said; nobody understands half a sentence."""
         self._speech.clear()
-        self.restart("voice")
 
     def _speak(self) -> None:
         while self._speech and self.now >= self._silent_from:
