@@ -7,6 +7,7 @@ walls do not tell is left as it was guessed, and the answer says so.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,10 +42,23 @@ class Match:
 class Reference:
     """A scan that others are matched with."""
 
-    def __init__(self, scan: Scan, laser: Pose = HERE) -> None:
-        points = endpoints(scan, REACH, laser)
-        self._points, self._normals = _lines(points)
-        self._tree = cKDTree(self._points) if len(self._points) else None
+    def __init__(self, scan: Scan | None, laser: Pose = HERE) -> None:
+        points = np.zeros((0, 2)) if scan is None else endpoints(scan, REACH, laser)
+        self._take(*_lines(points))
+
+    @classmethod
+    def joined(cls, parts: Sequence[tuple[Reference, Pose]]) -> Reference:
+        """Join scans at their poses, so that another is matched with all of them at once."""
+        made = cls(None)
+        made._take(
+            np.vstack([placed(part._points, pose) for part, pose in parts]),
+            np.vstack([placed(part._normals, Pose(0, 0, pose.heading)) for part, pose in parts]),
+        )
+        return made
+
+    def _take(self, points: Floats, normals: Floats) -> None:
+        self._points, self._normals = points, normals
+        self._tree = cKDTree(points) if len(points) else None
 
     def match(self, scan: Scan, guess: Pose, laser: Pose = HERE) -> Match:
         """Find where another scan was taken, beginning at a guess."""

@@ -1,0 +1,55 @@
+"""A map as lines of text, two cells one above the other to a character, so that people can look."""
+
+from __future__ import annotations
+
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
+
+NOTHING, UNSEEN, KEPT_OUT, WALL = range(4)
+
+
+def map_lines(map_: OccupancyMap, columns: int = 100, *, ascii_only: bool = False) -> list[str]:
+    """Return lines of at most so many characters, the highest y at the top.
+
+    Walls are full blocks, free floor is blank, what is kept out of and what nobody saw are shaded;
+    in ASCII they are `#`, blank, `+` and `.`.
+    """
+    kinds = _shrunk(_kinds(map_), ceil(map_.shape[1] / columns))[::-1]
+    if len(kinds) % 2:
+        kinds = np.vstack((kinds, np.full((1, kinds.shape[1]), UNSEEN)))
+    upper, lower = kinds[::2], kinds[1::2]
+    signs = " .+#" if ascii_only else " ░▒█"
+    lines = []
+    for above, below in zip(upper, lower, strict=True):
+        line = ""
+        for top, bottom in zip(above, below, strict=True):
+            if ascii_only or top == bottom or WALL not in (top, bottom):
+                line += signs[max(top, bottom)]
+            else:
+                line += "▀" if top == WALL else "▄"
+        lines.append(line.rstrip())
+    return lines
+
+
+def _kinds(map_: OccupancyMap) -> NDArray[np.int64]:
+    kinds = np.full(map_.shape, UNSEEN)
+    kinds[map_.cells == FREE] = NOTHING
+    kinds[map_.keep_out] = KEPT_OUT
+    kinds[map_.cells == OCCUPIED] = WALL
+    return kinds
+
+
+def _shrunk(kinds: NDArray[np.int64], by: int) -> NDArray[np.int64]:
+    """Join squares of cells: a wall in one makes it a wall, and free floor beats the unseen."""
+    rows, columns = (ceil(n / by) for n in kinds.shape)
+    whole = np.full((rows * by, columns * by), UNSEEN)
+    whole[: kinds.shape[0], : kinds.shape[1]] = kinds
+    squares = whole.reshape(rows, by, columns, by).transpose(0, 2, 1, 3).reshape(rows, columns, -1)
+    joined = np.full((rows, columns), UNSEEN)
+    for kind in (NOTHING, KEPT_OUT, WALL):
+        joined[(squares == kind).any(axis=2)] = kind
+    return joined

@@ -1,0 +1,151 @@
+"""`tangy map`: draw the map by which a robot finds its place and its way."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import Ascii, Data, Json, Seed, print_json
+
+if TYPE_CHECKING:
+    from tangy_hw.navigation.occupancy import OccupancyMap
+
+YAML = (".yaml", ".yml")
+
+
+def draw_map(
+    source: Annotated[
+        Path | None,
+        typer.Argument(metavar="[LOG|MAP.yaml]", help="A log of scans (CARMEN), or a map to show."),
+    ] = None,
+    room: Annotated[
+        str | None, typer.Option(metavar="NAME|FILE", help="A room's profile, instead of a log.")
+    ] = None,
+    people: Annotated[
+        int | None, typer.Option(min=0, max=8, help="With --room: how many people sit there.")
+    ] = None,
+    yaml: Annotated[
+        Path | None,
+        typer.Option("--yaml", metavar="FILE", help="Write this YAML, and a PGM beside it."),
+    ] = None,
+    png: Annotated[
+        Path | None, typer.Option("--png", metavar="FILE", help="Write a picture to look at.")
+    ] = None,
+    resolution: Annotated[float, typer.Option(min=0.01, max=0.5, help="Metres to a cell.")] = 0.05,
+    match: Annotated[
+        bool,
+        typer.Option("--match", help="The log's poses are the wheels' own: correct by matching."),
+    ] = False,
+    ascii_only: Ascii = False,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Draw a map from a log of scans, or from a room's profile, and write it as ROS does.
+
+    A log gives the poses that stand in it; `--match` is for logs in which only the wheels counted
+    them, and good for a room, not for a whole building. What stands on the floor for the robot but
+    not for its laser, as a table's top, is written beside the map, as FILE-keep-out.yaml.
+    """
+    if (source is None) == (room is None):
+        raise TangyError("Say what to draw: a log of scans or a map, or else --room NAME.")
+    if yaml is not None and yaml.suffix not in YAML:
+        raise TangyError(plain(f"--yaml {yaml}: name it .yaml."))
+    if png is not None and png.suffix.lower() != ".png":
+        raise TangyError(plain(f"--png {png}: name it .png."))
+    found: dict[str, Any]
+    if room is not None:
+        map_, found = _of_room(room, resolution, people)
+    elif source is not None and source.suffix in YAML:
+        map_, found = _of_file(source)
+    elif source is not None:
+        map_, found = _of_log(source, resolution, match, tell=not as_json and sys.stderr.isatty())
+    width, depth = map_.size
+    found |= {
+        "resolution": map_.resolution,
+        "origin": [round(corner, 6) for corner in map_.origin],
+        "width_m": round(width, 3),
+        "depth_m": round(depth, 3),
+        "free_m2": round(float((map_.cells == 0).sum()) * map_.resolution**2, 2),
+        "occupied_cells": int((map_.cells == 100).sum()),
+        "written": _written(map_, yaml, png),
+    }
+    if as_json:
+        print_json(found)
+        return
+    _show(map_, found, ascii_only)
+
+
+def _of_room(
+    room: str, resolution: float, people: int | None
+) -> tuple[OccupancyMap, dict[str, Any]]:
+    from tangy_hw.navigation.occupancy import map_of_room
+    from tangy_profiles.room import load_room
+
+    loaded = load_room(room)
+    return map_of_room(loaded, resolution, people), {"source": "room", "room": loaded.name}
+
+
+def _of_file(path: Path) -> tuple[OccupancyMap, dict[str, Any]]:
+    from tangy_hw.navigation.map_files import read_map
+
+    return read_map(path), {"source": "map", "file": str(path)}
+
+
+def _of_log(
+    path: Path, resolution: float, match: bool, *, tell: bool
+) -> tuple[OccupancyMap, dict[str, Any]]:
+    from tangy_hw.navigation.aligning import aligned
+    from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
+    from tangy_hw.navigation.scan_log import read_log
+
+    logged = read_log(path)
+    scans = sparse(Placed(one.scan, one.odometry if match else one.pose) for one in logged)
+
+    def done(count: int) -> None:
+        if tell and (count % 50 == 0 or count == len(scans)):
+            end = "\n" if count == len(scans) else ""
+            print(f"\r{count} of {len(scans)} scans matched", end=end, file=sys.stderr, flush=True)
+
+    if match:
+        scans = aligned(scans, done)
+    document = {"source": "log", "file": str(path), "scans": len(logged), "used": len(scans)}
+    return map_of_scans(scans, resolution), {**document, "matched": match}
+
+
+def _written(map_: OccupancyMap, yaml: Path | None, png: Path | None) -> list[str]:
+    from tangy_hw.navigation.map_files import grey, write_map
+
+    written = [] if yaml is None else write_map(map_, yaml)
+    if png is not None:
+        from PIL import Image
+
+        try:
+            Image.fromarray(grey(map_.cells)).save(png)
+        except OSError as error:
+            raise TangyError(plain(f"{png}: cannot be written ({error.strerror}).")) from None
+        written.append(png)
+    return [str(path) for path in written]
+
+
+def _show(map_: OccupancyMap, found: dict[str, Any], ascii_only: bool) -> None:
+    from tangy_hw.navigation.drawing import map_lines
+
+    columns = min(shutil.get_terminal_size().columns, 160)
+    encoding = (sys.stdout.encoding or "ascii").lower()
+    for line in map_lines(map_, columns, ascii_only=ascii_only or "utf" not in encoding):
+        print(line)
+    told = (
+        f"{found['width_m']:.1f} x {found['depth_m']:.1f} m, {found['free_m2']:.1f} m2 of it free"
+    )
+    if "scans" in found:
+        told += f"; {found['used']} of {found['scans']} scans drawn"
+    print(f"{told}.")
+    if found["written"]:
+        print(plain("Written: " + ", ".join(found["written"])))
