@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import sys
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -18,38 +18,16 @@ from tangy_hw.drivers.dynamixel import DynamixelArms, Servo, servos_of
 from tangy_hw.drivers.dynamixel_bus import meaning, speed
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.robot import Limb
+from tests.hw.ros_links import Now, soon, until
 from tests.hw.servo_bus import ServoBus
 
 pytest.importorskip("dynamixel_sdk", reason="the extra `dynamixel` is not installed")
 
-SOON = 5  # s within which what must happen at once has happened on any machine
 LIMBS = {
     "arm": Limb("arm", ("shoulder", "elbow"), (-90, 0), (90, 140)),
     "head": Limb("head", ("neck nod", "mouth"), (-35, 0), (30, 25)),
 }
 SERVOS = "arm/shoulder = 1, arm/elbow = -2@90, head/neck nod = 7"
-
-
-class Now:
-    """A time that tests set."""
-
-    def __init__(self) -> None:
-        self.time = 100.0
-
-    def __call__(self) -> float:
-        return self.time
-
-
-async def soon(thing: Awaitable[Any]) -> Any:
-    return await asyncio.wait_for(thing, SOON)
-
-
-async def until(holds: Callable[[], object]) -> None:
-    async def looking() -> None:
-        while not holds():  # noqa: ASYNC110 (whatever holds, there is no event of it)
-            await asyncio.sleep(0.005)
-
-    await soon(looking())
 
 
 @asynccontextmanager

@@ -3,77 +3,27 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import math
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
-from contextlib import asynccontextmanager
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
 import pytest
 
 from tangy_hw.devices import (
-    Arms,
     Base,
     DeviceError,
     Laser,
     Pose,
     StopButton,
     Twist,
-    Voice,
 )
-from tangy_hw.drivers.ros_arms import RosArms
 from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_laser import RosLaser
 from tangy_hw.drivers.ros_messages import pose_message, twist_message
 from tangy_hw.drivers.ros_status import RosDiagnostics, RosStopButton
-from tangy_hw.drivers.ros_voice import RosVoice
-from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_profiles.health import ERROR, OK, STALE, WARN
-from tangy_profiles.robot import Limb
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
-
-SOON = 5  # s within which what must happen at once has happened on any machine
-LIMBS = {
-    "arm": Limb("arm", ("shoulder", "elbow"), (-90, 0), (90, 140)),
-    "head": Limb("head", ("neck nod",), (-35,), (30,)),
-}
-
-
-class Now:
-    """A time that tests set."""
-
-    def __init__(self) -> None:
-        self.time = 100.0
-
-    def __call__(self) -> float:
-        return self.time
-
-
-@asynccontextmanager
-async def linked(ros: int = 1) -> AsyncIterator[tuple[RosbridgeServer, Rosbridge, Now]]:
-    server, now = RosbridgeServer(), Now()
-    await server.start()
-    bridge = Rosbridge(server.url, clock=now, ros=ros)
-    await bridge.start()
-    assert await bridge.wait_connected(SOON)
-    try:
-        yield server, bridge, now
-    finally:
-        await bridge.close()
-        await server.close()
-
-
-async def soon(thing: Awaitable[Any]) -> Any:
-    return await asyncio.wait_for(thing, SOON)
-
-
-async def until(holds: Callable[[], object]) -> None:
-    async def looking() -> None:
-        while not holds():  # noqa: ASYNC110 (whatever holds, there is no event of it)
-            await asyncio.sleep(0.002)
-
-    await soon(looking())
+from tangy_profiles.health import OK, STALE, WARN
+from tests.hw.ros_links import diagnoses, linked, soon, until
 
 
 def odometry(x: float, y: float = 0.0, heading: float = 0.0) -> dict[str, Any]:
@@ -280,15 +230,6 @@ class TestStopButton:
             await button.close()
 
 
-def diagnoses(*statuses: tuple[str, int, str]) -> dict[str, Any]:
-    return {
-        "status": [
-            {"name": name, "level": level, "message": says, "values": []}
-            for name, level, says in statuses
-        ]
-    }
-
-
 class TestDiagnostics:
     async def test_the_worst_that_is_said_of_a_device_counts_while_it_is_new(self) -> None:
         async with linked() as (server, bridge, now):
@@ -317,184 +258,3 @@ class TestDiagnostics:
             assert (told.of("base"), told.age("base"), told.age("laser")) == (None, 6, None)
             await base.close()
             await told.close()
-
-
-class Body:
-    """Joints at the other end that go where they are told, one step in each `step`."""
-
-    def __init__(self, server: RosbridgeServer) -> None:
-        self.server = server
-        self.positions = {"arm/shoulder": 0.0, "arm/elbow": 0.0, "neck": 0.0}
-        self.goals: dict[str, float] = {}
-        self.torque: list[bool] = []
-        server.on_message("/joint_trajectory", self.take)
-        server.on_message("/joint_torque", lambda message: self.torque.append(message["data"]))
-
-    def take(self, message: Any) -> None:
-        (point,) = message["points"]
-        self.goals.update(zip(message["joint_names"], point["positions"], strict=True))
-
-    def step(self, share: float = 1.0) -> None:
-        for name, goal in self.goals.items():
-            self.positions[name] += share * (goal - self.positions[name])
-        names, positions = zip(*self.positions.items(), strict=True)
-        self.server.publish("/joint_states", "", {"name": names, "position": positions})
-
-
-@asynccontextmanager
-async def armed() -> AsyncIterator[tuple[RosbridgeServer, Body, RosArms, Now]]:
-    async with linked() as (server, bridge, now):
-        told = RosDiagnostics(bridge)
-        arms = RosArms(bridge, LIMBS, names={"head/neck nod": "neck"}, diagnostics=told)
-        body = Body(server)
-        await told.start()
-        await arms.start()
-        await soon(server.subscribed("/joint_states", "/diagnostics"))
-        yield server, body, arms, now
-        await arms.close()
-        await told.close()
-
-
-class TestArms:
-    async def test_degrees_by_limb_become_radians_by_joint_and_are_waited_for(self) -> None:
-        async with armed() as (_, body, arms, _now):
-            satisfied: Arms = arms
-            posing = asyncio.create_task(
-                satisfied.pose({"arm": (90, 45), "head": (-20,)}, seconds=1)
-            )
-            await until(lambda: body.goals)
-            assert body.goals == pytest.approx(
-                {"arm/shoulder": math.pi / 2, "arm/elbow": math.pi / 4, "neck": math.radians(-20)}
-            )
-            body.step(0.5)
-            await until(lambda: arms.positions)
-            assert not posing.done()
-            body.step()
-            await soon(posing)
-            assert arms.reading().facts == {"hardware_error": False}
-            assert arms.positions["neck"] == pytest.approx(math.radians(-20))
-
-    async def test_joints_that_are_late_or_silent_are_named(self) -> None:
-        async with armed() as (_, body, arms, now):
-            for told, error in (
-                (False, "arm/shoulder says nothing"),
-                (True, "arm/elbow is not there"),
-            ):
-                body.goals.clear()
-                posing = asyncio.create_task(arms.pose({"arm": (10, 80)}, seconds=1))
-                await until(lambda: body.goals)
-                if told:
-                    body.positions["arm/shoulder"] = math.radians(10)
-                    body.step(0)
-                    await until(lambda: arms.positions)
-                now.time += 3.6
-                with pytest.raises(DeviceError, match=error):
-                    await soon(posing)
-
-    async def test_an_error_of_a_servo_ends_the_movement_and_the_next_is_not_begun(self) -> None:
-        async with armed() as (server, body, arms, _):
-            posing = asyncio.create_task(arms.pose({"arm": (10, 80)}, seconds=1))
-            await until(lambda: body.goals)
-            server.publish("/diagnostics", "", diagnoses(("arms", 2, "elbow overheated")))
-            with pytest.raises(DeviceError, match="elbow overheated"):
-                await soon(posing)
-            body.step()
-            await until(lambda: arms.reading().state == ERROR)
-            assert arms.reading().facts == {"hardware_error": True}
-            body.goals.clear()
-            with pytest.raises(DeviceError, match="elbow overheated"):
-                await arms.pose({"arm": (0, 0)}, seconds=1)
-            assert not body.goals
-
-    async def test_the_newer_of_two_postures_counts_but_limbs_move_apart(self) -> None:
-        async with armed() as (_, body, arms, _now):
-            first = asyncio.create_task(arms.pose({"arm": (90, 45)}, seconds=1))
-            await until(lambda: body.goals)
-            head = asyncio.create_task(arms.pose({"head": (5,)}, seconds=1))
-            second = asyncio.create_task(arms.pose({"arm": (10, 20)}, seconds=1))
-            with pytest.raises(DeviceError, match="otherwise"):
-                await soon(first)
-            await until(lambda: body.goals.get("arm/elbow") == pytest.approx(math.radians(20)))
-            body.step()
-            await soon(asyncio.gather(head, second))
-
-    async def test_arms_that_hang_hold_again_for_the_next_posture(self) -> None:
-        async with armed() as (_, body, arms, _now):
-            posing = asyncio.create_task(arms.pose({"head": (5,)}, seconds=1))
-            await until(lambda: body.goals)
-            await arms.relax()
-            with pytest.raises(DeviceError, match="hang"):
-                await soon(posing)
-            await until(lambda: body.torque == [False])
-            posing = asyncio.create_task(arms.pose({"head": (5,)}, seconds=1))
-            await until(lambda: body.torque == [False, True])
-            body.step()
-            await soon(posing)
-
-    @pytest.mark.parametrize("angles", [{"tail": (1,)}, {"arm": (1,)}, {"head": (math.nan,)}])
-    async def test_what_the_body_has_not_is_refused(self, angles: Any) -> None:
-        async with armed() as (_, _body, arms, _now):
-            with pytest.raises(DeviceError, match="arms cannot take"):
-                await arms.pose(angles, seconds=1)
-
-
-class TestVoice:
-    async def test_a_sentence_is_over_when_it_was_said(self) -> None:
-        async with linked() as (server, bridge, _):
-            voice, heard = RosVoice(bridge), list[Any]()
-            satisfied: Voice = voice
-            server.on_message("/voice/say", lambda message: heard.append(message["data"]))
-            await satisfied.start()
-            await soon(server.subscribed("/voice/said"))
-            saying = asyncio.create_task(voice.say("The number is\n B 7. "))
-            await until(lambda: heard)
-            assert heard == ["The number is B 7."]
-            server.publish("/voice/said", "", {"data": "something else"})
-            server.publish("/voice/said", "", {"data": "The number is B 7. "})
-            await soon(saying)
-            await voice.say("  ")
-            assert heard == ["The number is B 7."]
-
-    @pytest.mark.parametrize("answer", ["1", '{"id": 1}'])
-    async def test_a_robot_that_changes_texts_acknowledges_by_number(self, answer: str) -> None:
-        async with linked() as (server, bridge, _):
-            voice, heard = RosVoice(bridge, with_id=True), list[Any]()
-            server.on_message(
-                "/voice/say", lambda message: heard.append(json.loads(message["data"]))
-            )
-            await voice.start()
-            await soon(server.subscribed("/voice/said"))
-            saying = asyncio.create_task(voice.say("Hello"))
-            await until(lambda: heard)
-            assert heard == [{"id": 1, "text": "Hello"}]
-            server.publish("/voice/said", "", {"data": answer})
-            await soon(saying)
-
-    async def test_a_dead_voice_is_an_error_until_it_speaks_again(self) -> None:
-        async with linked() as (server, bridge, now):
-            voice, heard = RosVoice(bridge), list[Any]()
-            server.on_message("/voice/say", heard.append)
-            await voice.start()
-            await soon(server.subscribed("/voice/said"))
-            saying = asyncio.create_task(voice.say("Hello"))
-            await until(lambda: heard)
-            now.time += 6
-            with pytest.raises(DeviceError, match="voice did not say 'Hello'"):
-                await soon(saying)
-            assert voice.reading().state == ERROR
-            saying = asyncio.create_task(voice.say("Hello"))
-            await until(lambda: len(heard) == 2)
-            server.publish("/voice/said", "", {"data": "Hello"})
-            await soon(saying)
-            assert voice.reading().state == OK
-
-    async def test_hush_ends_what_is_being_said(self) -> None:
-        async with linked() as (server, bridge, _):
-            voice, hushed = RosVoice(bridge), list[Any]()
-            server.on_message("/voice/hush", hushed.append)
-            await voice.start()
-            saying = asyncio.create_task(voice.say("A long story"))
-            await asyncio.sleep(0)
-            await voice.hush()
-            await soon(saying)
-            await until(lambda: hushed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import math
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -18,23 +18,11 @@ from tangy_hw.drivers.ros_navigator import RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import OK
 from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tests.hw.ros_links import SOON, soon, until
 
-SOON = 5  # s within which what must happen at once has happened on any machine
 ORIGIN = Pose(10.0, 20.0, math.pi / 2)
 GOAL = Pose(2.0, 1.0, 0.5)
 IN_MAP = Pose(9.0, 22.0, 0.5 + math.pi / 2)
-
-
-async def soon(thing: Awaitable[Any]) -> Any:
-    return await asyncio.wait_for(thing, SOON)
-
-
-async def until(holds: Callable[[], object]) -> None:
-    async def looking() -> None:
-        while not holds():  # noqa: ASYNC110 (whatever holds, there is no event of it)
-            await asyncio.sleep(0.002)
-
-    await soon(looking())
 
 
 def pose_in(message: Any) -> tuple[float, float, float]:
