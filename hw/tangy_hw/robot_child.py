@@ -6,7 +6,7 @@ broken off}; several may be under way. {"beat": n} says that the program lives, 
 By itself it says {"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
 
 Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
-nothing comes through it for a while it stops, and says so when it is asked again.
+nothing comes through it for a while it stops, and gives up what it was doing.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Health
 
 BEAT_SECONDS = 0.1
-SILENT_SECONDS = 0.35
-"""For so long the program may say nothing while the robot drives: it then stops within .6 s."""
+SILENT_SECONDS = 0.25
+"""For so long the program may say nothing while the robot drives: it then stands within .6 s, and
+does not drive on when that takes longer than a moment."""
 SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
 MOST_PARTICLES = 60  # that are told, of those by which it finds its place
@@ -49,7 +50,6 @@ class RobotProcess:
         self._patience = SILENT_STEPPED if stepped else SILENT_SECONDS
         self._stepped = stepped
         self._heard = time.monotonic()
-        self._unheard = ""
         self._doing: dict[int, asyncio.Task[None]] = {}
         self.robot.alone = self._why_alone
         self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
@@ -86,7 +86,6 @@ class RobotProcess:
             self._break_off(str(asked.get("why", "stopped")))
         elif do == "release":
             self.robot.release()
-            self._unheard = ""
         elif do == "cancel":
             self.robot.navigator.cancel()
             self._break_off(str(asked.get("why", "called off")))
@@ -200,10 +199,9 @@ class RobotProcess:
     # ---------------------------------------------------------------------- what it tells
 
     def _why_alone(self) -> str:
-        """Say whether the program has fallen silent; it stays so until somebody releases it."""
-        if time.monotonic() - self._heard > self._patience:
-            self._unheard = "the program says nothing"
-        return self._unheard
+        """Say whether the program has fallen silent."""
+        silent = time.monotonic() - self._heard > self._patience
+        return "the program says nothing" if silent else ""
 
     async def beat(self) -> None:
         """Tell how it is, again and again."""

@@ -178,6 +178,11 @@ class RobotLink:
         return self._told.state
 
     @property
+    def pid(self) -> int | None:
+        """The id of the process, None where there is none."""
+        return None if self._process is None else self._process.pid
+
+    @property
     def time(self) -> float:
         """The robot's time, in s, as it was told last: with an answer, or else with a beat."""
         return self._told.time

@@ -170,6 +170,8 @@ class LiveWorld:
                 self.over = True
         if not behaviour.persuades or tracker.place == FRONT:
             return None, True
+        if behaviour.effect == "none" and tracker.place not in self._signs(shown=True):
+            return None, True  # nothing of what the person does about it can be seen
         return self._response(action, numbers), True
 
     def _say(self, action: Action, numbers: tuple[int, ...]) -> None:
@@ -258,7 +260,7 @@ class LiveWorld:
         if behaviour.effect == "none":
             self._do("wait", seconds=LOOK_SECONDS)
             self._settle()
-            return place not in self._signs()
+            return place not in self._signs(shown=True)
         card = self._look(LOOK_SECONDS)
         state = card["state"]
         if behaviour.effect == "bring card closer":
@@ -299,14 +301,14 @@ class LiveWorld:
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
 
-    def _signs(self) -> dict[str, float]:
-        """Return who asks now, and since when."""
+    def _signs(self, *, shown: bool = False) -> dict[str, float]:
+        """Return who asks now, and since when; `shown`: by a sign alone."""
         signs = {
             self.people[seat - 1]: since
             for seat, since in self.link.state.asks
             if seat <= len(self.people)
         }
-        return signs | self._by_word
+        return signs if shown else signs | self._by_word
 
     def _hear_requests(self) -> None:
         """Take note of who asks, and of who waits and does not ask any more."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import hypot
 from random import Random
@@ -26,7 +27,7 @@ from tangy_tui.live.bench import Bench
 
 DRIVES = ("go to user", "go to front")
 ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
-EXPERT_SECONDS = 300.0  # that an expert takes to come, as in the simulated world
+EXPERT_SECONDS = 60.0  # that an expert takes on the bench
 NOTICED_SECONDS = 4.0  # of real time, in which devices that real time passes for show a fault
 
 
@@ -83,6 +84,8 @@ class BenchedWorld(LiveWorld):
         self._switch_tablet()
         self.came = []
         self._to_come = list(self.injections)
+        self.link.release()
+        self._pass_until(lambda: not self.diagnosed(self.health()))
         return super().begin()
 
     @property
@@ -119,14 +122,14 @@ class BenchedWorld(LiveWorld):
 
     def _let_show(self, kind: Kind) -> None:
         """Wait until devices show a fault, where the bench's time does not pass by itself."""
-        if not self.link.setup.stepped:
-            return
+        self._pass_until(lambda: kind.code in self.diagnosed(self.health()))
+
+    def _pass_until(self, holds: Callable[[], bool]) -> None:
+        """Let a little time pass until something holds, where it does not pass by itself."""
         until = time.monotonic() + NOTICED_SECONDS
-        while kind.code not in self.diagnosed(self.health()) and time.monotonic() < until:
-            try:
+        while self.link.setup.stepped and not holds() and time.monotonic() < until:
+            with suppress(DeviceError):
                 self.link.do("wait", seconds=0.2)
-            except DeviceError:
-                return
             self.link.beat()
 
     def lift(self, kind: str) -> None:
@@ -204,11 +207,9 @@ class BenchedWorld(LiveWorld):
                 self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
         if self.link.setup.stepped:
-            self.link.do("wait", seconds=EXPERT_SECONDS)
-            until = time.monotonic() + NOTICED_SECONDS
-            while remedy.fault in self.diagnosed(self.health()) and time.monotonic() < until:
-                self.link.do("wait", seconds=0.2)
-                self.link.beat()
+            with suppress(DeviceError):
+                self.link.do("wait", seconds=EXPERT_SECONDS)
+            self._pass_until(lambda: remedy.fault not in self.diagnosed(self.health()))
         return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted

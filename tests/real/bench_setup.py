@@ -1,0 +1,25 @@
+"""A bench of a test's own, and the setup of a robot process that drives on it."""
+
+from __future__ import annotations
+
+from tangy_hw.robot_setup import RobotSetup
+from tangy_tui.live.bench import Bench
+
+FRONT = (5.0, 1.2, 1.5708)
+
+
+def setup_on(bench: Bench, *, stepped: bool = False, eyes: bool = False) -> RobotSetup:
+    """Name the wires of a bench; without eyes no camera is opened, which saves two processes."""
+    at = bench.wires.rosbridge
+    drivers = {name: {"kind": "rosbridge", "at": at} for name in ("base", "stop_button", "voice")}
+    return RobotSetup(
+        robot="tangy",
+        activity="bingo",
+        people=tuple(bench.wires.faces),
+        drivers={**drivers, "laser": {"kind": "scip", "at": bench.wires.scip}},
+        cameras={"camera": bench.wires.head} if eyes else {},
+        requests=f"signs:{bench.wires.infrared}" if eyes else "",
+        corners=bench.wires.corners,
+        start=FRONT,
+        stepped=stepped,
+    )

@@ -1,0 +1,32 @@
+"""A program that drives a robot up and down, to be ended in every way that a program can end.
+
+Its one argument is the setup of the robot process, as JSON.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_setup import RobotSetup
+
+LEFT, RIGHT = [2.0, 3.0, 1.57], [8.0, 3.0, 1.57]
+
+
+def main() -> None:
+    """Drive until somebody ends it."""
+    link = RobotLink(RobotSetup.from_json(sys.argv[1]))
+    link.start()
+    print("on", flush=True)
+    while True:
+        for place in (LEFT, RIGHT):
+            try:
+                link.do("go", to=place)
+            except DeviceError as error:
+                print(f"broken off: {error}", flush=True)
+                link.release()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,185 @@
+"""Whatever becomes of the program, the robot stops; and whatever becomes of the robot is said."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+from tangy_hw.devices import DeviceError
+from tangy_hw.robot import BrokenOff
+from tangy_hw.robot_link import RobotLink
+from tangy_tui.live.bench import Bench
+from tests.real.bench_setup import setup_on
+
+ROOT = Path(__file__).parents[2]
+STOPS = 0.6  # s after the program's end in which the base stands still
+PATIENCE = 30.0
+
+pytestmark = pytest.mark.xdist_group("robot")
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench(seed=1, users=2, stepped=False)
+    yield bench
+    bench.close()
+
+
+class Program:
+    """A program on a terminal of its own that drives the robot up and down."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.terminal, theirs = pty.openpty()
+        command = [sys.executable, "-m", "tests.real.driving_program", setup_on(bench).to_json()]
+        self.process = subprocess.Popen(
+            command, cwd=ROOT, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True
+        )
+        os.close(theirs)
+
+    def close(self) -> None:
+        with suppress(ProcessLookupError):
+            self.process.send_signal(signal.SIGCONT)
+            self.process.kill()
+        self.process.wait()
+        if self.terminal >= 0:
+            os.close(self.terminal)
+
+    def hang_up(self) -> None:
+        os.close(self.terminal)
+        self.terminal = -1
+        self.process.send_signal(signal.SIGHUP)
+
+
+@pytest.fixture
+def program(bench: Bench) -> Iterator[Program]:
+    program = Program(bench)
+    wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+    yield program
+    program.close()
+
+
+def wait_until(holds: Callable[[], bool], what: str) -> None:
+    until = time.monotonic() + PATIENCE
+    while not holds():
+        assert time.monotonic() < until, f"it did not come about that {what}"
+        time.sleep(0.01)
+
+
+def speed(bench: Bench) -> float:
+    """How fast the robot goes, by where it really is, in m/s of the bench's time."""
+    before = bench.do("truth")["truth"]
+    time.sleep(0.1)
+    after = bench.do("truth")["truth"]
+    way = sum((a - b) ** 2 for a, b in zip(after["pose"][:2], before["pose"][:2], strict=True))
+    return float(way**0.5 / max(1e-6, after["time"] - before["time"]))
+
+
+def seconds_to_stop(bench: Bench) -> float:
+    """The bench's time until the robot stands, from now on."""
+    began = bench.do("truth")["truth"]["time"]
+    until = time.monotonic() + PATIENCE
+    while time.monotonic() < until:
+        truth = bench.do("truth")["truth"]
+        if not truth["moving"]:
+            return float(truth["time"] - began)
+        time.sleep(0.01)
+    return PATIENCE
+
+
+@pytest.mark.parametrize("ending", ["killed", "hung", "hung up"])
+def test_the_base_stops_when_the_program_has_ended_or_hangs(
+    bench: Bench, program: Program, ending: str
+) -> None:
+    wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+    if ending == "killed":
+        program.process.kill()
+    elif ending == "hung":
+        program.process.send_signal(signal.SIGSTOP)
+    else:
+        program.hang_up()
+
+    assert seconds_to_stop(bench) <= STOPS
+    stood = bench.do("truth")["truth"]["pose"]
+    time.sleep(0.5)
+    assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
+
+
+def test_a_program_that_lives_again_does_not_drive_on_by_itself(
+    bench: Bench, program: Program
+) -> None:
+    program.process.send_signal(signal.SIGSTOP)
+    assert seconds_to_stop(bench) <= STOPS
+    program.process.send_signal(signal.SIGCONT)
+
+    said = b""
+    until = time.monotonic() + PATIENCE
+    while b"broken off" not in said and time.monotonic() < until:
+        said += os.read(program.terminal, 1000)
+    assert b"the program says nothing" in said
+
+
+@pytest.fixture
+def link(bench: Bench) -> Iterator[RobotLink]:
+    link = RobotLink(setup_on(bench))
+    link.start()
+    yield link
+    link.close()
+
+
+def test_a_stop_overtakes_a_drive_and_latches(bench: Bench, link: RobotLink) -> None:
+    drive = link.ask("go", to=[8.0, 3.0, 1.57])
+    wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+    link.stop("somebody said so")
+
+    assert seconds_to_stop(bench) <= STOPS
+    with pytest.raises(BrokenOff, match="somebody said so"):
+        drive.result(PATIENCE)
+    with pytest.raises(BrokenOff, match="somebody said so"):
+        link.do("go", to=[8.0, 3.0, 1.57])
+    link.release()
+    assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
+
+
+def test_a_laser_that_falls_silent_stops_the_robot(bench: Bench, link: RobotLink) -> None:
+    took = []
+    for place in ([8.0, 3.0, 1.57], [2.0, 3.0, 1.57]):
+        drive = link.ask("go", to=place)
+        wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+        bench.do("inject", kind="laser-disconnected")
+        took.append(seconds_to_stop(bench))
+        with pytest.raises(BrokenOff, match="laser scanner says nothing"):
+            drive.result(PATIENCE)
+        bench.do("lift", kind="laser-disconnected")
+        wait_until(lambda: not link.beat().hazard, "the laser is back")
+
+    assert median(took) <= STOPS
+
+
+def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
+    bench: Bench, link: RobotLink
+) -> None:
+    drive = link.ask("go", to=[8.0, 3.0, 1.57])
+    wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+    assert link.pid is not None
+    os.kill(link.pid, signal.SIGKILL)
+
+    with pytest.raises(BrokenOff, match="has ended"):
+        drive.result(0.35 + PATIENCE)
+    assert link.silent == "the robot process has ended"
+    assert {reading.state for reading in link.health()} == {"STALE"}
+    assert seconds_to_stop(bench) <= STOPS  # the base's own time-out
+    with pytest.raises(DeviceError):
+        link.do("go", to=[5.0, 2.0, 1.57])
+
+    link.restart()
+    assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
