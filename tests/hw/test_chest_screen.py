@@ -204,6 +204,14 @@ class TestReading:
         await until(lambda: second.reading().state == "WARN")
         await second.close()
 
+    @pytest.mark.parametrize(("host", "port"), [("127.0.0.1", 70_000), ("a..b", 0)])
+    async def test_a_place_that_cannot_be_is_told(self, host: str, port: int) -> None:
+        screen = WebChestScreen(host, port)
+        await screen.start()
+        assert screen.reading().state == "ERROR"
+        assert screen.why.startswith(f"screen cannot listen at {host}:{port} (")
+        await screen.close()
+
 
 class TestRequests:
     @pytest.mark.parametrize(

@@ -235,7 +235,10 @@ class TestFaults:
         await laser.close()
         await server.close()
 
-    @pytest.mark.parametrize("address", ["tcp://", "udp://a:1", "tcp://x:y", "/dev/no-such-port"])
+    @pytest.mark.parametrize(
+        "address",
+        ["tcp://", "udp://a:1", "tcp://x:y", "tcp://a..b:1", "", "/dev/null", "/dev/no-such-port"],
+    )
     async def test_an_address_that_is_none_is_told(self, address: str) -> None:
         laser = ScipLaser(address)
         await laser.start()

@@ -171,8 +171,8 @@ class WebChestScreen:
             self._server = await asyncio.start_server(
                 self._serve, self.host, self.port, limit=LONGEST_HEAD
             )
-        except OSError as error:
-            said = plain(error.strerror or str(error))
+        except (OSError, OverflowError, UnicodeError) as error:  # or no such host or port can be
+            said = plain(getattr(error, "strerror", None) or str(error))
             self._error = f"{self.name} cannot listen at {self.host}:{self.port} ({said})."
             return False
         self.port = self._server.sockets[0].getsockname()[1]

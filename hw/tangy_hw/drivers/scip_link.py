@@ -57,7 +57,7 @@ async def open_link(address: str, baud: int = 115_200) -> Link:
                 return TcpLink(*await asyncio.open_connection(host, port))
         except TimeoutError:
             raise DeviceError("does not answer") from None
-        except OSError as error:
+        except (OSError, UnicodeError) as error:  # UnicodeError: a host that can be none
             why = "nobody listens there" if isinstance(error, ConnectionRefusedError) else error
             raise DeviceError(f"cannot be reached ({plain(str(why))})") from None
     return await SerialLink.open(address, baud)
