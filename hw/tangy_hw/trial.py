@@ -96,7 +96,7 @@ def _tried(
         return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
     why = str(getattr(device, "why", ""))
     if why:
-        return Trial(name, False, why)
+        return Trial(name, False, why.removeprefix(f"{name}: "))  # whose it is stands before it
     link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))
     if link is not None and not link.connected:
         return Trial(name, False, f"nobody answers at {link.url}.")
