@@ -1,0 +1,119 @@
+"""A robot process that is none: what it is asked for is noted, and answered at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tangy_hw.devices import Pose
+from tangy_hw.robot import BrokenOff
+from tangy_hw.robot_link import RobotState
+from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.activity import load_activity
+from tangy_profiles.card_face import called_cells, numbers_of
+from tangy_profiles.cards import judge
+from tangy_profiles.health import Health, Reading
+from tangy_profiles.robot import load_robot
+
+SECONDS = {"perform": 3.0, "go": 8.0, "card": 0.5, "face": 0.5}
+BINGO = load_activity("bingo")
+
+
+@dataclass
+class LaidCard:
+    """A card on the table: its number, its marks, and whether it is seen."""
+
+    number: int
+    marked: int = 0
+    seen: bool = True
+
+
+class FakeLink:
+    """Stands in for `RobotLink`: `done` is what the robot was asked for, in order."""
+
+    def __init__(self, people: tuple[str, ...]) -> None:
+        self.setup = RobotSetup("tangy", "bingo", people)
+        self.state = RobotState(number=1, health=tuple(Reading(d) for d in load_robot().devices))
+        self.time = 0.0
+        self.done: list[tuple[str, dict[str, Any]]] = []
+        self.told: list[str] = []
+        self.cards: dict[str, LaidCard] = {}
+        self.faces: dict[str, str | None] = {}
+        self.place = "front"
+        self.breaks: dict[str, str] = {}
+        """Why what is asked for next is broken off, by what it is."""
+        self.missed: set[str] = set()
+        """Places that it does not arrive at."""
+        self.meanwhile: Callable[[str, float], None] = lambda do, time: None
+        """Is called with what was asked for when it is done: people do something then."""
+
+    @property
+    def said(self) -> list[str]:
+        return [what["text"] for do, what in self.done if do == "perform" and what.get("text")]
+
+    def sign(self, *seats: int) -> None:
+        asks = tuple((seat, self.time + seat / 100) for seat in seats)
+        self.state = replace(self.state, asks=asks)
+
+    def health(self) -> Health:
+        return self.state.health
+
+    def ask(self, do: str, **what: Any) -> Future[dict[str, Any]]:
+        self.done.append((do, what))
+        answer: Future[dict[str, Any]] = Future()
+        if do in self.breaks:
+            answer.set_exception(BrokenOff(self.breaks.pop(do)))
+            return answer
+        self.time += what["seconds"] if do == "wait" else SECONDS.get(do, 0.0)
+        self.time += what.get("after", 0.0)
+        self.meanwhile(do, self.time)
+        answer.set_result(self._answer(do, what))
+        return answer
+
+    def do(self, do: str, **what: Any) -> dict[str, Any]:
+        return self.ask(do, **what).result()
+
+    def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.0) -> bool:
+        return True
+
+    def beat(self) -> RobotState:
+        return self.state
+
+    def tell(self, do: str, **_: Any) -> None:
+        self.told.append(do)
+
+    def stop(self, why: str) -> None:
+        self.told.append(f"stop: {why}")
+
+    def release(self) -> None:
+        self.told.append("release")
+
+    def _answer(self, do: str, what: dict[str, Any]) -> dict[str, Any]:
+        if do == "go":
+            arrived = what["name"] not in self.missed
+            if arrived:
+                self.place = what["name"]
+                self.state = replace(self.state, pose=Pose(*what["to"]))
+            return {"arrived": arrived}
+        if do == "face":
+            return {"person": self.faces.get(self.place, self.place)}
+        if do == "card":
+            return self._card(set(what["called"]))
+        return {}
+
+    def _card(self, called: set[int]) -> dict[str, Any]:
+        card = self.cards.get(self.place)
+        if card is None or not card.seen:
+            return {"card": None, "marked": 0, "hidden": 0, "state": "occluded", "problem": "?"}
+        numbers = numbers_of(BINGO.deck, card.number, self.setup.deck_seed)
+        cells = called_cells(BINGO.deck, numbers, called)
+        state = judge(BINGO.card_states, BINGO.deck, card.marked, cells)
+        return {
+            "card": card.number,
+            "marked": card.marked,
+            "hidden": 0,
+            "state": state,
+            "problem": "",
+        }

@@ -1,0 +1,304 @@
+"""The real world: what a robot does about each behaviour, and what it makes of what it sees."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, cast
+
+import pytest
+
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.world import PATIENCES, SIGN_SECONDS, LiveWorld
+from tangy_profiles.card_face import called_cells, numbers_of
+from tangy_profiles.faults import Remedy
+from tangy_profiles.health import Health
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_profiles.state import FRONT, Outcome
+from tests.hw.links import BINGO, FakeLink, LaidCard
+
+PEOPLE = ("user1", "user2", "user3", "user4")
+CARD = 7
+
+
+def world_of(link: FakeLink, **more: Any) -> LiveWorld:
+    names = {"user1": "Ann", "user2": "Ben", "user3": "Cleo", "user4": "Dan"}
+    world = LiveWorld(
+        BINGO, PEOPLE, cast(RobotLink, link), load_robot(), load_room(), seed=1, names=names, **more
+    )
+    world.begin()
+    return world
+
+
+@pytest.fixture
+def link() -> FakeLink:
+    return FakeLink(PEOPLE)
+
+
+@pytest.fixture
+def world(link: FakeLink) -> LiveWorld:
+    return world_of(link)
+
+
+def do(world: LiveWorld, name: str, target: str | None = None, strategy: str = "") -> Outcome:
+    behaviour = BINGO.behaviour(name)
+    return world.execute(BINGO.action(behaviour, target, strategy or None))
+
+
+def opened(world: LiveWorld) -> LiveWorld:
+    do(world, "greeting")
+    return world
+
+
+def beside(world: LiveWorld, link: FakeLink, seat: int, card: LaidCard) -> LiveWorld:
+    """Let the robot stand beside somebody who asks."""
+    opened(world)
+    person = PEOPLE[seat - 1]
+    link.cards[person] = card
+    link.sign(seat)
+    world.observe()
+    do(world, "navigate to user", person)
+    return world
+
+
+def called_of(world: LiveWorld, card: int) -> int:
+    numbers = numbers_of(BINGO.deck, card, world.link.setup.deck_seed)
+    return called_cells(BINGO.deck, numbers, set(world.called))
+
+
+def test_a_number_is_said_shown_and_called(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    outcome = do(world, "call number")
+    (number,) = outcome.numbers
+    label = BINGO.deck.label(number)
+    assert outcome.completed and world.called == [number]
+    assert label in link.said[-1]
+    shown = link.done[-2][1]["picture"] if link.done[-1][0] == "wait" else link.done[-1][1]
+    assert shown["number"] == label and list(shown["before"]) == []
+
+
+def test_no_number_comes_twice_and_another_seed_has_another_order(link: FakeLink) -> None:
+    world = opened(world_of(link))
+    numbers = [do(world, "call number").numbers[0] for _ in range(75)]
+    assert sorted(numbers) == list(BINGO.deck.numbers)
+    assert do(world, "call number").numbers == ()
+    other = LiveWorld(
+        BINGO, PEOPLE, cast(RobotLink, FakeLink(PEOPLE)), load_robot(), load_room(), seed=2
+    )
+    other.begin()
+    assert [do(other, "call number").numbers[0] for _ in range(75)] != numbers
+
+
+def test_calls_keep_their_pace(link: FakeLink) -> None:
+    world = opened(world_of(link, pace=20.0))
+    do(world, "call number")
+    began = link.time
+    do(world, "call number")
+    assert link.time - began >= 18
+
+
+def test_a_call_that_was_broken_off_was_not_made(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    link.breaks["perform"] = "emergency stop is pressed"
+    outcome = do(world, "call number")
+    assert not outcome.completed and outcome.numbers == () and world.called == []
+    assert world.broken == "emergency stop is pressed"
+    assert world.tracker.count("call number") == 0
+
+
+def test_signs_are_requests_the_first_first(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    link.state = replace(link.state, asks=((3, 5.0), (1, 9.0)))
+    state = world.observe()
+    assert state.attended == "user3" and world.tracker.queue == ["user3", "user1"]
+
+
+def test_who_waits_and_takes_the_sign_down_is_not_visited(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    opened(world)
+    link.sign(2)
+    world.observe()
+    link.sign()
+    assert world.observe().attended == "user2"  # it may only have been hidden for a moment
+    link.time += 10
+    assert world.observe().attended is None
+
+
+def test_the_robot_goes_to_who_asks_and_reads_the_card(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 2, LaidCard(CARD))
+    state = world.observe()
+    assert state.place == "user2" and tuple(state.situation) == ("help", "AR", "correctly marked")
+    (goal,) = [what["to"] for what_do, what in link.done if what_do == "go"]
+    stand = load_room().stand("user2", PEOPLE)
+    assert goal[:2] == [stand.x, stand.y]
+
+
+def test_a_place_that_is_not_reached_is_not_where_the_robot_is(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    link.missed.add("user2")
+    beside(world, link, 2, LaidCard(CARD))
+    assert world.observe().place == FRONT
+    assert tuple(world.observe().situation) == ("navigate", "AR", "occluded")
+
+
+def test_wrong_marks_are_named_and_seen_to_be_taken_off(world: LiveWorld, link: FakeLink) -> None:
+    card = LaidCard(CARD)
+    beside(world, link, 1, card)
+    wrong = next(cell for cell in range(25) if not called_of(world, CARD) >> cell & 1)
+    card.marked = called_of(world, CARD) | 1 << wrong
+    do(world, "navigate to user", "user1")
+    assert world.observe().situation.user_state == "incorrectly marked"
+
+    def takes_off(what: str, time: float) -> None:
+        if what == "card" and time - said_at > 4:
+            card.marked &= ~(1 << wrong)
+            link.sign()
+
+    said_at = link.time + 3
+    link.meanwhile = takes_off
+    outcome = do(world, "remove markers", "user1", "praise")
+    number = numbers_of(BINGO.deck, CARD, link.setup.deck_seed)[wrong]
+    assert outcome.numbers == (number,) and BINGO.deck.label(number) in link.said[-1]
+    response = outcome.response
+    assert response is not None and response.strategy == "praise" and response.person == "user1"
+    assert response.followed and response.complied
+    assert response.seconds == pytest.approx(4, abs=1.5)
+    assert world.observe().closed == "user1"  # the card is right, and the request is over
+
+
+def test_who_does_it_late_followed_and_did_not_comply(world: LiveWorld, link: FakeLink) -> None:
+    card = LaidCard(CARD, seen=False)
+    beside(world, link, 1, card)
+    began = link.time
+
+    def moves(what: str, time: float) -> None:
+        card.seen = time - began > 3 + 1.4 * BINGO.patience
+
+    link.meanwhile = moves
+    response = do(world, "move card closer", "user1").response
+    assert response is not None and response.followed and not response.complied
+    reminders = [w for d, w in link.done if d == "perform" and "text" not in w and "picture" in w]
+    assert len(reminders) == 1  # a plain one, on the screen
+    assert world.observe().situation.user_state == "correctly marked"
+
+
+def test_who_does_nothing_did_not_follow(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 1, LaidCard(CARD, seen=False))
+    began = link.time
+    response = do(world, "move card closer", "user1").response
+    assert response is not None and not response.followed and not response.complied
+    assert link.time - began >= PATIENCES * BINGO.patience
+    assert world.observe().situation.user_state == "occluded"
+
+
+def test_encouragement_has_worked_when_the_sign_goes_down(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    link.meanwhile = lambda what, time: link.sign() if what == "wait" else None
+    outcome = do(world, "encourage", "user1")
+    assert outcome.response is not None and outcome.response.complied
+    assert world.observe().closed == "user1" and world.observe().attended is None
+
+
+def test_a_sign_that_stays_up_keeps_the_request_open(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    began = link.time
+    outcome = do(world, "encourage", "user1")
+    assert outcome.response is not None and not outcome.response.followed
+    assert link.time - began >= SIGN_SECONDS
+    assert world.observe().closed is None and world.observe().attended == "user1"
+
+
+def test_of_a_request_without_a_sign_it_is_not_seen_what_came_of_it(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    opened(world)
+    link.cards["user3"] = LaidCard(CARD)
+    world.ask_for("user3")
+    assert world.observe().attended == "user3"
+    do(world, "navigate to user", "user3")
+    outcome = do(world, "encourage", "user3")
+    assert outcome.completed and outcome.response is None
+    assert world.observe().closed == "user3"
+
+
+def test_nothing_is_asked_about_a_card_that_is_not_seen(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 1, LaidCard(CARD, seen=False))
+    before = len(link.said)
+    assert not do(world, "remove markers", "user1").completed
+    assert len(link.said) == before
+
+
+def test_a_win_is_celebrated_beside_the_winner_only(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    assert not do(world, "celebrate").completed
+    card = LaidCard(CARD)
+    for _ in range(75):
+        do(world, "call number")
+        card.marked = called_of(world, CARD)
+        if any(card.marked & line == line for line in BINGO.deck.lines):
+            break
+    beside(world, link, 4, card)
+    assert world.observe().situation.user_state == "bingo"
+    assert do(world, "celebrate", "user4").completed
+    assert do(world, "valediction").completed and world.over
+
+
+def test_faces_are_looked_at_where_they_are_known(link: FakeLink) -> None:
+    world = world_of(link, knows_faces=True)
+    seen: list[tuple[str, str, Any]] = []
+    world.looked = lambda what, place, found: seen.append((what, place, found))
+    link.faces["user2"] = None
+    beside(world, link, 2, LaidCard(CARD))
+    assert seen[0] == ("face", "user2", None) and seen[1][:2] == ("card", "user2")
+
+
+def test_a_call_can_be_taken_back_and_comes_again(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    assert world.void_call() is None
+    (first,) = do(world, "call number").numbers
+    assert world.void_call() == first and world.called == []
+    rest = [do(world, "call number").numbers[0] for _ in range(75)]
+    assert rest[-1] == first and sorted(rest) == list(BINGO.deck.numbers)
+
+
+def test_a_critical_fault_breaks_a_behaviour_off(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    asked: list[str] = []
+    answers = iter([False, True])
+    link.wait = lambda asked, seconds=0.0: next(answers, True)  # type: ignore[method-assign]
+    ask = link.ask
+    link.ask = lambda do, **what: (asked.append(do), ask(do, **what))[1]  # type: ignore[method-assign]
+
+    def shows(_: Health) -> dict[str, bool]:
+        return {"laser-disconnected": True}
+
+    world.diagnosed = shows
+    do(world, "call number")
+    assert "cancel" in asked
+
+
+def test_halting_stops_the_robot_before_anything_else(world: LiveWorld, link: FakeLink) -> None:
+    assert world.recover(Remedy("halt", "base-stuck")) == 0.0
+    assert link.told == ["stop: base-stuck"]
+    world.recover(Remedy("resume", "base-stuck"))
+    assert link.told[-1] == "release"
+
+
+def test_people_are_asked_aloud_and_given_time(world: LiveWorld, link: FakeLink) -> None:
+    shown = {"camera-occluded": False}
+    world.diagnosed = lambda _: {} if link.time > 9 else shown
+    took = world.recover(
+        Remedy("ask", "camera-occluded", "camera", speech="Please uncover my eyes.", image="?")
+    )
+    assert link.said[-1] == "Please uncover my eyes." and 5 < took < 25
+
+
+def test_a_request_that_is_set_aside_is_over(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    link.sign()
+    world.recover(Remedy("set aside", "request-stuck", person="user1"))
+    assert world.observe().attended is None
