@@ -146,6 +146,9 @@ class TestDriving:
             assert hypot(pose.x - there.x, pose.y - there.y) > 2.0
             assert world.wheels.odometry == counted
             assert world.floor.clear(pose.x, pose.y, RADIUS) and pose.y < world.room.table[1]
+            world.step(1.0)
+            assert "carried-off" in world.faults
+        assert drive_to(world, "user2") and "carried-off" not in world.faults  # it found its way
 
 
 class TestSensing:

@@ -18,7 +18,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
-from tangy_sim.bench.drive import RADIUS, Odometer, Wheels
+from tangy_sim.bench.drive import RADIUS, Odometer, Wheels, moved
 from tangy_sim.bench.faults import COMES_BACK, Faults
 from tangy_sim.bench.floor import Floor, Pose
 from tangy_sim.bench.hearing import Hearing, speaking_seconds
@@ -39,6 +39,7 @@ NOD = "head/neck nod"
 LOOKS_DOWN = -10.0  # degrees of the neck from which cards are looked at
 FACES_IT = 25.0  # degrees off the direction of the table
 GRIP = 0.08  # how much of what the wheels turn the robot goes along on a rug that slides
+TURNED = 1.3  # rad that somebody who pushes the robot off turns it by at most
 HELD = {"emergency-stop", "base-failed"}  # kinds with which the wheels have no power
 
 
@@ -177,9 +178,14 @@ class BenchWorld:
             place = self.nearest()
             if place:
                 people.meet(place)
-                chair = self.faults.present.get("path-detour")
-                if chair is not None and chair.shown:
-                    self.faults.lift("path-detour")
+                self._is_over()
+
+    def _is_over(self) -> None:
+        """Let end what ends by itself when the robot has found its way to a place."""
+        for kind in ("path-detour", "carried-off"):
+            fault = self.faults.present.get(kind)
+            if fault is not None and fault.shown:
+                self.faults.lift(kind)
 
     # ------------------------------------------------------------------------- what is seen
 
@@ -233,6 +239,7 @@ class BenchWorld:
                 self.floor.block(self.wheels.pose)
             case "carried-off":
                 self._carry_off()
+                fault.shown = True
             case "card-out-of-sight" if place in self.asking:
                 fault.person = place
                 self.people.hide(place)
@@ -272,14 +279,15 @@ class BenchWorld:
         fault.shown = self.floor.drop_ahead(self.wheels.pose, AHEAD)
 
     def _carry_off(self) -> None:
-        """Put the robot somewhere else and another way round, without the wheels' turning."""
+        """Push the robot somewhere else, and turn it a little, without the wheels' turning."""
         pose, room, random = self.wheels.pose, self.room, self._physics
         for _ in range(200):
             x, y = random.uniform(0, room.width), random.uniform(0, room.depth)
-            far = np.hypot(x - pose.x, y - pose.y)
-            if far > 2.0 and y < room.table[1] and self.floor.clear(x, y, RADIUS + 0.2):
-                heading = float(random.uniform(-pi, pi))
-                self.wheels.pose = Pose(float(x), float(y), heading)
+            far = hypot(x - pose.x, y - pose.y) > 2.0 and y < room.table[1]
+            at_none = all(hypot(p.x - x, p.y - y) > LEAVES for p in self._stands.values())
+            if far and at_none and self.floor.clear(x, y, RADIUS + 0.2):
+                heading = pose.heading + float(random.uniform(-TURNED, TURNED))
+                self.wheels.pose = moved(Pose(float(x), float(y), heading), 0.0, 0.0)
                 break
 
     # ------------------------------------------------------------------------------ truth
