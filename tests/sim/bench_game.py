@@ -64,7 +64,6 @@ class Player:
     world: BenchWorld
     tracker: Tracker = field(init=False)
     rows: Counter[Situation] = field(default_factory=Counter)
-    judged_wrong: int = 0
 
     def play(self, seed: int = 1, most: int = 400) -> None:
         """Play a game to its end."""
@@ -85,6 +84,7 @@ class Player:
     def _look(self) -> None:
         """See signs, and the card beside the robot."""
         world, tracker = self.world, self.tracker
+        assert set(tracker.queue) <= set(world.asking), "a sign came down without a reason"
         for person in world.asking:
             tracker.ask(person)
         tracker.seen = None

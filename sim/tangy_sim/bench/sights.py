@@ -181,8 +181,9 @@ class HeadCamera:
     def _window(self, heading: int) -> Picture:
         """Cut what is seen that way (degrees) out of the picture of the room all around."""
         left = (-heading * DEGREE) % (360 * DEGREE)
-        around = self._around
-        return np.ascontiguousarray(np.roll(around, -left, axis=1)[:, : SIZE[0]])
+        seen = self._around[:, left : left + SIZE[0]]
+        more = SIZE[0] - seen.shape[1]
+        return np.hstack((seen, self._around[:, :more])) if more else seen.copy()
 
     @cached_property
     def _around(self) -> Picture:

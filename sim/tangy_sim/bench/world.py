@@ -204,7 +204,7 @@ class BenchWorld:
         sitter = self.people.sitters.get(place)
         off = abs((pose.heading - pi / 2 + pi) % (2 * pi) - pi)
         if sitter is None or off > FACES_IT * pi / 180:
-            return HeadScene("room", heading=round(pose.heading * 90 / pi) * 2)
+            return HeadScene("room", heading=5 * round(pose.heading * 36 / pi))
         if self.joints.angle(NOD) > LOOKS_DOWN:
             return HeadScene("face", sitter.id)
         return HeadScene(
