@@ -60,18 +60,14 @@ class Settings:
             raise self.wrong(f"{key} must be a number.")
         return float(value)
 
-    def numbers(self, key: str, count: int, default: float | None = None) -> list[float]:
-        """Take as many numbers, in a text with commas between them."""
-        words = self.text(key, None if default is None else "").replace(",", " ").split()
-        if not words and default is not None:
-            return [default] * count
+    def joints(self, key: str) -> dict[str, str]:
+        """Take how joints are named elsewhere, as the drivers of ROS have it."""
+        from tangy_hw.drivers.ros_messages import joined_names
+
         try:
-            values = [float(word) for word in words]
-        except ValueError:
-            values = []
-        if len(values) != count:
-            raise self.wrong(f"{key} must be {count} numbers with commas between them.")
-        return values
+            return dict(joined_names(self.text(key, "")))
+        except ValueError as error:
+            raise self.wrong(f"{key}: {error}") from None
 
     def flag(self, key: str, default: bool) -> bool:
         """Take true or false."""
@@ -128,7 +124,7 @@ Opens = Callable[[Wiring, Settings], Device]
 
 def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
     from tangy_hw.drivers.ros_arms import RosArms
-    from tangy_hw.drivers.ros_base import RosBase
+    from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
     from tangy_hw.drivers.ros_laser import RosLaser
     from tangy_hw.drivers.ros_status import RosStopButton
     from tangy_hw.drivers.ros_voice import RosVoice
@@ -143,6 +139,8 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
                 drive=settings.text("drive", "/cmd_vel"),
                 odometry=settings.text("odometry", "/odom"),
                 stamped=settings.flag("stamped", False),
+                # A bench in a hurry is told by its own time; the machine's would make runs differ.
+                repeat=0.0 if isinstance(wiring.clock, SteppedClock) else REPEAT_SECONDS,
                 diagnostics=diagnostics,
             )
         case "laser":
@@ -172,6 +170,8 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
         wiring.robot.limbs,
         trajectory=settings.text("trajectory", "/joint_trajectory"),
         states=settings.text("states", "/joint_states"),
+        torque=settings.text("torque", "/joint_torque"),
+        names=settings.joints("names"),
         diagnostics=diagnostics,
     )
 
@@ -185,6 +185,8 @@ def _scip(wiring: Wiring, settings: Settings) -> Device:
         clock=wiring.clock.now,
         stale_after=wiring.robot.devices[settings.device].stale_after,
         turned=settings.number("turned", 0.0),
+        flipped=settings.flag("flipped", False),
+        skip=int(settings.number("skip", 0)),
         baud=int(settings.number("baud", 115_200)),
     )
 
@@ -211,21 +213,15 @@ def _spoken(wiring: Wiring, settings: Settings) -> Device:
 
 
 def _dynamixel(wiring: Wiring, settings: Settings) -> Device:
-    from tangy_hw.drivers.dynamixel import CENTRE, DynamixelArms, Servo
+    from tangy_hw.drivers.dynamixel import DynamixelArms, servos_of
 
-    limbs = wiring.robot.limbs
-    joints = [f"{limb.name}/{joint}" for limb in limbs.values() for joint in limb.joints]
-    ids = settings.numbers("ids", len(joints))
-    turns = settings.numbers("turns", len(joints), 1.0)
-    zeros = settings.numbers("zeros", len(joints), CENTRE)
-    servos = {
-        joint: Servo(int(id), int(turn), zero)
-        for joint, id, turn, zero in zip(joints, ids, turns, zeros, strict=True)
-        if id > 0  # a joint with the id 0 has no servo
-    }
+    try:
+        servos = servos_of(settings.text("servos"))
+    except ValueError as error:
+        raise settings.wrong(f"servos: {error}") from None
     return DynamixelArms(
         settings.text("at"),
-        limbs,
+        wiring.robot.limbs,
         servos,
         name=settings.device,
         baud=int(settings.number("baud", 1_000_000)),
