@@ -36,7 +36,7 @@ from tangy_hw.navigation.planning import plan
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
 from tangy_hw.senses import Senses
-from tangy_profiles.health import WARN, Fact, Health, Reading
+from tangy_profiles.health import ERROR, WARN, Fact, Health, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
@@ -47,6 +47,7 @@ POSE_SECONDS = 1.5  # in which arms are where they should be
 POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
+LOST_FIT, LOST_SPREAD = 0.85, 0.5  # as the rules for faults have it
 KEPT_SECONDS = 3.0  # for which a drive that was broken off still says why
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
@@ -119,6 +120,7 @@ class LiveRobot:
         self._gaze = ""
         self._blocked: Pose | None = None
         self._kept: tuple[Mapping[str, Fact], float] = {}, 0.0
+        self._worst: dict[str, Fact] = {}
         self._ticked = clock.now()
         self._watchdogs = Watchdogs(robot, self._reports())
         self._ticking: asyncio.Task[None] | None = None
@@ -185,10 +187,12 @@ class LiveRobot:
         text: str = "",
         picture: Picture | None = None,
         posture: Mapping[str, Sequence[float]] | None = None,
+        gazes: bool = False,
     ) -> dict[str, bool]:
         """Say, show and gesture at once; return which of it was done.
 
-        What cannot be done is left out: its device says so in its reading.
+        What cannot be done is left out: its device says so in its reading. With an arm that has
+        an error there are no gestures; the eyes are still turned, which `gazes` says this is for.
 
         Raises:
             BrokenOff: it was stopped meanwhile.
@@ -198,7 +202,7 @@ class LiveRobot:
             doing["said"] = self._body.voice.say(text)
         if self._body.screen is not None and picture is not None:
             doing["shown"] = self._body.screen.show(picture)
-        if self._body.arms is not None and posture:
+        if self._body.arms is not None and posture and (gazes or self._has_arms):
             doing["posed"] = self._body.arms.pose(posture, POSE_SECONDS)
             self._gaze = ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
@@ -247,7 +251,7 @@ class LiveRobot:
         """Turn the eyes to a card or a face, as the robot's profile says how."""
         angles = self.robot.gaze.get(what)
         if angles and self._body.arms is not None and self._gaze != what:
-            await self.perform(posture=angles)
+            await self.perform(posture=angles, gazes=True)
             self._gaze = what
 
     def replan(self) -> None:
@@ -257,6 +261,11 @@ class LiveRobot:
             seen = self.navigator.obstacles
             if plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen) is not None:
                 self._blocked = None
+
+    @property
+    def _has_arms(self) -> bool:
+        arms = self._body.arms
+        return arms is not None and arms.reading().state != ERROR
 
     def drive_by_hand(self, twist: Twist) -> None:
         """Drive as somebody says who holds a key; it holds for a moment, and not where it must
@@ -300,6 +309,7 @@ class LiveRobot:
     async def _drive(self, seconds: float) -> bool:
         """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
         navigator, now = self.navigator, self._clock.now()
+        self._worst.clear()
         since = {"blocked": now, "hazard": now}
 
         def over() -> bool:
@@ -318,10 +328,9 @@ class LiveRobot:
         await self.passing.until(over, seconds)
         arrived = navigator.state == "arrived"
         hazard = self.hazard
+        # What showed only while it drove is evidence for a moment longer.
+        self._kept = dict(self._worst), self._clock.now() + KEPT_SECONDS
         if not arrived:
-            # What showed only while it drove is evidence for a moment longer.
-            facts = {name: navigator.facts()[name] for name in ("still", "slip")}
-            self._kept = facts, self._clock.now() + KEPT_SECONDS
             navigator.cancel()
             await self._body.base.stop()
         if hazard and not arrived:
@@ -338,6 +347,7 @@ class LiveRobot:
         if odometry is not None:
             seen = None if scan is None else scan.value
             command = self.navigator.tick(odometry.value, seen, passed)
+            self._note_worst()
         if self._hand is not None:
             twist, until = self._hand
             command = twist if now < until else STILL
@@ -348,6 +358,17 @@ class LiveRobot:
         if command != STILL or self._driven != STILL:
             self._send(command)
         return command != STILL or self.going != ""
+
+    def _note_worst(self) -> None:
+        """Keep the worst of what is seen on a drive: some of it passes before anybody looks."""
+        facts, worst = self.navigator.facts(), self._worst
+        for name in ("still", "slip"):
+            worst[name] = max(float(worst.get(name, 0.0)), float(facts[name]))
+        if facts["path"] == "replanned":
+            worst["path"] = "replanned"
+        lost = float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD
+        if lost:
+            worst |= {"fit": facts["fit"], "spread": facts["spread"]}
 
     def _send(self, command: Twist) -> None:
         """Tell the base; a command that could not be handed over is followed by the next."""
@@ -378,19 +399,24 @@ class LiveRobot:
         return next((r for r in readings if r.device == name), Reading(name, state=WARN))
 
     def _base_reading(self) -> Reading:
-        facts, own = self.navigator.facts(), self._body.base.reading()
-        kept, until = self._kept
+        own, facts = self._body.base.reading(), self.navigator.facts()
         told = {name: facts[name] for name in ("still", "slip")}
-        if self._clock.now() < until:
-            told |= kept
-        return own._replace(facts={**own.facts, **told})
+        return own._replace(facts={**own.facts, **told, **self._kept_of("still", "slip")})
 
     def _localisation_reading(self) -> Reading:
-        return self.navigator.readings()[0]
+        reading = self.navigator.readings()[0]
+        return reading._replace(facts={**reading.facts, **self._kept_of("fit", "spread")})
 
     def _navigator_reading(self) -> Reading:
         reading = self.navigator.readings()[1]
-        return reading._replace(facts={"path": "none"}) if self._blocked is not None else reading
+        told = {"path": "none"} if self._blocked is not None else self._kept_of("path")
+        return reading._replace(facts={**reading.facts, **told})
+
+    def _kept_of(self, *names: str) -> dict[str, Fact]:
+        kept, until = self._kept
+        if self._clock.now() >= until:
+            return {}
+        return {name: kept[name] for name in names if name in kept}
 
 
 async def _quietly(work: Coroutine[Any, Any, None]) -> None:

@@ -34,8 +34,9 @@ from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 
 WAKE_SECONDS = 8.0  # in which devices that are switched on begin to speak
-SETTLE_LOOKS = 5  # pictures after which a sign that went up or down is believed to
-SETTLE_SECONDS = 1.0  # of real time at most
+PIPE_LOOKS = 3  # pictures that may have been on their way
+AGREED_LOOKS = 2  # pictures in a row that show no other signs than are believed to be up
+SETTLE_SECONDS = 2.0  # of real time at most
 
 
 class Settings:
@@ -266,14 +267,20 @@ def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict
 class Wired:
     """A robot with all that belongs to it; within `async with` it is switched on."""
 
-    def __init__(self, robot: LiveRobot, sensors: Sensors, senses: Senses) -> None:
+    def __init__(
+        self, robot: LiveRobot, sensors: Sensors, senses: Senses, bench: Rosbridge | None = None
+    ) -> None:
         self.robot = robot
+        self._bench = bench
         self._sensors = sensors
         self._senses = senses
         self._open = AsyncExitStack()
 
     async def __aenter__(self) -> Wired:
         try:
+            if self._bench is not None:
+                self._open.push_async_callback(self._bench.close)
+                await self._bench.start()
             await self._open.enter_async_context(self._sensors)
             self._open.callback(self._senses.close)
             self._open.push_async_callback(self.robot.close)
@@ -302,8 +309,10 @@ class Wired:
         requests = self.robot.requests
         if requests is None:
             return
-        looks, until = requests.looks + SETTLE_LOOKS, time.monotonic() + SETTLE_SECONDS
-        while requests.looks < looks and time.monotonic() < until:  # noqa: ASYNC110
+        first, until = requests.looks + PIPE_LOOKS, time.monotonic() + SETTLE_SECONDS
+        while time.monotonic() < until:
+            if requests.looks >= first and requests.agreed >= AGREED_LOOKS:
+                return
             await asyncio.sleep(0.01)
 
 
@@ -345,9 +354,12 @@ def wire(setup: RobotSetup) -> Wired:
         requests=_requests(setup, room),
         stepped=setup.stepped,
     )
+    bench = None
     if isinstance(clock, SteppedClock):
-        clock.follow(next(iter(wiring.links.values())), _counted(body.laser))
-    return Wired(live, sensors, senses)
+        # A link of its own: what it says is not to be taken for a word of the robot's.
+        bench = Rosbridge(next(iter(wiring.links)), clock=clock.now)
+        clock.follow(bench, _counted(body.laser))
+    return Wired(live, sensors, senses, bench)
 
 
 def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from math import pi
+from math import hypot, pi
 from random import Random
 from typing import Any
 
@@ -36,6 +36,7 @@ PATIENCES = 2.0  # windows of patience after which it is taken that it is not do
 SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
 WITHDRAWN_SECONDS = 3.0  # without a sign after which somebody does not ask any more
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
+AWAY = 0.5  # metres from the front at which the robot goes there before a game
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
 
@@ -103,6 +104,11 @@ class LiveWorld:
         """Begin a new game and return its first state."""
         self._begin()
         self.over = False
+        front = self._room.front
+        pose = self.link.state.pose
+        if hypot(pose.x - front.x, pose.y - front.y) > AWAY:
+            with suppress(DeviceError):  # where it cannot, the first behaviour says so
+                self._do("go", to=list(Pose(front.x, front.y, FACING)), name=FRONT)
         self._settle()
         return self.observe()
 

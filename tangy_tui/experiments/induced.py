@@ -7,7 +7,7 @@ one that could not in its game comes in the next one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 
@@ -116,12 +116,70 @@ def fits(name: str, had: Sequence[str]) -> bool:
     )
 
 
-class InducingWorld(FaultyWorld):
-    """A world in which planned faults come, one after the other: none while another is new.
+class Inducer:
+    """Brings planned faults about, one after the other: none while another is new.
 
     A fault is new until something was done about it. None comes with a behaviour that ends the
     game, and none while `held`, as when a teacher is asked.
     """
+
+    def __init__(self, plan: Sequence[Sequence[Planned]]) -> None:
+        self.held = False
+        self.due: list[Planned] = []
+        """What is to come in this game, also of what could not in those before."""
+        self.induced: list[Induced] = []
+        """What came about in this game."""
+        self._left = list(plan)
+        self._treated: set[str] = set()
+
+    def begin(self) -> None:
+        """Begin the next game of the plan."""
+        self.induced = []
+        self._treated = set()
+        if self._left:
+            self.due = [*self.due, *self._left.pop(0)]
+
+    def choose(
+        self, step: int, action: Action, there: Iterable[Kind], shows: Callable[[Kind], bool]
+    ) -> str:
+        """Return the kind that is to come with an action, "" if none is.
+
+        Args:
+            step: the number of the behaviour that the action is of.
+            there: the kinds that are there.
+            shows: says whether a kind would be seen if it came now.
+        """
+        new = any(kind.code not in self._treated for kind in there)
+        if self.held or new or action.behaviour.effect == "finish":
+            return ""
+        had = [fault.kind.name for fault in self.induced]
+        for planned in self.due:
+            if planned.step > step:
+                continue
+            waited = step - planned.step >= LONG
+            for name in (planned.kind.name, *(planned.others if waited else ())):
+                if fits(name, had) and shows(KINDS[name]):
+                    self.due.remove(planned)
+                    return name
+        return ""
+
+    def came(self, name: str, step: int, seconds: float) -> None:
+        """Note that a fault of a kind has come."""
+        self.induced.append(Induced(KINDS[name], step, seconds))
+
+    def lifted(self, name: str, step: int) -> None:
+        """Note that a fault of a kind was put right."""
+        for fault in self.induced:
+            if fault.kind.name == name and fault.lifted is None:
+                fault.lifted = step
+
+    def treated(self, code: str) -> None:
+        """Note that something is done about a fault."""
+        self._treated.add(code)
+
+
+class InducingWorld(FaultyWorld):
+    """A simulated world in which planned faults come."""
 
     def __init__(
         self,
@@ -132,58 +190,50 @@ class InducingWorld(FaultyWorld):
         plan: Sequence[Sequence[Planned]] = (),
         preferences: Preferences | None = None,
     ) -> None:
-        self.held = False
-        self._plan = plan
-        self._begun = -2  # a world begins when it is made, too
-        self.due: list[Planned] = []
-        """What is to come in this game, also of what could not in those before."""
+        self.inducer = Inducer(plan)
+        self._made = False
         super().__init__(activity, people, seed=seed, preferences=preferences)
+        self._made = True
+
+    @property
+    def induced(self) -> list[Induced]:
+        """What came about in this game."""
+        return self.inducer.induced
 
     def begin(self) -> ActivityState:
         """Begin the next game of the plan."""
-        self._begun += 1
-        self.induced: list[Induced] = []
-        """What came about in this game."""
-        self._treated: set[str] = set()
-        if 0 <= self._begun < len(self._plan):
-            self.due = [*self.due, *self._plan[self._begun]]
+        if self._made:  # a world begins when it is made, too
+            self.inducer.begin()
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
         """Let a planned fault come that can show now, and carry out the action."""
-        if not self.held and not self.over:
+        if not self.over:
             self._induce(action)
         return super().execute(action)
 
     def _induce(self, action: Action) -> None:
-        step = self.tracker.step + 1
-        new = any(fault.kind.code not in self._treated for fault in self.present.values())
-        if new or action.behaviour.effect == "finish":
-            return
-        had = [fault.kind.name for fault in self.induced]
-        for planned in self.due:
-            if planned.step > step:
-                continue
-            waited = step - planned.step >= LONG
-            for name in (planned.kind.name, *(planned.others if waited else ())):
-                if fits(name, had) and self.can_show(KINDS[name], action):
-                    self.due.remove(planned)
-                    self.bring_about(name)
-                    return
+        name = self.inducer.choose(
+            self.tracker.step + 1,
+            action,
+            [fault.kind for fault in self.present.values()],
+            lambda kind: self.can_show(kind, action),
+        )
+        if name:
+            self.bring_about(name)
 
     def bring_about(self, name: str) -> None:
         """Let a fault of a kind come with the behaviour that is about to be carried out."""
-        self.induced.append(Induced(KINDS[name], self.tracker.step + 1, self.seconds))
+        self.inducer.came(name, self.tracker.step + 1, self.seconds)
         self.inject(name)
 
     def lift(self, kind: str) -> None:
         """Put a fault right, and note when."""
-        for fault in self.induced:
-            if fault.kind.name == kind and fault.lifted is None and kind in self.present:
-                fault.lifted = self.tracker.step
+        if kind in self.present:
+            self.inducer.lifted(kind, self.tracker.step)
         super().lift(kind)
 
     def recover(self, remedy: Remedy) -> float:
         """Note that something is done about a fault, and do it."""
-        self._treated.add(remedy.fault)
+        self.inducer.treated(remedy.fault)
         return super().recover(remedy)

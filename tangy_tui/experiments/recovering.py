@@ -19,6 +19,7 @@ from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of
 from tangy_tui.experiments.estimates import spread
 from tangy_tui.experiments.induced import (
     Induced,
+    Inducer,
     InducingWorld,
     Planned,
     draw_plan,
@@ -34,7 +35,7 @@ from tangy_tui.experiments.matching import (
     seconds_to_recover,
 )
 from tangy_tui.experiments.supervised import people_of, supervised
-from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
+from tangy_tui.experiments.sweep import Case, Piece, Settings, Sweep, Where
 from tangy_tui.interaction.facilitation import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.scripted_people import go_on_by_script
@@ -44,19 +45,23 @@ GAMES_A_PIECE = 20
 """Games after which other people come, whom Tangy does not know."""
 
 
-def plan_of(games: int, seed: int) -> list[list[Planned]]:
-    """Return what is to be induced in each game, in the paper's proportions."""
+def plan_of(games: int, seed: int, piece: int = GAMES_A_PIECE) -> list[list[Planned]]:
+    """Return what is to be induced in each game, in the paper's proportions.
+
+    Args:
+        piece: games that are played in a row, and have their share of the faults.
+    """
     book = load_faults(load_robot())
     mix = {row["recovery"]: row["instances"] for row in published.SCENARIO_THREE["faults"]}
     plan: list[list[Planned]] = []
     counts = in_proportion(mix, published.SCENARIO_THREE["games"], games)
-    for first in range(0, games, GAMES_A_PIECE):  # so that each piece has its share
-        some = min(GAMES_A_PIECE, games - first)
+    for first in range(0, games, piece):  # so that each piece has its share
+        some = min(piece, games - first)
         share = {
             name: round(count * (first + some) / games) - round(count * first / games)
             for name, count in counts.items()
         }
-        plan += draw_plan(share, some, seed * 1_000 + first // GAMES_A_PIECE, book)
+        plan += draw_plan(share, some, seed * 1_000 + first // piece, book)
     return plan
 
 
@@ -71,34 +76,38 @@ def play(settings: Settings, case: Case) -> dict[str, Any]:
     course = Course(settings["activity"], settings["users"], GUIDED, 1)
     activity = activity_of(settings["activity"])
     number = seed * 1_000_000 + first
-    tally = Tally()
     with supervised(course) as house:
         world = InducingWorld(activity, people_of(house), seed=number, plan=plan)
-        game = house.games(world, number)
-        played = [_game(game, world, tally, first + at + 1) for at in range(some)]
-        document = tally.to_json(activity.situations, game.persuasion.beliefs)
+        return play_games(house.games(world, number), world.inducer, first, some)
+
+
+def play_games(game: Supervision, inducer: Inducer, first: int, some: int) -> dict[str, Any]:
+    """Play some games, from the one of this number on (from 0), and return them as `play` does."""
+    tally = Tally()
+    played = [_game(game, inducer, tally, first + at + 1) for at in range(some)]
+    document = tally.to_json(game.world.activity.situations, game.persuasion.beliefs)
     return {
         "games": played,
         "rows": document["rows"],
         "interactions": tally.interactions,
-        "not_come": [planned.kind.name for planned in world.due],
+        "not_come": [planned.kind.name for planned in inducer.due],
     }
 
 
-def _game(game: Supervision, world: InducingWorld, tally: Tally, number: int) -> dict[str, Any]:
+def _game(game: Supervision, inducer: Inducer, tally: Tally, number: int) -> dict[str, Any]:
     events: list[Event] = game.begin()
     while not game.over:
-        world.held = game.question is not None
+        inducer.held = game.question is not None
         events += go_on_by_script(game, expert=True)
     tally.add(events)
     stopped = next(event.stopped for event in events if isinstance(event, GameEnded))
-    matches = match_faults(world.induced, game.faults)
+    matches = match_faults(inducer.induced, game.faults)
     return {
         "number": number,
         "steps": game.steps,
         "minutes": game.seconds / 60,
         "ended": comparison.TO_ITS_END if stopped is None else stopped,
-        "induced": [_induced(one, game, matches) for one in world.induced],
+        "induced": [_induced(one, game, matches) for one in inducer.induced],
         "faults": [_diagnosed(match, game) for match in matches.matches],
         "asked": matches.asked,
     }
@@ -139,19 +148,31 @@ def _diagnosed(match: Match, game: Supervision) -> dict[str, Any]:
     }
 
 
-def run(activity: str, users: int, games: int, seed: int, where: Where) -> dict[str, Any]:
+def run(
+    activity: str,
+    users: int,
+    games: int,
+    seed: int,
+    where: Where,
+    *,
+    name: str = "recovering",
+    piece: Piece = play,
+    a_piece: int = GAMES_A_PIECE,
+) -> dict[str, Any]:
     """Play games with induced faults and say what Scenario 3 says of its twenty.
+
+    Args:
+        name, piece: what plays them, and its name.
+        a_piece: games that it plays in a row.
 
     Raises:
         TangyError: the activity does not say what is expected.
     """
     cases = [
-        (seed, first, min(GAMES_A_PIECE, games - first), games)
-        for first in range(0, games, GAMES_A_PIECE)
+        (seed, first, min(a_piece, games - first), games) for first in range(0, games, a_piece)
     ]
     settings = {**about(activity), "users": users}
-    pieces = Sweep("recovering", play, settings, cases).run(where)
-    return _document(pieces, users)
+    return _document(Sweep(name, piece, settings, cases).run(where), users)
 
 
 def _document(pieces: Sequence[Mapping[str, Any]], users: int) -> dict[str, Any]:

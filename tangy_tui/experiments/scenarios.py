@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from tangy_sim import faulty
@@ -20,7 +21,7 @@ from tangy_tui.experiments import (
 )
 from tangy_tui.experiments.classroom import SEED_SPACE, activity_of
 from tangy_tui.experiments.provenance import code_digest, versions
-from tangy_tui.experiments.sweep import Where
+from tangy_tui.experiments.sweep import Piece, Where
 
 A_GROUP_OF = 5
 """Of the seeds, one in so many has its own five teachers."""
@@ -128,12 +129,25 @@ def persuasion(asked: Persuading, where: Where) -> dict[str, Any]:
     }
 
 
-def recovery(asked: Recovering, where: Where) -> dict[str, Any]:
-    """Run Scenario 3 in simulation and return its document (times are in the world's s)."""
-    played = recovering.run(asked.activity, asked.users, asked.games, asked.seed, where)
+def recovery(
+    asked: Recovering,
+    where: Where,
+    *,
+    bench: Piece | None = None,
+    a_piece: int = recovering.GAMES_A_PIECE,
+) -> dict[str, Any]:
+    """Run Scenario 3 and return its document (times are in the world's s).
+
+    Args:
+        bench: what plays the games on the bench, with simulated devices under the real hardware
+            layer; without it all is simulated.
+        a_piece: games with the same people.
+    """
+    run = partial(recovering.run, asked.activity, asked.users, asked.games, asked.seed, where)
+    played = run() if bench is None else run(name="bench", piece=bench, a_piece=a_piece)
     return {
         "experiment": 3,
-        "simulated": True,
+        "simulated": bench is None,
         **played,
         "paper": dict(published.SCENARIO_THREE),
         "settings": {
@@ -142,7 +156,7 @@ def recovery(asked: Recovering, where: Where) -> dict[str, Any]:
             "games": asked.games,
             "people": asked.users,
             "demonstrations": f"{supervised.DEMONSTRATIONS}, guided",
-            "games with the same people": recovering.GAMES_A_PIECE,
+            "games with the same people": a_piece,
             "P(people at the table help)": faulty.HELPS,
             "P(one turn finds the place)": faulty.FINDS_ITSELF,
             "P(a restart helps)": faulty.STARTS_AGAIN,

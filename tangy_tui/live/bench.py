@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 import threading
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,7 +50,7 @@ class Bench:
         self,
         *,
         seed: int,
-        users: int,
+        people: Mapping[str, str],
         stepped: bool,
         activity: str = "bingo",
         room: str = "common-room",
@@ -59,14 +60,15 @@ class Bench:
 
         Args:
             seed: another seed, other people and games.
-            users: how many people sit there.
+            people: who sits there, in this order: names by id.
             stepped: its time passes only when the robot lets it.
             log: where what goes wrong in it is written.
 
         Raises:
             BenchError: it does not begin.
         """
-        command = [*CHILD, "--seed", str(seed), "--users", str(users), "--room", room]
+        command = [*CHILD, "--seed", str(seed), "--room", room]
+        command += [f"--person={id}={name}" for id, name in people.items()]
         command += ["--activity", activity, *(["--stepped"] if stepped else [])]
         err: IO[bytes] | int = subprocess.DEVNULL
         if log is not None:

@@ -162,7 +162,7 @@ class BenchedWorld(LiveWorld):
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
-                return behaviour.effect in DRIVES
+                return beside and behaviour.effect in ("clear wrong marks", "set missing marks")
             case _:
                 return True
 

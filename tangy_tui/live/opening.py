@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tangy_tui.house import House
 
 W = TypeVar("W", bound=LiveWorld)
+B = TypeVar("B", bound=BenchedWorld)
 
 LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
 PICTURES = 10  # of each drawn face that the bench's people are known by
@@ -38,7 +39,8 @@ def open_bench(
     pace: float = PACE_SECONDS,
     book: FaultBook | None = None,
     injections: Sequence[Injection] = (),
-) -> Iterator[BenchedWorld]:
+    kind: type[B] = BenchedWorld,  # type: ignore[assignment]
+) -> Iterator[B]:
     """Open the robot's own devices as a bench simulates them.
 
     Args:
@@ -47,6 +49,7 @@ def open_bench(
         pace: s between calls.
         book: the fault rules, by which a behaviour is broken off.
         injections: the faults that are to come in each game.
+        kind: the kind of world.
 
     Raises:
         TangyError: the bench or the robot process does not begin.
@@ -54,7 +57,7 @@ def open_bench(
     folder = house.store.folder
     bench = Bench(
         seed=seed,
-        users=len(house.people),
+        people=house.names,
         stepped=stepped,
         activity=house.profile,
         log=folder / BENCH_LOG,
@@ -79,9 +82,10 @@ def open_bench(
             faces=_drawn_people(bench.wires.faces),
             log=str(folder / LOG),
         )
-        with _linked(BenchedWorld, setup, house, seed=seed, pace=pace, book=book) as world:
+        with _linked(kind, setup, house, seed=seed, pace=pace, book=book) as world:
             try:
-                yield world.on(bench, injections, seed)
+                world.on(bench, injections, seed)
+                yield world
             finally:
                 world.leave()
     finally:

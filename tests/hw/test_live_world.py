@@ -271,7 +271,12 @@ def test_a_critical_fault_breaks_a_behaviour_off(world: LiveWorld, link: FakeLin
     answers = iter([False, True])
     link.wait = lambda asked, seconds=0.0: next(answers, True)  # type: ignore[method-assign]
     ask = link.ask
-    link.ask = lambda do, **what: (asked.append(do), ask(do, **what))[1]  # type: ignore[method-assign]
+
+    def noted(do: str, **what: Any) -> Any:
+        asked.append(do)
+        return ask(do, **what)
+
+    link.ask = noted  # type: ignore[method-assign]
 
     def shows(_: Health) -> dict[str, bool]:
         return {"laser-disconnected": True}

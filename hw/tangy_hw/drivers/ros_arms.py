@@ -97,12 +97,12 @@ class RosArms:
             goals.update(zip(joints, map(math.radians, degrees), strict=True))
         if not goals:
             return
-        self._fail_on_error()
         if self._limp:
             self._bridge.publish(self._torque, {"data": True})
             self._limp = False
         message = trajectory_message(goals, max(seconds, 0.0), self._bridge.ros)
         self._bridge.publish(self._trajectory, message)
+        self._fail_on_error()  # what is not broken goes there all the same: a head can still look
         try:
             await self._moves.arrive(goals, seconds, self._well)
         except DeviceError:

@@ -54,6 +54,8 @@ class RequestSource:
         """Is called with a sentence when something must be said about the source."""
         self.looks = 0
         """How many pictures it has looked at, where it looks at pictures."""
+        self.agreed = 0
+        """How many of them in a row showed just those who are taken to ask."""
         self._people = tuple(people)
         self._asks: dict[int, Ask] = {}
         self._changed = asyncio.Event()

@@ -174,6 +174,7 @@ class Signs(RequestSource):
             for seat in set(self._asks) - set(asks):
                 self._withdraw(seat)
             self.looks += 1
+            self.agreed = self.agreed + 1 if set(self._watcher.found) == set(self._asks) else 0
             if not self.camera.source.each:
                 await asyncio.sleep(max(0.0, PAUSE - (time.monotonic() - frame.stamp)))
 

@@ -1,0 +1,91 @@
+"""Scenario 3 on the bench: games in which planned faults come about in devices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tangy_profiles.behaviour import Action
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import Remedy
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_sim.injection import KINDS
+from tangy_tui.experiments.classroom import GUIDED, Course
+from tangy_tui.experiments.induced import Inducer, Planned
+from tangy_tui.experiments.recovering import plan_of, play_games
+from tangy_tui.experiments.supervised import lessons
+from tangy_tui.experiments.sweep import Case, Settings
+from tangy_tui.house import House
+from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.opening import open_bench
+
+GAMES_A_PIECE = 5
+"""Games on one bench, with the same people: so each core has something to do."""
+
+
+class InducingBench(BenchedWorld):
+    """A world on the bench in which planned faults come."""
+
+    def plan(self, plan: Sequence[Sequence[Planned]]) -> InducingBench:
+        """Name what is to come in each game."""
+        self.inducer = Inducer(plan)
+        return self
+
+    def begin(self) -> ActivityState:
+        """Begin the next game of the plan."""
+        self.inducer.begin()
+        return super().begin()
+
+    def execute(self, action: Action) -> Outcome:
+        """Let a planned fault come that can show now, and carry out the action."""
+        if not self.over:
+            self._note_lifted()
+            step = self.tracker.step + 1
+            there = [KINDS[name] for name in self.present]
+            name = self.inducer.choose(
+                step, action, there, lambda kind: self.can_show(kind, action)
+            )
+            if name:
+                self.inducer.came(name, step, self.link.time)
+                self.inject(name)
+        return super().execute(action)
+
+    def recover(self, remedy: Remedy) -> float:
+        """Note that something is done about a fault, and do it."""
+        self.inducer.treated(remedy.fault)
+        seconds = super().recover(remedy)
+        self._note_lifted()
+        return seconds
+
+    def _note_lifted(self) -> None:
+        there = self.present
+        for fault in self.inducer.induced:
+            if fault.kind.name not in there:
+                self.inducer.lifted(fault.kind.name, self.tracker.step)
+
+
+def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
+    """Play games on a bench: a case is (seed, first game, games, games in all).
+
+    Returns:
+        As `experiments.recovering.play`, and the `score` of what was read and found.
+    """
+    seed, first, some, games = case
+    plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]
+    number = seed * 1_000_000 + first
+    activity, users = settings["activity"], settings["users"]
+    _, policy = lessons(Course(activity, users, GUIDED, 1))
+    with TemporaryDirectory(prefix="tangy-bench-") as scratch:
+        house = House(Path(scratch), activity=activity, users=users)
+        try:
+            with open_bench(
+                house, seed=number, stepped=True, book=load_faults(house.robot), kind=InducingBench
+            ) as world:
+                world.plan(plan)
+                game = house.supervision(policy, number, asks=True, world=world)
+                played = play_games(game, world.inducer, first, some)
+                return {**played, "score": world.score.to_json()}
+        finally:
+            house.close()
