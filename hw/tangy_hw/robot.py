@@ -30,13 +30,14 @@ from tangy_hw.devices import (
     Twist,
     Voice,
 )
+from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Report, Watchdogs
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.planning import plan
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
 from tangy_hw.senses import Senses
-from tangy_profiles.health import ERROR, WARN, Fact, Health, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Health, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
@@ -47,8 +48,8 @@ POSE_SECONDS = 1.5  # in which arms are where they should be
 POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
-LOST_FIT, LOST_SPREAD = 0.85, 0.5  # as the rules for faults have it
-KEPT_SECONDS = 3.0  # for which a drive that was broken off still says why
+FILMED_PATIENCE = 4.0
+"""How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
 
@@ -114,13 +115,13 @@ class LiveRobot:
         self.passing = PassingTime(clock, self._tick, stepped=stepped)
         self._body = body
         self._clock = clock
+        self._stepped = stepped
         self._hand: tuple[Twist, float] | None = None
         self._driven = STILL
         self._sent: asyncio.Task[None] | None = None
         self._gaze = ""
-        self._blocked: Pose | None = None
-        self._kept: tuple[Mapping[str, Fact], float] = {}, 0.0
-        self._worst: dict[str, Fact] = {}
+        self._wanted: Pose | None = None
+        self._evidence = DriveEvidence(navigator, clock.now)
         self._ticked = clock.now()
         self._watchdogs = Watchdogs(robot, self._reports())
         self._ticking: asyncio.Task[None] | None = None
@@ -202,8 +203,9 @@ class LiveRobot:
             doing["said"] = self._body.voice.say(text)
         if self._body.screen is not None and picture is not None:
             doing["shown"] = self._body.screen.show(picture)
-        if self._body.arms is not None and posture and (gazes or self._has_arms):
-            doing["posed"] = self._body.arms.pose(posture, POSE_SECONDS)
+        arms = self._body.arms
+        if arms is not None and posture and (gazes or arms.reading().state != ERROR):
+            doing["posed"] = arms.pose(posture, POSE_SECONDS)
             self._gaze = ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
         try:
@@ -228,12 +230,11 @@ class LiveRobot:
             BrokenOff: it has to stand still, and why.
         """
         self.going = name or FRONT
-        self._blocked = None
-        self._kept = {}, 0.0
+        self._wanted = goal
         try:
             self.navigator.go(goal)
             arrived = await self._drive(DRIVE_SECONDS)
-            self._blocked = None if arrived else goal
+            self._evidence.blocked = not arrived
             return arrived
         finally:
             self.going = ""
@@ -256,20 +257,13 @@ class LiveRobot:
 
     def replan(self) -> None:
         """Look whether there is a way again to where there was none."""
-        goal, here = self._blocked, self.pose
-        if goal is not None:
-            seen = self.navigator.obstacles
-            if plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen) is not None:
-                self._blocked = None
-
-    @property
-    def _has_arms(self) -> bool:
-        arms = self._body.arms
-        return arms is not None and arms.reading().state != ERROR
+        goal, here, seen = self._wanted, self.pose, self.navigator.obstacles
+        if goal is not None and self._evidence.blocked:
+            way = plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen)
+            self._evidence.blocked = way is None
 
     def drive_by_hand(self, twist: Twist) -> None:
-        """Drive as somebody says who holds a key; it holds for a moment, and not where it must
-        not drive."""
+        """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard."""
         self.navigator.cancel()
         self._hand = twist, self._clock.now() + BY_HAND_SECONDS
 
@@ -285,8 +279,7 @@ class LiveRobot:
 
     def release(self) -> None:
         """Let it move again."""
-        self.stopped = ""
-        self._blocked = None
+        self.stopped, self._evidence.blocked = "", False
 
     def fail(self, device: str, state: str) -> None:
         """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
@@ -309,7 +302,7 @@ class LiveRobot:
     async def _drive(self, seconds: float) -> bool:
         """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
         navigator, now = self.navigator, self._clock.now()
-        self._worst.clear()
+        self._evidence.begin()
         since = {"blocked": now, "hazard": now}
 
         def over() -> bool:
@@ -328,8 +321,7 @@ class LiveRobot:
         await self.passing.until(over, seconds)
         arrived = navigator.state == "arrived"
         hazard = self.hazard
-        # What showed only while it drove is evidence for a moment longer.
-        self._kept = dict(self._worst), self._clock.now() + KEPT_SECONDS
+        self._evidence.keep()
         if not arrived:
             navigator.cancel()
             await self._body.base.stop()
@@ -347,7 +339,7 @@ class LiveRobot:
         if odometry is not None:
             seen = None if scan is None else scan.value
             command = self.navigator.tick(odometry.value, seen, passed)
-            self._note_worst()
+            self._evidence.note()
         if self._hand is not None:
             twist, until = self._hand
             command = twist if now < until else STILL
@@ -358,17 +350,6 @@ class LiveRobot:
         if command != STILL or self._driven != STILL:
             self._send(command)
         return command != STILL or self.going != ""
-
-    def _note_worst(self) -> None:
-        """Keep the worst of what is seen on a drive: some of it passes before anybody looks."""
-        facts, worst = self.navigator.facts(), self._worst
-        for name in ("still", "slip"):
-            worst[name] = max(float(worst.get(name, 0.0)), float(facts[name]))
-        if facts["path"] == "replanned":
-            worst["path"] = "replanned"
-        lost = float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD
-        if lost:
-            worst |= {"fit": facts["fit"], "spread": facts["spread"]}
 
     def _send(self, command: Twist) -> None:
         """Tell the base; a command that could not be handed over is followed by the next."""
@@ -383,11 +364,13 @@ class LiveRobot:
 
     def _reports(self) -> dict[str, Report]:
         reports: dict[str, Report] = {device.name: device.reading for device in self._body.all}
-        reports["base"] = self._base_reading
-        reports["localisation"] = self._localisation_reading
-        reports["navigator"] = self._navigator_reading
+        base, evidence = self._body.base, self._evidence
+        reports["base"] = lambda: evidence.base(base.reading())
+        reports["localisation"] = evidence.localisation
+        reports["navigator"] = evidence.navigator
         if self.requests is not None:
-            reports["requests"] = self.requests.reading
+            requests = self.requests
+            reports["requests"] = lambda: self._filmed(requests.reading())
         if self.senses is not None:
             for name in self.senses.sensors.cameras:
                 reports[name] = partial(self._camera_reading, name)
@@ -396,27 +379,20 @@ class LiveRobot:
     def _camera_reading(self, name: str) -> Reading:
         assert self.senses is not None  # noqa: S101 - or nobody would ask
         readings = self.senses.sensors.health()
-        return next((r for r in readings if r.device == name), Reading(name, state=WARN))
+        return self._filmed(
+            next((r for r in readings if r.device == name), Reading(name, state=WARN))
+        )
 
-    def _base_reading(self) -> Reading:
-        own, facts = self._body.base.reading(), self.navigator.facts()
-        told = {name: facts[name] for name in ("still", "slip")}
-        return own._replace(facts={**own.facts, **told, **self._kept_of("still", "slip")})
-
-    def _localisation_reading(self) -> Reading:
-        reading = self.navigator.readings()[0]
-        return reading._replace(facts={**reading.facts, **self._kept_of("fit", "spread")})
-
-    def _navigator_reading(self) -> Reading:
-        reading = self.navigator.readings()[1]
-        told = {"path": "none"} if self._blocked is not None else self._kept_of("path")
-        return reading._replace(facts={**reading.facts, **told})
-
-    def _kept_of(self, *names: str) -> dict[str, Fact]:
-        kept, until = self._kept
-        if self._clock.now() >= until:
-            return {}
-        return {name: kept[name] for name in names if name in kept}
+    def _filmed(self, reading: Reading) -> Reading:
+        """Return the reading of a camera; on a bench in a hurry a busy machine is given time."""
+        if not self._stepped:
+            return reading
+        late = reading.age / FILMED_PATIENCE
+        device = self.robot.devices.get(reading.device)
+        fresh = device is None or late <= device.stale_after
+        return reading._replace(
+            age=late, state=OK if reading.state == STALE and fresh else reading.state
+        )
 
 
 async def _quietly(work: Coroutine[Any, Any, None]) -> None:

@@ -115,9 +115,7 @@ class Senses:
                 break
         if fused is None:
             return CardSeen(None, 0, 0, state, NOTHING_SEEN, 0)
-        return CardSeen(
-            fused.card, fused.marked, fused.hidden, state, fused.problem, len(readings)
-        )
+        return CardSeen(fused.card, fused.marked, fused.hidden, state, fused.problem, len(readings))
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
         """Say whose face the robot looks at: so many pictures are looked at for a vote."""
@@ -178,4 +176,3 @@ async def _fresh(sensors: Sensors, most: int) -> AsyncIterator[Frame]:
         if frame.stamp >= after:
             given += 1
             yield frame
-

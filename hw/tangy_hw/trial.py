@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from tangy_hw.devices import Device, DeviceError, MachineClock
+from tangy_hw.driver_kinds import DRIVERS, Wiring, open_device
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.sensors import Sources
-from tangy_hw.wiring import DRIVERS, Wiring, open_device
 from tangy_profiles.activity import Activity
 from tangy_profiles.health import ERROR, OK, WARN
 from tangy_profiles.robot import Robot

@@ -14,7 +14,9 @@ from math import hypot, pi
 from random import Random
 from typing import Any
 
+from tangy_hw.commands import Commands
 from tangy_hw.devices import DeviceError, Picture, Pose
+from tangy_hw.requests_seen import SeenRequests
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
 from tangy_profiles.activity import Activity
@@ -34,7 +36,6 @@ it took about as long."""
 LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
 PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
 SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
-WITHDRAWN_SECONDS = 3.0  # without a sign after which somebody does not ask any more
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
 AWAY = 0.5  # metres from the front at which the robot goes there before a game
 LAST_CALLS = 5  # that the chest screen shows
@@ -79,9 +80,7 @@ class LiveWorld:
         self.looked: Callable[[str, str, Any], None] = _unheeded
         """Is told of each card ("card") and face ("face") that was looked at, with whose place it
         is at, and what was seen."""
-        self.diagnosed: Callable[[Health], Mapping[str, bool]] = _nothing
-        """Says which faults the devices show, by code, and whether each is critical: the robot
-        then stops in the midst of whatever it does."""
+        self.commands = Commands(link)
         self._robot = robot
         self._room = room
         self._names = dict(names or {})
@@ -96,8 +95,7 @@ class LiveWorld:
         self.called: list[int] = []
         self._numbers = activity.deck.shuffled(self._order.random)
         self._card: CardView | None = None
-        self._by_word: dict[str, float] = {}  # who asked otherwise than by a sign, and when
-        self._without_sign: dict[str, float] = {}
+        self.requests = SeenRequests(self.people, self.link)
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -108,14 +106,14 @@ class LiveWorld:
         pose = self.link.state.pose
         if hypot(pose.x - front.x, pose.y - front.y) > AWAY:
             with suppress(DeviceError):  # where it cannot, the first behaviour says so
-                self._do("go", to=list(Pose(front.x, front.y, FACING)), name=FRONT)
-        self._settle()
+                self.commands.do("go", to=list(Pose(front.x, front.y, FACING)), name=FRONT)
+        self.commands.settle()
         return self.observe()
 
     def observe(self) -> ActivityState:
         """Return the joint state as the robot's sensors have it now."""
         if not self.over:
-            self._hear_requests()
+            self.requests.tell(self.tracker)
         return self.tracker.state()
 
     # ------------------------------------------------------------------------ behaviours
@@ -127,8 +125,7 @@ class LiveWorld:
             return Outcome(False, 0.0, (), None)
         numbers: tuple[int, ...] = ()
         response: Response | None = None
-        succeeded = False
-        self.broken = ""
+        succeeded, self.broken = False, ""
         try:
             if self.tracker.allows(behaviour):
                 found = self._numbers_of(action)
@@ -139,7 +136,7 @@ class LiveWorld:
             self.broken = str(error)
             numbers = () if isinstance(error, BrokenOff) else numbers
         self._executed(behaviour, succeeded)
-        self._settle()
+        self.commands.settle()
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
@@ -166,7 +163,7 @@ class LiveWorld:
             case "draw":
                 self.called.extend(numbers)
                 self._due = self.link.time + self._pace
-                self._do("wait", seconds=min(self._pace, LOOK_SECONDS), asks=True)
+                self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
             case "go to user":
                 target = action.target or (tracker.queue[0] if tracker.queue else None)
                 return None, target is None or self._go(target)
@@ -176,7 +173,7 @@ class LiveWorld:
                 self.over = True
         if not behaviour.persuades or tracker.place == FRONT:
             return None, True
-        if behaviour.effect == "none" and tracker.place not in self._signs(shown=True):
+        if behaviour.effect == "none" and tracker.place not in self.requests.signs:
             return None, True  # nothing of what the person does about it can be seen
         return self._response(action, numbers), True
 
@@ -192,29 +189,25 @@ class LiveWorld:
             tuple(deck.label(number) for number in self.called[: -LAST_CALLS - 1 : -1]),
             name if action.behaviour.attends else "",
         )
-        self._do(
-            "perform",
-            text=fill(action.speech, name, numbers),
-            picture=picture._asdict(),
-            posture=_posture(self._robot, action.posture),
-        )
+        speech = fill(action.speech, name, numbers)
+        self.commands.perform(speech, picture, self._robot.postures[action.posture])
 
     def _keep_pace(self) -> None:
         wait = self._due - self.link.time
         if wait > 0:
-            self._do("wait", seconds=wait)
+            self.commands.wait(wait)
 
     def _go(self, place: str) -> bool:
         """Drive to a place; beside a person, see who it is and look at the card."""
         stand = self._room.stand(place, self.people)
-        done = self._do("go", to=list(Pose(stand.x, stand.y, FACING)), name=place)
+        done = self.commands.do("go", to=list(Pose(stand.x, stand.y, FACING)), name=place)
         if not done.get("arrived"):
             return False
         self.tracker.arrive(place)
         self._card = None
         if place != FRONT:
             if self._knows_faces:
-                self.looked("face", place, self._do("face").get("person"))
+                self.looked("face", place, self.commands.do("face").get("person"))
             if place in self.tracker.queue:
                 self._read_card(place)
         return True
@@ -228,7 +221,7 @@ class LiveWorld:
 
     def _look(self, after: float = 0.0) -> dict[str, Any]:
         """Look at the card; `_card` is what was seen, None if it could not be read."""
-        card = self._do("card", called=self.called, after=after)
+        card = self.commands.do("card", called=self.called, after=after)
         self._card = None
         if card["card"] is not None:
             deck, place = self.activity.deck, self.tracker.place
@@ -257,16 +250,16 @@ class LiveWorld:
                 reminded = True
                 name = self._names.get(person, person)
                 words = self.activity.fill(action.image, name, numbers)
-                self._do("perform", picture=Picture(words, asks=name)._asdict())
+                self.commands.perform("", Picture(words, asks=name))
             before = now
 
     def _is_done(self, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
         """Look whether what a behaviour asks for has been done."""
         place = self.tracker.place
         if behaviour.effect == "none":
-            self._do("wait", seconds=LOOK_SECONDS)
-            self._settle()
-            return place not in self._signs(shown=True)
+            self.commands.wait(LOOK_SECONDS)
+            self.commands.settle()
+            return place not in self.requests.signs
         card = self._look(LOOK_SECONDS)
         state = card["state"]
         if behaviour.effect == "bring card closer":
@@ -292,44 +285,19 @@ class LiveWorld:
         closed = tracker.closed
         if closed is None or self.over:
             return
-        self._by_word.pop(closed, None)
-        seat = self.people.index(closed) + 1
-        began = self.link.time
+        self.requests.over(closed)
+        seat, began = self.people.index(closed) + 1, self.link.time
         try:
-            self._do("answered", seat=seat)
-            self._settle()
-            while closed in self._signs() and self.link.time - began < SIGN_SECONDS:
-                self._do("wait", seconds=LOOK_SECONDS)
-                self._settle()
+            self.commands.do("answered", seat=seat)
+            self.commands.settle()
+            while closed in self.requests.all and self.link.time - began < SIGN_SECONDS:
+                self.commands.wait(LOOK_SECONDS)
+                self.commands.settle()
         except DeviceError:
             return
-        if closed in self._signs():  # it still asks: nothing that was done has ended that
+        if closed in self.requests.all:  # it still asks: nothing that was done has ended that
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
-
-    def _signs(self, *, shown: bool = False) -> dict[str, float]:
-        """Return who asks now, and since when; `shown`: by a sign alone."""
-        signs = {
-            self.people[seat - 1]: since
-            for seat, since in self.link.state.asks
-            if seat <= len(self.people)
-        }
-        return signs if shown else signs | self._by_word
-
-    def _hear_requests(self) -> None:
-        """Take note of who asks, and of who waits and does not ask any more."""
-        signs, tracker, now = self._signs(), self.tracker, self.link.time
-        for person, _ in sorted(signs.items(), key=lambda item: item[1]):
-            tracker.ask(person)
-        for person in list(tracker.queue):
-            if person in signs or person == tracker.place:
-                self._without_sign.pop(person, None)
-            elif now - self._without_sign.setdefault(person, now) > WITHDRAWN_SECONDS:
-                tracker.queue.remove(person)
-
-    def ask_for(self, person: str) -> None:
-        """Ask for help on behalf of a person who did not, or could not."""
-        self._by_word[person] = self.link.time
 
     def call_again(self) -> None:
         """Say and show the last number once more.
@@ -338,11 +306,8 @@ class LiveWorld:
             DeviceError: it could not be said.
         """
         if self.called:
-            label = self.activity.deck.label(self.called[-1])
-            before = tuple(
-                self.activity.deck.label(n) for n in self.called[-2 : -LAST_CALLS - 2 : -1]
-            )
-            self._do("perform", text=label, picture=Picture(label, label, before)._asdict())
+            label, *before = map(self.activity.deck.label, self.called[: -LAST_CALLS - 2 : -1])
+            self.commands.perform(label, Picture(label, label, tuple(before)))
 
     def void_call(self) -> int | None:
         """Take the last call back: its number counts as not called, and comes again later."""
@@ -386,81 +351,50 @@ class LiveWorld:
         person, tracker = remedy.person, self.tracker
         if remedy.speech or remedy.image:
             name = "" if person is None else self._names.get(person, person)
-            picture = Picture(remedy.image, asks=name)
-            self._do("perform", text=remedy.speech, picture=picture._asdict())
+            self.commands.perform(remedy.speech, Picture(remedy.image, asks=name))
         match remedy.kind:
             case "ask":
                 self._await_help(remedy)
             case "resume":
                 self.link.release()
             case "spin":
-                self._do("spin")
+                self.commands.do("spin")
             case "restart":
-                self._do("restart", device=remedy.device)
+                self.commands.do("restart", device=remedy.device)
             case "replan":
-                self._do("replan")
+                self.commands.do("replan")
             case "do without":
-                self._do("relax")
+                self.commands.do("relax")
             case "set aside" if person in tracker.queue:
                 tracker.queue.remove(person)
-                self._by_word.pop(person, None)
-                self._do("answered", seat=self.people.index(person) + 1)
+                self.requests.over(person)
+                self.commands.do("answered", seat=self.people.index(person) + 1)
                 if person == tracker.place:
                     tracker.seen = None
-        self._settle()
+        self.commands.settle()
 
     def _await_help(self, remedy: Remedy) -> None:
         """Give people time to help, and see whether they have."""
         place, began = self.tracker.place, self.link.time
         while self.link.time - began < HELP_SECONDS:
             if remedy.device:
-                self._do("wait", seconds=1.0)
-                self._do("replan")
+                self.commands.wait(1.0)
+                self.commands.do("replan")
                 self.link.beat()
-                if remedy.fault not in self.diagnosed(self.health()):
+                if remedy.fault not in self.commands.diagnosed(self.health()):
                     return
             elif place in self.tracker.queue:
                 self._read_card(place, after=1.0)
-                self._settle()
-                if self.tracker.seen is not None or place not in self._signs():
+                self.commands.settle()
+                if self.tracker.seen is not None or place not in self.requests.all:
                     return
             else:
-                self._do("wait", seconds=1.0)
-
-    # ------------------------------------------------------------------------ the robot
-
-    def _do(self, do: str, **what: Any) -> dict[str, Any]:
-        """Let the robot do something; it is broken off where devices report what is critical."""
-        asked = self.link.ask(do, **what)
-        broken = False
-        while not self.link.wait(asked):
-            if not broken and (critical := self._critical()):
-                broken = True
-                self.link.ask("cancel", why=critical)
-        return asked.result()
-
-    def _critical(self) -> str:
-        """Name a critical fault that the devices show, "" if they show none."""
-        found = self.diagnosed(self.health())
-        return next((code for code, critical in found.items() if critical), "")
-
-    def _settle(self) -> None:
-        """Let the robot see what is there now, where its time stands still meanwhile."""
-        if self.link.setup.stepped:
-            self.link.do("settle")
+                self.commands.wait(1.0)
 
 
 def _numbers_at(card: CardView, cells: int) -> tuple[int, ...]:
     return tuple(number for cell, number in enumerate(card.numbers) if cells >> cell & 1)
 
 
-def _posture(robot: Robot, name: str) -> dict[str, list[float]]:
-    return {limb: list(angles) for limb, angles in robot.postures[name].items()}
-
-
 def _unheeded(_what: str, _place: str, _seen: Any) -> None:
     """Take no note."""
-
-
-def _nothing(_: Health) -> Mapping[str, bool]:
-    return {}

@@ -28,7 +28,7 @@ from tangy_tui.live.bench import Bench
 DRIVES = ("go to user", "go to front")
 ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
 EXPERT_SECONDS = 60.0  # that an expert takes on the bench
-NOTICED_SECONDS = 4.0  # of real time, in which devices that real time passes for show a fault
+NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
 
 
 @dataclass
@@ -85,7 +85,7 @@ class BenchedWorld(LiveWorld):
         self.came = []
         self._to_come = list(self.injections)
         self.link.release()
-        self._pass_until(lambda: not self.diagnosed(self.health()))
+        self._pass_until(lambda: not self.commands.diagnosed(self.health()))
         return super().begin()
 
     @property
@@ -122,7 +122,7 @@ class BenchedWorld(LiveWorld):
 
     def _let_show(self, kind: Kind) -> None:
         """Wait until devices show a fault, where the bench's time does not pass by itself."""
-        self._pass_until(lambda: kind.code in self.diagnosed(self.health()))
+        self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
 
     def _pass_until(self, holds: Callable[[], bool]) -> None:
         """Let a little time pass until something holds, where it does not pass by itself."""
@@ -209,7 +209,7 @@ class BenchedWorld(LiveWorld):
         if self.link.setup.stepped:
             with suppress(DeviceError):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
-            self._pass_until(lambda: remedy.fault not in self.diagnosed(self.health()))
+            self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
         return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted

@@ -164,7 +164,7 @@ def _linked(
             knows_faces=bool(setup.faces),
         )
         if book is not None:
-            world.diagnosed = _Diagnosis(book, house.robot)
+            world.commands.diagnosed = _Diagnosis(book, house.robot)
         yield world
     finally:
         link.close()

@@ -84,7 +84,8 @@ def third(
     games: Annotated[int, typer.Option(min=1, max=10_000, help="Games in all.")] = 20,
     users: Annotated[int, typer.Option(min=1, max=8, help="People in a game.")] = 4,
     simulated: Annotated[
-        bool, typer.Option("--simulated", help="With simulated devices and people.")
+        bool,
+        typer.Option("--simulated", help="All of it simulated (seconds), not on the bench (hours)."),
     ] = False,
     report: Report = None,
     activity: ActivityName = "bingo",
@@ -95,15 +96,23 @@ def third(
     data: Data = None,
     as_json: Json = False,
 ) -> None:
-    """Recover: games in which faults are induced, what was diagnosed, and what was done."""
+    """Recover: games in which faults are induced, what was diagnosed, and what was done.
+
+    They are played on the bench: cards, faces, scans and signs are rendered, and go through the
+    drivers and all that a real robot has. --simulated leaves that out.
+    """
     from tangy_tui.experiments.scenarios import Recovering, recovery
 
-    if not simulated:
-        raise TangyError(
-            "The bench with devices is not there yet: run Scenario 3 with --simulated."
-        )
     asked = Recovering(activity, users, games, seed)
-    _run(lambda where: recovery(asked, where), data, jobs, dask, fresh, report, as_json)
+
+    def scenario(where: Where) -> dict[str, Any]:
+        if simulated:
+            return recovery(asked, where)
+        from tangy_tui.live.inducing import GAMES_A_PIECE, play_on_bench
+
+        return recovery(asked, where, bench=play_on_bench, a_piece=GAMES_A_PIECE)
+
+    _run(scenario, data, jobs, dask, fresh, report, as_json)
 
 
 def _run(

@@ -16,6 +16,7 @@ from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.cards import judge
 from tangy_profiles.health import Health, Reading
 from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
 
 SECONDS = {"perform": 3.0, "go": 8.0, "card": 0.5, "face": 0.5}
 BINGO = load_activity("bingo")
@@ -35,7 +36,12 @@ class FakeLink:
 
     def __init__(self, people: tuple[str, ...]) -> None:
         self.setup = RobotSetup("tangy", "bingo", people)
-        self.state = RobotState(number=1, health=tuple(Reading(d) for d in load_robot().devices))
+        front = load_room().front
+        self.state = RobotState(
+            number=1,
+            pose=Pose(front.x, front.y, 1.57),
+            health=tuple(Reading(d) for d in load_robot().devices),
+        )
         self.time = 0.0
         self.done: list[tuple[str, dict[str, Any]]] = []
         self.told: list[str] = []

@@ -179,7 +179,7 @@ def test_who_does_it_late_followed_and_did_not_comply(world: LiveWorld, link: Fa
     link.meanwhile = moves
     response = do(world, "move card closer", "user1").response
     assert response is not None and response.followed and not response.complied
-    reminders = [w for d, w in link.done if d == "perform" and "text" not in w and "picture" in w]
+    reminders = [w for d, w in link.done if d == "perform" and not w["text"]]
     assert len(reminders) == 1  # a plain one, on the screen
     assert world.observe().situation.user_state == "correctly marked"
 
@@ -217,7 +217,7 @@ def test_of_a_request_without_a_sign_it_is_not_seen_what_came_of_it(
 ) -> None:
     opened(world)
     link.cards["user3"] = LaidCard(CARD)
-    world.ask_for("user3")
+    world.requests.ask_for("user3")
     assert world.observe().attended == "user3"
     do(world, "navigate to user", "user3")
     outcome = do(world, "encourage", "user3")
@@ -281,7 +281,7 @@ def test_a_critical_fault_breaks_a_behaviour_off(world: LiveWorld, link: FakeLin
     def shows(_: Health) -> dict[str, bool]:
         return {"laser-disconnected": True}
 
-    world.diagnosed = shows
+    world.commands.diagnosed = shows
     do(world, "call number")
     assert "cancel" in asked
 
@@ -295,7 +295,7 @@ def test_halting_stops_the_robot_before_anything_else(world: LiveWorld, link: Fa
 
 def test_people_are_asked_aloud_and_given_time(world: LiveWorld, link: FakeLink) -> None:
     shown = {"camera-occluded": False}
-    world.diagnosed = lambda _: {} if link.time > 9 else shown
+    world.commands.diagnosed = lambda _: {} if link.time > 9 else shown
     took = world.recover(
         Remedy("ask", "camera-occluded", "camera", speech="Please uncover my eyes.", image="?")
     )

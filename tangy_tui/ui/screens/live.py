@@ -209,7 +209,7 @@ class LiveScreen(PlayScreen):
         options = [Option(person.id, person.name) for person in self._house.people]
         person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
         if person is not None:
-            self._world.ask_for(person)
+            self._world.requests.ask_for(person)
             name = self._house.name(person)
             self._faults.note(f"staff asked for help for {person}")
             self._tell_now(f"{name} asks for help.", "dim")

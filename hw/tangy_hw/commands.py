@@ -1,0 +1,61 @@
+"""What the world tells the robot to do, one thing after another, broken off where it must be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from tangy_hw.devices import Picture
+from tangy_hw.robot_link import RobotLink
+from tangy_profiles.health import Health
+
+Diagnosed = Callable[[Health], Mapping[str, bool]]
+"""Says which faults devices show, by code, and whether each is critical."""
+
+
+class Commands:
+    """Gives a robot commands and waits for each of them."""
+
+    def __init__(self, link: RobotLink) -> None:
+        self.link = link
+        self.diagnosed: Diagnosed = _nothing
+
+    def do(self, do: str, **what: Any) -> dict[str, Any]:
+        """Let the robot do something; it is broken off where devices report what is critical.
+
+        Raises:
+            BrokenOff: it was, or the robot had to stand still.
+            DeviceError: it could not be done.
+        """
+        asked = self.link.ask(do, **what)
+        broken = False
+        while not self.link.wait(asked):
+            if not broken and (critical := self._critical()):
+                broken = True
+                self.link.ask("cancel", why=critical)
+        return asked.result()
+
+    def perform(
+        self, text: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+    ) -> dict[str, Any]:
+        """Let the robot say, show and gesture; raises as `do`."""
+        angles = {limb: list(joints) for limb, joints in (posture or {}).items()}
+        return self.do("perform", text=text, picture=picture._asdict(), posture=angles)
+
+    def wait(self, seconds: float, *, asks: bool = False) -> None:
+        """Let time pass, with `asks` until somebody else asks; raises as `do`."""
+        self.do("wait", seconds=seconds, asks=asks)
+
+    def settle(self) -> None:
+        """Let the robot see what is there now, where its time stands still meanwhile."""
+        if self.link.setup.stepped:
+            self.link.do("settle")
+
+    def _critical(self) -> str:
+        """Name a critical fault that the devices show, "" if they show none."""
+        found = self.diagnosed(self.link.health())
+        return next((code for code, critical in found.items() if critical), "")
+
+
+def _nothing(_: Health) -> Mapping[str, bool]:
+    return {}

@@ -1,0 +1,65 @@
+"""What a drive shows of what is wrong, kept for a moment: some passes before anybody looks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tangy_hw.navigation.navigator import Navigator
+from tangy_profiles.health import Fact, Reading
+
+LOST_FIT, LOST_SPREAD = 0.85, 0.5  # as the rules for faults have it
+KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong with it
+
+
+class DriveEvidence:
+    """The worst of a navigator's facts on the present drive, and for a moment after it."""
+
+    def __init__(self, navigator: Navigator, now: Callable[[], float]) -> None:
+        self.blocked = False
+        """Whether there was no way to where the robot was to go last."""
+        self._navigator = navigator
+        self._now = now
+        self._worst: dict[str, Fact] = {}
+        self._kept: dict[str, Fact] = {}
+        self._until = 0.0
+
+    def begin(self) -> None:
+        """Begin a drive: what was wrong with the last one is forgotten."""
+        self.blocked = False
+        self._worst, self._kept = {}, {}
+
+    def note(self) -> None:
+        """Take note of how it is now."""
+        facts, worst = self._navigator.facts(), self._worst
+        for name in ("still", "slip"):
+            worst[name] = max(float(worst.get(name, 0.0)), float(facts[name]))
+        if facts["path"] == "replanned":
+            worst["path"] = "replanned"
+        if float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD:
+            worst |= {"fit": facts["fit"], "spread": facts["spread"]}
+
+    def keep(self) -> None:
+        """The drive is over: keep what it has shown for a moment."""
+        self._kept, self._until = dict(self._worst), self._now() + KEPT_SECONDS
+
+    def base(self, own: Reading) -> Reading:
+        """Return the reading of the base with what the navigator knows of it."""
+        facts = self._navigator.facts()
+        told = {name: facts[name] for name in ("still", "slip")}
+        return own._replace(facts={**own.facts, **told, **self._of("still", "slip")})
+
+    def localisation(self) -> Reading:
+        """Return the reading of the sense of place."""
+        reading = self._navigator.readings()[0]
+        return reading._replace(facts={**reading.facts, **self._of("fit", "spread")})
+
+    def navigator(self) -> Reading:
+        """Return the reading of the navigation."""
+        reading = self._navigator.readings()[1]
+        told: dict[str, Fact] = {"path": "none"} if self.blocked else self._of("path")
+        return reading._replace(facts={**reading.facts, **told})
+
+    def _of(self, *names: str) -> dict[str, Fact]:
+        if self._now() >= self._until:
+            return {}
+        return {name: self._kept[name] for name in names if name in self._kept}
