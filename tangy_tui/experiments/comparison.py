@@ -228,6 +228,16 @@ RECOVERIES = {
 }
 
 
+SIMULATED = (
+    "What devices report is simulated: this tests the rules and what follows from them, and no "
+    "sensor."
+)
+BENCHED = (
+    "Devices are simulated, what they report is not: it came from rendered pictures and scans, "
+    "over the wires of real devices."
+)
+
+
 def _recovery(document: Document) -> list[Row]:
     paper, games = document["paper"], document["games"]
     scale = games / paper["games"]
@@ -249,8 +259,7 @@ def _recovery(document: Document) -> list[Row]:
             "Faults that were missed, and false alarms",
             "not said",
             f"{missed} of {document['induced']} missed; {many(alarms, 'false alarm')}",
-            "What devices report is simulated: this tests the rules and what follows from them, "
-            "and no sensor.",
+            SIMULATED if document["simulated"] else BENCHED,
         ),
         Row(
             "Behaviours in a game",

@@ -1,4 +1,4 @@
-"""Scenario 3, in simulation: does Tangy notice what is wrong in games, and choose what to do?
+"""Scenario 3: does Tangy notice what is wrong in games, and choose what to do?
 
 Games of four people with a learnt policy, and faults that are induced in the proportions of
 Table II. What is counted was diagnosed and done; what was induced is only held against it.

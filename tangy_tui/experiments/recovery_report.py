@@ -17,9 +17,16 @@ MOST_DRAWN = 20
 WHO = {"expert": "expert", "continue": "goes on", "user": "user", "teacher": "teacher"}
 """The recoveries in a word, for figures."""
 
-LIMITS = (
+SIMULATED = (
     "What devices report when something is wrong is simulated, so that a right cause proves the "
-    "rules, and no sensor. Simulated people at the table help with a probability of "
+    "rules, and no sensor. "
+)
+BENCHED = (
+    "The devices are those of a bench: cards, faces and signs are rendered, scans are computed, "
+    "and all of it goes through the drivers and the perception of a real robot. "
+)
+LIMITS = (
+    "Simulated people at the table help with a probability of "
     "{help:g}, experts always mend what was diagnosed, and a scripted teacher answers at once and "
     "rightly: how long a real one takes is not in these times. One fault is induced at a time; "
     "none comes with the behaviour that ends a game, or while a teacher is asked. It takes three "
@@ -82,7 +89,8 @@ def recovery(document: Document) -> Iterator[str]:
             for row in document["kinds"]
         ],
     )  # fmt: skip
-    yield paragraph(LIMITS.format(help=document["settings"]["P(people at the table help)"]))
+    where = SIMULATED if document["simulated"] else BENCHED
+    yield paragraph(where + LIMITS.format(help=document["settings"]["P(people at the table help)"]))
     yield from _behaviours(document)
 
 

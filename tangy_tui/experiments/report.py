@@ -32,10 +32,9 @@ def report(document: Document) -> str:
     """Return the page for the document of a scenario; it is made from nothing else."""
     which = document["experiment"]
     parts = {1: _learning, 2: _persuasion, 3: recovery}[which](document)
-    subtitle = (
-        f"Scenario {which} of the paper, run again in simulation by Tangy "
-        f"{document['versions']['tangy']}."
-    )
+    where = "in simulation" if document.get("simulated", True) else "on a bench of devices"
+    version = document["versions"]["tangy"]
+    subtitle = f"Scenario {which} of the paper, run again {where} by Tangy {version}."
     return page(TITLES[which], subtitle, [*_beside(document), *parts, *_made_from(document)])
 
 

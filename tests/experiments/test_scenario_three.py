@@ -31,7 +31,6 @@ from tangy_tui.experiments.report import report
 from tangy_tui.experiments.scenarios import Recovering, recovery
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.monitoring.fault import Fault
-from tests.experiments.conftest import run
 
 pytestmark = pytest.mark.xdist_group("scenario three")  # what is played is played once
 
@@ -192,9 +191,9 @@ def test_words_follow_the_numbers(document: dict[str, Any]) -> None:
     assert "did not come about before its games ended: never-complies" in page
 
 
-def test_without_devices_it_says_so_in_a_sentence() -> None:
-    done = run("experiment", "3")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == (
-        "tangy: The bench with devices is not there yet: run Scenario 3 with --simulated.\n"
-    )
+def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> None:
+    assert "in simulation" in report(document) and "proves the rules" in report(document)
+    benched = {**document, "simulated": False}
+    assert "on a bench of devices" in report(benched)
+    assert "through the drivers" in report(benched)
+    assert "what they report is not" in " ".join(row.words for row in compare(benched))
