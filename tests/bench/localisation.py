@@ -82,6 +82,11 @@ def errors(
         yield off, abs(wrap(pose.heading - moment.truth.heading)), took
 
 
+def doubts(localisation: Localisation, way: Sequence[Moment]) -> int:
+    """Follow a way; return after how many scans the robot thinks that it is lost."""
+    return sum(localisation.update(one.odometry, one.scan).lost for one in way)
+
+
 def kidnapped(map_: OccupancyMap, way: Sequence[Moment], seed: int) -> int | None:
     """Carry the robot elsewhere without telling it; return after how many scans it knows.
 
@@ -135,6 +140,8 @@ def main() -> None:
         print(f"seed {seed}: median {median:.3f} m, p95 {high:.3f}, most {most:.2f}; "
               f"{np.percentile(rows[:, 1], 95):.3f} rad p95; "
               f"{rows[:, 2].mean() * 1e3:.2f} ms")  # fmt: skip
+    localisation = Localisation(map_, np.random.default_rng(0), way[0].truth)
+    print(f"lost without having been carried off: {doubts(localisation, way)} of {len(way)} scans")
     found = [kidnapped(map_, way, seed) for seed in range(options.carried)]
     print("carried off, found after so many scans:", found)
 

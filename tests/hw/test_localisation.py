@@ -103,7 +103,8 @@ class TestFinding:
     def test_a_robot_that_may_be_anywhere_finds_itself_as_it_turns(self, seed: int) -> None:
         robot = Driven(seed, start=None, true=Pose(3.0, 2.0, 0.4))
         off, estimate = robot.drive([Twist(0, 0.5)] * 126)[-1]
-        assert off < 0.15 and robot.heading_off(estimate) < 0.1 and estimate.spread < 0.3
+        assert off < 0.15 and robot.heading_off(estimate) < 0.1
+        assert estimate.settled and estimate.spread < 0.3
 
     @pytest.mark.parametrize("seed", [20, 21])
     def test_a_robot_that_was_carried_off_says_so_and_finds_itself(self, seed: int) -> None:
@@ -113,7 +114,8 @@ class TestFinding:
         found = robot.drive([Twist(0, 0.5)] * 250)
         assert any(estimate.lost for _, estimate in found[:60])
         off, estimate = found[-1]
-        assert off < 0.15 and robot.heading_off(estimate) < 0.1 and not estimate.lost
+        assert off < 0.15 and robot.heading_off(estimate) < 0.1
+        assert estimate.settled and not estimate.lost
 
     def test_a_robot_that_stands_is_found_out_as_well(self) -> None:
         robot = Driven(23)

@@ -16,16 +16,9 @@ from numpy.random import Generator
 from tangy_hw.devices import Pose, Scan
 from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.particles import (
-    MOST,
-    anywhere,
-    around,
-    likeliest,
-    move,
-    needed,
-    resample,
-)
+from tangy_hw.navigation.particles import MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
+from tangy_hw.navigation.searching import Search
 
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
 DOUBT = 0.95  # of the usual fit: below this a scan says little about what is usual
@@ -38,16 +31,15 @@ USUAL, BELIEF = (
 SHARPNESS = 30.0  # the exponent that makes a weight of the fit
 START = (0.1, 0.1, 0.05)  # metres, metres, radians: how exactly a start is told
 FARTHEST = 20.0  # metres beyond which beams are not used
-FIRST_GLOBAL = 20_000  # poses that are tried first when nothing is known
-TRIED = 2000  # poses that are tried for each renewal while lost
-GLANCE = 10.0  # the exponent with which the first of all looks judges
-GENTLE = 0.1  # of the sharpness, while several places are possible
-WIDE = 120  # beams that count while several places are possible: few tell them apart
-UNSETTLED, SETTLING = 0.5, 20  # metres of spread, and scans without it until one place is believed
 FEWEST_BEAMS = 10  # that must have met something
 SEEN = 0.2  # share of the beams that something on the map must explain, or contradict
 BLIND = 0.02  # the squared error of the wheels, while only they are known: they do not spin
-BROAD = 0.3  # metres: the width of the field with which new places are looked for
+GENTLE = 0.15  # of the sharpness, while several places are possible
+EVERY = 360  # beams that count while several places are possible: few tell them apart
+SETTLING = 15  # scans with a good fit at one place until it is believed
+JUMP, PROOF = 0.5, 0.75  # metres to another place, which must prove itself from such a fit on
+FRESH = 0.1  # of the particles are drawn anew until then
+FIRST_TRIED, TRIED, PLACES = 20_000, 4000, 40  # poses looked at first, and then; kept of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +48,8 @@ class Estimate:
 
     `covariance` (3, 3) is that of the likeliest cluster of particles, `spread` the root mean square
     distance in metres of all particles from `pose`; `fit` is how well scans fit lately, 1 is as
-    usual; `count` is how many particles there are.
+    usual; `count` is how many particles there are. `settled` says that one place has been
+    believed for a while.
     """
 
     pose: Pose
@@ -64,6 +57,7 @@ class Estimate:
     spread: float
     fit: float
     count: int
+    settled: bool = True
 
     @property
     def lost(self) -> bool:
@@ -85,12 +79,10 @@ class Localisation:
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             laser: where the scanner sits on the robot.
         """
-        self._map = map_
         self._rng = rng
         self._laser = laser
         self._field = LikelihoodField(map_)
-        self._broad = LikelihoodField(map_, BROAD)
-        self._free = map_.free_points()
+        self._search = Search(map_, self._field, rng)
         self._odometry: Pose | None = None
         self._global = False
         self.place(start)
@@ -99,7 +91,7 @@ class Localisation:
         """Take it that the robot is at a pose now (None: anywhere), as staff say."""
         self._global = pose is None
         if pose is None:
-            self._particles = anywhere(self._free, self._map.resolution, MOST, self._rng)
+            self._particles = self._search.anywhere(MOST)
         else:
             self._particles = around(pose, START, MOST // 4, self._rng)
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
@@ -128,72 +120,82 @@ class Localisation:
             self._odometry = odometry
         moved = hypot(step.x, step.y) > MOVED or abs(step.heading) > TURNED
         here = compose(self._anchor, step)
-        if self._global and len(points):
-            self._look_around(points)
         evidence = self._field.evidence(here, points)
-        if len(points) < FEWEST_BEAMS or covered(scan) or evidence.share < SEEN:
+        seen = len(points) >= FEWEST_BEAMS and not covered(scan)
+        if not seen or (evidence.share < SEEN and not self._global):
             if moved:  # only the wheels count
                 self._odometry = odometry
                 self._particles = move(self._particles, step, self._rng, BLIND)
                 self._sum_up()
                 here = self._anchor
             return self._told(here)
-        renewed = moved or first or self._fast < LOST * self._slow
-        if renewed:
-            self._odometry = odometry
-            self._particles = move(self._particles, step, self._rng)
-            wide = self._unsettled > 0
-            self._weigh(thin(scan, FARTHEST, self._laser, WIDE) if wide else points)
-            self._unsettled = SETTLING if self._spread > UNSETTLED else max(0, self._unsettled - 1)
-            here = self._anchor
-            evidence = self._field.evidence(here, points)
-        self._fast += FAST * (evidence.score - self._fast)
-        if renewed:
-            self._scans += 1
-            doubtful = self._fast < DOUBT * self._slow  # and so no measure of what is usual
-            share = SLOW if doubtful else max(SLOW, 1 / self._scans)
-            self._slow += share * (evidence.score - self._slow)
-            self._renew(points)
-        return self._told(here)
+        if not (moved or first or self._fast < LOST * self._slow):
+            self._fast += FAST * (evidence.score - self._fast)
+            return self._told(here)
+        self._odometry = odometry
+        self._particles = move(self._particles, step, self._rng)
+        every = thin(scan, FARTHEST, self._laser, EVERY) if self._unsettled else points
+        self._weigh(every)
+        if not first and hypot(self._anchor.x - here.x, self._anchor.y - here.y) > JUMP:
+            self._fast = min(self._fast, PROOF * self._slow)  # it was wrong before, or is now
+        score = self._field.evidence(self._anchor, every).score
+        self._note(score, moved or first)
+        self._renew(every)
+        return self._told(self._anchor)
 
-    def _look_around(self, points: Floats) -> None:
-        """Find the places at which a first scan fits, out of very many."""
-        self._global = False
-        tried = anywhere(self._free, self._map.resolution, FIRST_GLOBAL, self._rng)
-        weights = self._broad.scores(tried, points) ** GLANCE
-        self._particles = resample(tried, weights / weights.sum(), MOST, self._rng)
+    def _note(self, score: float, moved: bool) -> None:
+        """Take a score into both averages, and see whether the robot has found one place."""
+        self._fast += FAST * (score - self._fast)
+        self._scans += 1
+        doubtful = self._fast < DOUBT * self._slow  # and so no measure of what is usual
+        share = SLOW if doubtful else max(SLOW, 1 / self._scans)
+        self._slow += share * (score - self._slow)
+        if self._fast < LOST * self._slow:
+            self._unsettled = SETTLING
+        elif moved:
+            self._unsettled = max(0, self._unsettled - 1)
 
     def _weigh(self, points: Floats) -> None:
         scores = self._field.scores(self._particles, points)
         scores = np.where(self._field.on_floor(self._particles), scores, 0.1 * scores)
-        # chance decides how near to a place the nearest particle is: do not judge by that at first
-        sharpness = SHARPNESS if not self._unsettled else SHARPNESS * GENTLE
-        weights = scores**sharpness
+        # of two places that look alike, more than one scan must decide
+        weights = scores ** (SHARPNESS * GENTLE if self._unsettled else SHARPNESS)
         total = weights.sum()
         self._weights = weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
         self._sum_up()
 
     def _sum_up(self) -> None:
         self._anchor, self._covariance = likeliest(self._particles, self._weights)
+        self._spread = self._spread_now()
+
+    def _spread_now(self) -> float:
         x, y = self._particles[:, 0] - self._anchor.x, self._particles[:, 1] - self._anchor.y
-        self._spread = sqrt(float(self._weights @ (x * x + y * y)))
+        return sqrt(float(self._weights @ (x * x + y * y)))
 
     def _renew(self, points: Floats) -> None:
-        """Resample; while the robot seems lost, draw a part anew where the scan fits."""
+        """Resample; while the robot is not settled, draw a part anew where the scan fits."""
         drawn = resample(self._particles, self._weights, len(self._particles), self._rng)
-        count = needed(drawn)
-        renewed = self._particles[:0]
-        share = max(0.0, 1.0 - self._fast / (LOST * self._slow))
-        if share > 0:
-            tried = anywhere(self._free, self._map.resolution, TRIED, self._rng)
-            weights = self._broad.scores(tried, points[::2]) ** SHARPNESS
-            fresh = int(min(0.5, share) * count) + 1
-            renewed = resample(tried, weights / weights.sum(), fresh, self._rng)
+        count, renewed = needed(drawn), self._particles[:0]
+        if self._unsettled:
+            tried = FIRST_TRIED if self._global else TRIED
+            places, scores = self._search.places(points, PLACES, tried)
+            weights = scores ** (SHARPNESS * GENTLE)
+            share = 1.0 if self._global else max(FRESH, 1 - self._fast / (LOST * self._slow))
+            fresh = int(min(1.0 if self._global else 0.5, share) * count)
+            renewed = resample(places, weights / weights.sum(), fresh, self._rng)
+            self._global = False
         kept = resample(self._particles, self._weights, count - len(renewed), self._rng)
         self._particles = np.vstack((kept, renewed))
         self._weights = np.full(len(self._particles), 1.0 / len(self._particles))
+        self._spread = self._spread_now()  # of what is thought possible again as well
 
     def _told(self, pose: Pose) -> Estimate:
-        fit = self._fast / self._slow
         where = Pose(pose.x, pose.y, wrap(pose.heading))
-        return Estimate(where, self._covariance, self._spread, fit, len(self._particles))
+        return Estimate(
+            where,
+            self._covariance,
+            self._spread,
+            self._fast / self._slow,
+            len(self._particles),
+            self._unsettled == 0,
+        )

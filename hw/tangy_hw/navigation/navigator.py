@@ -214,14 +214,14 @@ class Navigator:
 
     def _spin(self, estimate: Estimate, odometry: Odometry, dt: float) -> Twist:
         self._turned += abs(odometry.twist.turn) * dt
-        found = self.goal is not None and not estimate.lost and self._turned > pi / 2
-        if found or self._turned >= abs(self._turn_to):
-            if self.goal is not None and estimate.lost:
-                self._turned = 0.0
-            else:
-                self.state = "idle" if self.goal is None else "driving"
-                self._since_plan = AGAIN
-                return STILL
+        if self.goal is not None:  # it turns until it has found itself
+            done = estimate.settled and not estimate.lost and self._turned > pi / 2
+        else:
+            done = self._turned >= abs(self._turn_to)
+        if done:
+            self.state = "idle" if self.goal is None else "driving"
+            self._since_plan = AGAIN
+            return STILL
         return Twist(0.0, SPIN if self._turn_to > 0 else -SPIN)
 
     def _find_way(self, pose: Pose, goal: Pose, dt: float) -> None:
