@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.rosbridge import Rosbridge
 
-SERVICE, TOPIC = "/bench/advance", "/clock"
+SERVICE = "/bench/advance"
 CONNECT_SECONDS = 10.0
 ARRIVE_SECONDS = 1.0
 """Of real time, for what was sent on other wires than the answer to arrive."""
@@ -37,7 +37,6 @@ class SteppedClock:
             counts: by wire, how many of what the bench counts there has arrived.
         """
         self._link, self._counts = link, dict(counts)
-        link.subscribe(TOPIC, "rosgraph_msgs/Clock", self._tick)
 
     def now(self) -> float:
         """Return the bench's time in s."""
@@ -48,6 +47,7 @@ class SteppedClock:
         if self._link is None or not await self._link.wait_connected(CONNECT_SECONDS):
             await asyncio.sleep(seconds)
             return
+        self._now += seconds  # what comes in this step is of its end
         had = {wire: count() for wire, count in self._counts.items()}
         told = await self._link.call(SERVICE, {"seconds": seconds})
         self._now = max(self._now, float(told["time"]))
@@ -60,9 +60,3 @@ class SteppedClock:
             wanted = had.get(wire, 0) + new
             while count is not None and count() < wanted and loop.time() < until:  # noqa: ASYNC110
                 await asyncio.sleep(0.0005)
-
-    def _tick(self, message: Mapping[str, Any]) -> None:
-        stamp = message["clock"]
-        seconds = stamp.get("secs", stamp.get("sec", 0))
-        nanoseconds = stamp.get("nsecs", stamp.get("nanosec", 0))
-        self._now = max(self._now, seconds + nanoseconds / 1e9)

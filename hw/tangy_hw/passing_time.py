@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import nullcontext
 
 from tangy_hw.devices import Clock
 
@@ -36,6 +37,8 @@ class PassingTime:
         self.clock = clock
         self._tick = tick
         self._stepped = stepped
+        self.still = asyncio.Lock()
+        """Whoever holds it sees no half of a step on a bench in a hurry."""
         self._waiting = 0
         self._wanted = asyncio.Event()
         self._next: asyncio.Future[None] | None = None
@@ -47,9 +50,10 @@ class PassingTime:
             if self._stepped and not self._waiting:
                 self._wanted.clear()
                 await self._wanted.wait()
-            await self.clock.sleep(step)
-            for _ in range(HOPS):  # what has come meanwhile is taken in before it is looked at
-                await asyncio.sleep(0)
+            async with self.still if self._stepped else nullcontext():
+                await self.clock.sleep(step)
+                for _ in range(HOPS):  # what has come is taken in before it is looked at
+                    await asyncio.sleep(0)
             moves = self._tick()
             if self._stepped:
                 step = ON_THE_WAY if moves else AT_REST

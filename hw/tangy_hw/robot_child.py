@@ -208,7 +208,8 @@ class RobotProcess:
         number = 0
         while True:
             number += 1
-            self._say({"beat": self._state(number)})
+            async with self.robot.passing.still:
+                self._say({"beat": self._state(number)})
             await asyncio.sleep(BEAT_SECONDS)
 
     def _state(self, number: int) -> Answer:

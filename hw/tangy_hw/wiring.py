@@ -133,7 +133,7 @@ def wire(setup: RobotSetup) -> Wired:
     if isinstance(clock, SteppedClock):
         # A link of its own: what it says is not to be taken for a word of the robot's.
         bench = Rosbridge(next(iter(wiring.links)), clock=clock.now)
-        clock.follow(bench, _counted(body.laser))
+        clock.follow(bench, _counted(body))
     return Wired(live, sensors, senses, bench)
 
 
@@ -154,11 +154,12 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
     )
 
 
-def _counted(laser: Laser) -> dict[str, Callable[[], int]]:
-    def count() -> int:
-        return 0 if laser.scan is None else laser.scan.seq
-
-    return {"laser": count}
+def _counted(body: Body) -> dict[str, Callable[[], int]]:
+    """Return how many scans and odometries have come, by what a bench calls them."""
+    return {
+        "laser": lambda: 0 if body.laser.scan is None else body.laser.scan.seq,
+        "base": lambda: 0 if body.base.odometry is None else body.base.odometry.seq,
+    }
 
 
 def _navigator(setup: RobotSetup, robot: Robot, room: Room, laser: Laser) -> Navigator:

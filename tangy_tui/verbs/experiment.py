@@ -85,7 +85,7 @@ def third(
     users: Annotated[int, typer.Option(min=1, max=8, help="People in a game.")] = 4,
     simulated: Annotated[
         bool,
-        typer.Option("--simulated", help="All of it simulated (seconds), not on the bench (hours)."),
+        typer.Option("--simulated", help="Simulate all of it (seconds, not hours on the bench)."),
     ] = False,
     report: Report = None,
     activity: ActivityName = "bingo",

@@ -46,6 +46,7 @@ class Bench:
         self._due = dict.fromkeys(EVERY, 0.0)
         self._turn = asyncio.Lock()
         self._lost = False  # whether the link is
+        self._odometries = 0  # that could arrive
         self._commands: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
             "begin": lambda _: {"cards": world.begin()},
             "inject": lambda told: self._injected(str(told["kind"])),
@@ -112,7 +113,7 @@ class Bench:
                 part = min(TICK, seconds)
                 seconds -= part
                 self._pass(part)
-        sent = {"laser": self.scip.sent, **self.film.sent}
+        sent = {"laser": self.scip.sent, "base": self._odometries, **self.film.sent}
         return {"time": round(self.world.now, 6), "sent": sent}
 
     def _pass(self, seconds: float) -> None:
@@ -126,6 +127,7 @@ class Bench:
         if "base-failed" not in world.faults:
             odometry = messages.odometry(now, wheels.odometry, wheels.forward, wheels.turn)
             ros.publish("/odom", "nav_msgs/Odometry", odometry)
+            self._odometries += not self._lost
         if self._is_due("laser") and self.scip.measuring:
             self.scip.send(world.ranges(), round(now * 1000))
         if self._is_due("joints"):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from tangy_hw.perception.cards import synthesis
 from tangy_hw.perception.cards.rectifying import RIM, SIDE, Flat
 from tangy_profiles.card_face import Face
 from tangy_profiles.card_picture import draw_number
@@ -19,6 +21,8 @@ HALF = SIDE // 2  # pixels of a cell in the maps
 AWAY = 8  # how far from a cell's middle a chip's middle is looked for, in pixels of the maps
 BEYOND = 12  # as far again is looked for chips of the next cells
 SPOTS, APART = 11, 3  # of a cell and its surroundings: so many to each side, pixels of the maps
+OUTSIDE = 4, 10  # pixels outside of the grid that are looked at for what comes from there
+STRANGE, DARK = 0.22, 0.25  # of light: how far from grey, and how dark, paper never is
 INNER = 26  # pixels of the middle of a cell in which its number stands
 LARGEST = 1.4  # a scale above which nothing more is seen
 INKED = 80  # the percentile of a card's cells whose number counts as ink on paper
@@ -36,7 +40,7 @@ NAMES = (
     "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
     "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
-    "black",
+    "black", *synthesis.NAMES,
 )  # fmt: skip
 """What the first features are called, in their order."""
 SEEN = ("colour", "lighter", "unlike")
@@ -47,23 +51,39 @@ there, and how unlike in colour the place in the cell that is most like a chip.
 """
 
 
-def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real, Real]:
-    """Measure the cells of a card; return a row of features for each, and how they are read.
+@dataclass(frozen=True)
+class Measured:
+    """What is measured of a card's cells: a row for each, of `NAMES` and of spots that show `SEEN`.
 
-    The second array has, for each cell, the correlation with the number that the card has there,
-    the best correlation with any other number of its column, and how black the number is beside
-    the card's others: 1 for ink on paper, less beneath a translucent chip or in glare.
+    `read` has, for each cell, the correlation with the number that the card has there and the best
+    correlation with any other number of its column. `beside` is how much of the paper outside of
+    the grid, beside a cell at its edge, something lies on: 0 to 1.
     """
+
+    rows: Real
+    read: Real
+    beside: Real
+
+    def compared(self, name: str) -> Real:
+        """Return one feature of all cells."""
+        column: Real = self.rows[:, NAMES.index(name)]
+        return column
+
+
+def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
+    """Measure the cells of a card."""
     import cv2
     import numpy as np
 
     rows, columns = face.deck.rows, len(face.deck.columns)
-    colour = cv2.GaussianBlur(flat.picture, (3, 3), 0).astype(np.float32) + 1
+    smooth = cv2.GaussianBlur(flat.picture, (3, 3), 0)
+    colour = smooth.astype(np.float32) + 1
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (25, 25))
-    white = cv2.GaussianBlur(cv2.dilate(colour, kernel), (0, 0), 8)
+    white = cv2.GaussianBlur(cv2.dilate(smooth, kernel).astype(np.float32) + 1, (0, 0), 8)
     shown = colour / white
     light, tint = _light_and_tint(shown)
-    expected = cv2.GaussianBlur(flat.expected, (0, 0), min(2.5, 0.55 / flat.scale)) / 255.0
+    blurred = cv2.GaussianBlur(flat.expected, (0, 0), min(2.5, 0.55 / flat.scale))
+    expected = blurred.astype(np.float32) / 255
 
     read = _numbers_read(light, face, numbers, flat.scale)
     inked = light[(expected < 0.25)]
@@ -137,9 +157,31 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> tuple[Real,
     black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
     black /= max(float(np.percentile(black, INKED)), 0.02)
     row.append(black)
-    named = np.stack(row, 1).astype(np.float32)
+    named = np.hstack([np.stack(row, 1), synthesis.compared(flat, expected)]).astype(np.float32)
     spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
-    return np.hstack([named, spots]), np.column_stack([read[:, :2], black])
+    bare = expected > 0.9
+    strange = (full_tint > STRANGE * np.maximum(full_light, 0.05)) | (full_light < DARK)
+    beside = _beside(np.where(bare, strange, False), bare, rows, columns)
+    return Measured(np.hstack([named, spots]), read[:, :2], beside)
+
+
+def _beside(strange: Real, bare: Real, rows: int, columns: int) -> Real:
+    """Return how much of the bare paper beside the cells at the grid's edges is strange."""
+    import numpy as np
+
+    near, far = OUTSIDE
+    down, across = RIM + rows * SIDE, RIM + columns * SIDE
+    found = np.zeros((rows, columns), np.float32)
+    for part, where in (
+        ((np.s_[RIM - far : RIM - near], np.s_[RIM:across]), np.s_[0, :]),
+        ((np.s_[down + near : down + far], np.s_[RIM:across]), np.s_[-1, :]),
+        ((np.s_[RIM:down], np.s_[RIM - far : RIM - near]), np.s_[:, 0]),
+        ((np.s_[RIM:down], np.s_[across + near : across + far]), np.s_[:, -1]),
+    ):
+        along = 1 if where[0] == slice(None) else 0  # the axis that is as thin as the strip
+        odd, paper = (layer[part].sum(along).reshape(-1, SIDE).sum(1) for layer in (strange, bare))
+        found[where] = np.maximum(found[where], odd / np.maximum(paper, SIDE))
+    return np.asarray(found.ravel())
 
 
 def _plainly(layers: Real, middle: tuple[Real, Real], known: tuple[Real, Real]) -> list[Real]:

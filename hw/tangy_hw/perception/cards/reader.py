@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
-from tangy_hw.perception.cards.features import features_of
+from tangy_hw.perception.cards.features import Measured, features_of
 from tangy_hw.perception.cards.locating import Sighting, find_cards
 from tangy_hw.perception.cards.rectifying import flatten
 from tangy_profiles.card_face import USUAL_SEED, Face, called_cells, numbers_of
@@ -28,7 +28,10 @@ TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
 HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
-WASHED = 0.45  # how black a number must be beside the card's others
+FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
+BARE, ALIKE = (0.88, 1.5), 0.93  # of that, and correlation with its print: it seems to lie bare
+BARE_ODDS = 5.2  # how much likelier paper is then: what is .75 sure counts as .94
+REACHED, REACHED_SURE = 0.5, 0.999  # of the paper beside an edge cell: a fingertip may be there
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,26 @@ class CardReading:
     problem: str = ""
     parts: tuple[tuple[float, float, float], ...] = ()
     corners: tuple[tuple[float, float], ...] = ()
+
+
+def _reconsidered(parts: Real, measured: Measured) -> Real:
+    """Weigh what nets say of cells with what their numbers and the paper beside them look like."""
+    import numpy as np
+
+    parts = parts.copy()
+    middle = measured.compared("middle of usual")
+    unmarked = parts[:, UNMARKED] >= parts[:, MARKED]
+    bare = unmarked & (middle >= BARE[0]) & (middle <= BARE[1])
+    bare &= measured.compared("alike") >= ALIKE
+    seen = parts[:, UNMARKED] + parts[:, MARKED]
+    odds = BARE_ODDS * parts[:, UNMARKED]
+    more = seen * odds / np.maximum(odds + parts[:, MARKED], 1e-9)
+    parts[bare, UNMARKED], parts[bare, MARKED] = more[bare], (seen - more)[bare]
+    # What lies on a number takes from its contrast, however clear or pale; light does not.
+    parts[unmarked & (middle < FADED)] = UNCERTAIN
+    reached = (measured.beside > REACHED) & (parts[:, MARKED] < REACHED_SURE)
+    parts[~unmarked & reached] = UNCERTAIN
+    return parts
 
 
 class CardReader:
@@ -106,16 +129,15 @@ class CardReader:
         if flat is None:
             return self.nothing(TOO_LITTLE)
         numbers = numbers_of(self.deck, seen.card, self.deck_seed)
-        features, read = features_of(flat, self.face, numbers)
+        measured = features_of(flat, self.face, numbers)
+        read = measured.read
         legible = read[:, :2].max(1) >= LEGIBLE
         own = int((legible & (read[:, 0] >= read[:, 1])).sum())
         if own < FEWEST_AGREE or own < AGREE * int(legible.sum()):
             few = int(legible.sum()) < FEWEST_AGREE
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
-        parts = load_classifier().probabilities(features)
-        # Glare can wash a translucent chip out and leave the number: then the ink is washed, too.
-        washed = read[:, 2] < WASHED
-        parts[washed & (parts[:, UNMARKED] > parts[:, MARKED])] = UNCERTAIN
+        parts = load_classifier().probabilities(measured.rows)
+        parts = _reconsidered(parts, measured)
         grid = self.face.grid
         ends = [
             (grid.left, grid.top),
