@@ -3,8 +3,8 @@
 Run by hand: `TANGY_LASER_LOG=DIR python -m tests.bench.localisation`, where DIR holds
 freiburg-079.log.gz. The poses in that log were corrected by a mapping program and are taken for
 the truth; the map is drawn from every second scan, and the robot is followed by the other ones.
-The wheels' steps stand in the log as lengths without sign: driving backwards reads as forwards. They
-are restored where the corrected poses went backwards.
+The wheels' steps stand in the log as lengths without sign: driving backwards reads as forwards.
+They are restored where the corrected poses went backwards.
 """
 
 from __future__ import annotations
