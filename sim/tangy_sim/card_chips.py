@@ -19,12 +19,48 @@ HUES = {"red": 0, "orange": 24, "yellow": 50, "green": 130, "blue": 215, "purple
 
 
 @dataclass(frozen=True)
+class Outline:
+    """What shape a chip has: a disc, unless it is said otherwise.
+
+    `long` is how much longer than wide it is, `turn` its direction in radians; `corners` are those
+    of a chip that is cut out, `hole` how large the hole in its middle is, of its radius.
+    """
+
+    long: float = 1.0
+    turn: float = 0.0
+    corners: int = 0
+    hole: float = 0.0
+
+    def beyond(self, u: Real, v: Real, radius: float) -> Real:
+        """Return how far places are outside of the outline, less than 0 inside."""
+        import numpy as np
+
+        along, aside = (
+            u * cos(self.turn) + v * sin(self.turn),
+            v * cos(self.turn) - u * sin(self.turn),
+        )
+        off: Real = np.hypot(along, aside * self.long)
+        if self.corners:
+            part = 2 * pi / self.corners
+            way = np.arctan2(aside * self.long, along)
+            off = off * np.cos((way + pi) % part - part / 2) / cos(part / 2) ** 0.5
+        off = off - radius
+        if self.hole:
+            off = np.maximum(off, self.hole * radius - np.hypot(u, v))
+        return off
+
+
+DISC = Outline()
+
+
+@dataclass(frozen=True)
 class Chip:
     """A chip that lies at (x, y) mm on the card.
 
     `clear` is how much light goes through; it is dyed on its way, or not where it is `washed`.
     `rim` is how much darker or lighter its rim is; `outline` and `ring` how dark a line there is
-    around it and on it, 0 to 1.
+    around it and on it, 0 to 1; `relief` how uneven its top looks, and `stripes` how many of its
+    edge are white. A `sheer` one is a film: light passes it once, and it throws no shadow.
     """
 
     radius: float
@@ -35,6 +71,10 @@ class Chip:
     outline: float = 0.0
     ring: float = 0.0
     washed: bool = False
+    shape: Outline = DISC
+    relief: float = 0.0
+    stripes: int = 0
+    sheer: bool = False
     x: float = 0.0
     y: float = 0.0
 
@@ -138,10 +178,11 @@ def put_chip(
         scale,
         around,
         np.zeros(3, np.float32),
-        0.75,
+        0.95 if chip.sheer else 0.75,
         soft=chip.thick * scale * 0.35,
+        shape=chip.shape,
     )
-    steps = max(1, round(high * scale / 1.5))
+    steps = 0 if chip.sheer else max(1, round(high * scale / 1.5))
     for step in range(steps):
         part = step / steps
         _disc(
@@ -154,6 +195,7 @@ def put_chip(
             around,
             tone * 0.6,
             chip.clear ** (1 / steps) if chip.clear else 0.0,
+            shape=chip.shape,
         )
     _disc(
         table,
@@ -166,10 +208,13 @@ def put_chip(
         tone * (1 + chip.rim),
         chip.clear,
         washed=chip.washed,
+        shape=chip.shape,
     )
     top = chip.x + dx, chip.y + dy
     if not chip.clear and chip.rim:
-        _disc(table, seen, *top, chip.radius * 0.82, scale, around, tone, 0.0)
+        _disc(table, seen, *top, chip.radius * 0.82, scale, around, tone, 0.0, shape=chip.shape)
+    if chip.relief or chip.stripes:
+        _figure(table, chip, top, scale, around, random)
     if chip.outline:
         _circle(table, top, chip.radius, scale, around, tone * (1 - chip.outline))
     if chip.ring:
@@ -202,8 +247,9 @@ def _disc(
     clear: float,
     soft: float = 0.7,
     washed: bool = False,
+    shape: Outline = DISC,
 ) -> None:
-    """Lay a disc on the table: `clear` of what is beneath shines through, in its tone."""
+    """Lay a disc or so on the table: `clear` of what is beneath shines through, in its tone."""
     import numpy as np
 
     px, py, reach = (x + around) * scale, (y + around) * scale, radius * scale + 3 * soft + 2
@@ -212,7 +258,7 @@ def _disc(
     if left >= right or top >= bottom:
         return
     v, u = np.mgrid[top:bottom, left:right].astype(np.float32) + np.float32(0.5)
-    far = np.hypot(u - px, v - py) - radius * scale
+    far = shape.beyond(u - px, v - py, radius * scale)
     inside = (1 / (1 + np.exp(np.clip(far / max(soft * 0.5, 0.2), -30, 30))))[..., None]
     box = np.s_[top:bottom, left:right]
     beneath = table[box]
@@ -222,6 +268,36 @@ def _disc(
     there = np.maximum(seen[box][..., None], inside if tone.any() else 0)
     table[box] = (beneath * (1 - inside) + through * inside) * np.where(tone.any(), 1, there)
     seen[box] = np.maximum(seen[box], inside[..., 0] if tone.any() else 0)
+
+
+def _figure(
+    table: Real,
+    chip: Chip,
+    middle: tuple[float, float],
+    scale: float,
+    around: float,
+    random: np.random.Generator,
+) -> None:
+    """Make a chip's top uneven, as a coin's, or its edge striped."""
+    import cv2
+    import numpy as np
+
+    side = round(chip.radius * scale) + 1
+    left, top = (round((place + around) * scale) - side for place in middle)
+    if min(left, top) < 0 or left + 2 * side > table.shape[1] or top + 2 * side > table.shape[0]:
+        return
+    v, u = np.mgrid[-side:side, -side:side].astype(np.float32)
+    within = chip.shape.beyond(u, v, chip.radius * scale) < -0.5
+    part = table[top : top + 2 * side, left : left + 2 * side]
+    if chip.relief:
+        fine = int(random.integers(5, 12))
+        small = random.normal(1, chip.relief, (fine, fine)).astype(np.float32)
+        uneven = cv2.resize(small, (2 * side, 2 * side), interpolation=cv2.INTER_CUBIC)
+        part *= np.where(within, np.clip(uneven, 0.3, 1.9), 1)[..., None]
+    if chip.stripes:
+        way = np.arctan2(v, u) + random.uniform(0, pi)
+        edge = within & (np.hypot(u, v) > 0.66 * chip.radius * scale)
+        part[edge & (np.sin(chip.stripes * way) > 0.3)] = 0.93
 
 
 def _circle(

@@ -6,7 +6,7 @@ Light, shadow, glare, blur, noise and JPEG come on top. The same seed gives the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from tangy_profiles.cards import Deck
 from tangy_sim.card_chips import Chip, faint_chip, put_chip, some_chip
 from tangy_sim.card_hands import draw_hand
 from tangy_sim.card_light import exposed, lit_scene, moved, project
+from tangy_sim.card_odd_chips import odd_chip
 from tangy_sim.card_things import background
 
 if TYPE_CHECKING:
@@ -121,14 +122,19 @@ class CardCamera:
         title: str = "",
         straddling: float = 0.06,
         faint: float = 0.0,
+        odd: float = 0.0,
+        oddity: Callable[[np.random.Generator], Chip] = odd_chip,
     ) -> None:
         """Set up; `straddling` is the chance of a chip to lie carelessly on its cell.
 
-        `faint` is the chance that the chips of a card are of a kind that is hard to see.
+        `faint` is the chance that the chips of a card are of a kind that is hard to see, `odd`
+        that they are none, but what `oddity` draws: coins, beans or scraps of paper.
         """
         self.face = Face(deck)
         self.straddling = straddling
         self.faint = faint
+        self.odd = odd
+        self.oddity = oddity
         self.deck_seed = deck_seed
         self.title = title
 
@@ -154,6 +160,8 @@ class CardCamera:
         deck = self.face.deck
         faint = self.faint > 0 and random.random() < self.faint
         kind = faint_chip(random) if faint else some_chip(random)
+        if self.odd > 0 and random.random() < self.odd:
+            kind = self.oddity(random)
         chips: dict[int, Chip] = {}
         for cell in range(deck.rows * len(deck.columns)):
             if not marked >> cell & 1:
