@@ -14,7 +14,7 @@ Real: TypeAlias = NDArray[Any]
 Layers: TypeAlias = "list[list[Real]]"
 
 WIDTHS = (64, 32)
-ROUNDS, BATCH, FASTEST = 16, 256, 2e-3
+ROUNDS, BATCH, FASTEST = 14, 256, 2e-3
 DECAY, LOST, NOISE = 2e-4, 0.02, 0.02
 """Of the weights in a step's speed; of the features that are left out; of a spread, on each."""
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from importlib import resources
 
 import cv2
 import numpy as np
 import pytest
 
+from tangy_hw.perception.cards import classifier
 from tangy_hw.perception.cards.reader import (
     NO_TAGS,
     OTHER_NUMBERS,
@@ -19,7 +22,9 @@ from tangy_hw.perception.cards.reader import (
 )
 from tangy_profiles.activity import Activity, load_activity, read_activity
 from tangy_profiles.card_face import numbers_of
+from tangy_sim.card_chips import Chip
 from tangy_sim.card_frames import CardCamera, Frame, View
+from tangy_sim.card_odd_chips import odd_chip, sheer_chip
 from tests.conftest import TESTS
 
 CLEAN = View(pixels=36, noise=1, quality=95)
@@ -58,6 +63,29 @@ def test_rendered_frames_are_never_read_wrongly(reader: CardReader) -> None:
         reading = reader.read(frame.picture)
         assert reading.card in (frame.card, None)
         assert not (reading.marked ^ frame.marked) & ~reading.hidden
+
+
+@pytest.mark.parametrize("sort", [odd_chip, sheer_chip])
+def test_no_thing_that_lies_on_a_number_is_taken_for_paper(
+    reader: CardReader, sort: Callable[[np.random.Generator], Chip]
+) -> None:
+    odd = CardCamera(reader.deck, title="Bingo", straddling=0.0, odd=1.0, oddity=sort)
+    told = 0
+    for frame in odd.frames(47, 4, size=(640, 520), pixels=30.0, hand="", glare=0.0):
+        reading = reader.read(frame.picture)
+        assert reading.card in (frame.card, None)
+        assert not (reading.marked ^ frame.marked) & ~reading.hidden
+        told += (reading.marked & frame.marked).bit_count()
+    assert told > 5  # or all was hidden
+
+
+def test_the_classifier_is_small_and_refuses_other_features() -> None:
+    path = resources.files(classifier.__package__) / "classifier.json"
+    assert len(path.read_bytes()) < 1_000_000
+    told = json.loads(path.read_text(encoding="utf-8"))
+    assert classifier.read_classifier(told).nets
+    with pytest.raises(RuntimeError, match="train it again"):
+        classifier.read_classifier({**told, "features": told["features"][1:]})
 
 
 def test_cells_under_a_hand_are_hidden_and_the_others_are_read(reader: CardReader) -> None:

@@ -29,7 +29,8 @@ OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
 HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
 FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
-BARE, ALIKE = (0.88, 1.5), 0.93  # of that, and correlation with its print: it seems to lie bare
+BARE, QUARTER, ALIKE = (0.88, 1.5), 0.8, 0.93
+"""Of that in its middle and each quarter, and correlation with its print: it seems to lie bare."""
 BARE_ODDS = 5.2  # how much likelier paper is then: what is .75 sure counts as .94
 REACHED, REACHED_SURE = 0.5, 0.999  # of the paper beside an edge cell: a fingertip may be there
 
@@ -60,7 +61,7 @@ def _reconsidered(parts: Real, measured: Measured) -> Real:
     middle = measured.compared("middle of usual")
     unmarked = parts[:, UNMARKED] >= parts[:, MARKED]
     bare = unmarked & (middle >= BARE[0]) & (middle <= BARE[1])
-    bare &= measured.compared("alike") >= ALIKE
+    bare &= (measured.compared("alike") >= ALIKE) & (measured.compared("least of usual") >= QUARTER)
     seen = parts[:, UNMARKED] + parts[:, MARKED]
     odds = BARE_ODDS * parts[:, UNMARKED]
     more = seen * odds / np.maximum(odds + parts[:, MARKED], 1e-9)
