@@ -42,6 +42,11 @@ class DriveEvidence:
         """The drive is over: keep what it has shown for a moment."""
         self._kept, self._until = dict(self._worst), self._now() + KEPT_SECONDS
 
+    def detour_taken(self) -> None:
+        """Another way was found and is taken: there is nothing more to be said of it."""
+        self._worst.pop("path", None)
+        self._kept.pop("path", None)
+
     def base(self, own: Reading) -> Reading:
         """Return the reading of the base with what the navigator knows of it."""
         facts = self._navigator.facts()

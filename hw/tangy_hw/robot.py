@@ -205,8 +205,7 @@ class LiveRobot:
             doing["shown"] = self._body.screen.show(picture)
         arms = self._body.arms
         if arms is not None and posture and (gazes or arms.reading().state != ERROR):
-            doing["posed"] = arms.pose(posture, POSE_SECONDS)
-            self._gaze = ""
+            doing["posed"], self._gaze = arms.pose(posture, POSE_SECONDS), ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
         try:
             await self.passing.until(
@@ -257,6 +256,7 @@ class LiveRobot:
 
     def replan(self) -> None:
         """Look whether there is a way again to where there was none."""
+        self._evidence.detour_taken()
         goal, here, seen = self._wanted, self.pose, self.navigator.obstacles
         if goal is not None and self._evidence.blocked:
             way = plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen)

@@ -233,8 +233,8 @@ class LiveWorld:
 
     # ------------------------------------------------------------------------ what people do
 
-    def _response(self, action: Action, numbers: tuple[int, ...]) -> Response:
-        """Watch whether the person beside the robot does what was put to them, and when."""
+    def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
+        """Watch what the person beside the robot does about it; None: the card is not seen."""
         person, patience = self.tracker.place, self.activity.patience
         began = before = self.link.time
         reminded = False
@@ -245,6 +245,8 @@ class LiveWorld:
             if done:
                 return Response(person, action.strategy, True, seconds <= patience, seconds)
             if now - began > PATIENCES * patience:
+                if action.behaviour.effect != "none" and self._card is None:
+                    return None
                 return Response(person, action.strategy, False, False, now - began)
             if now - began > patience and not reminded:
                 reminded = True
@@ -396,5 +398,5 @@ def _numbers_at(card: CardView, cells: int) -> tuple[int, ...]:
     return tuple(number for cell, number in enumerate(card.numbers) if cells >> cell & 1)
 
 
-def _unheeded(_what: str, _place: str, _seen: Any) -> None:
+def _unheeded(*_: Any) -> None:
     """Take no note."""

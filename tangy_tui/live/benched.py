@@ -26,7 +26,7 @@ from tangy_sim.injection import KINDS, Injection, Kind
 from tangy_tui.live.bench import Bench
 
 DRIVES = ("go to user", "go to front")
-ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
+MARKED = ("clear wrong marks", "set missing marks")
 EXPERT_SECONDS = 60.0  # that an expert takes on the bench
 NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
 
@@ -117,7 +117,7 @@ class BenchedWorld(LiveWorld):
         if kind == "navigation-failed":  # there is no such program on the bench
             self.link.do("fail", device="navigator", state="ERROR")
         self._switch_tablet()
-        if chosen.shows == injection.AT_ONCE:
+        if chosen.shows == injection.AT_ONCE and self.link.setup.stepped:
             self._let_show(chosen)
 
     def _let_show(self, kind: Kind) -> None:
@@ -125,11 +125,12 @@ class BenchedWorld(LiveWorld):
         self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
 
     def _pass_until(self, holds: Callable[[], bool]) -> None:
-        """Let a little time pass until something holds, where it does not pass by itself."""
+        """Let a little time pass until something holds."""
         until = time.monotonic() + NOTICED_SECONDS
-        while self.link.setup.stepped and not holds() and time.monotonic() < until:
-            with suppress(DeviceError):
-                self.link.do("wait", seconds=0.2)
+        while not holds() and time.monotonic() < until:
+            if self.link.setup.stepped:
+                with suppress(DeviceError):
+                    self.link.do("wait", seconds=0.2)
             self.link.beat()
 
     def lift(self, kind: str) -> None:
@@ -153,16 +154,16 @@ class BenchedWorld(LiveWorld):
             case injection.LOOKING:
                 if tracker.seen is None:
                     return beside and behaviour.effect == "bring card closer"
-                return behaviour.effect in ("clear wrong marks", "set missing marks")
+                return behaviour.effect in MARKED
             case injection.ASKING:
-                return beside and behaviour.effect in ASKED_FOR and tracker.allows(behaviour)
+                return beside and behaviour.effect in MARKED and tracker.allows(behaviour)
             case injection.CLOSING:
                 settled = self.activity.card_states[-1].name
                 return beside and behaviour.closes == "always" and tracker.seen == settled
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
-                return beside and behaviour.effect in ("clear wrong marks", "set missing marks")
+                return beside and behaviour.effect in MARKED
             case _:
                 return True
 

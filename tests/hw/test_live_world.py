@@ -185,11 +185,23 @@ def test_who_does_it_late_followed_and_did_not_comply(world: LiveWorld, link: Fa
 
 
 def test_who_does_nothing_did_not_follow(world: LiveWorld, link: FakeLink) -> None:
-    beside(world, link, 1, LaidCard(CARD, seen=False))
+    card = LaidCard(CARD)
+    beside(world, link, 1, card)
+    card.marked = 1
+    do(world, "navigate to user", "user1")
     began = link.time
-    response = do(world, "move card closer", "user1").response
+    response = do(world, "remove markers", "user1").response
     assert response is not None and not response.followed and not response.complied
     assert link.time - began >= PATIENCES * BINGO.patience
+    assert world.observe().situation.user_state == "incorrectly marked"
+
+
+def test_of_a_card_that_is_not_seen_nobody_knows_what_was_done(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 1, LaidCard(CARD, seen=False))
+    outcome = do(world, "move card closer", "user1")
+    assert outcome.completed and outcome.response is None
     assert world.observe().situation.user_state == "occluded"
 
 

@@ -33,6 +33,7 @@ PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
 SPIN = 0.5  # rad/s while it looks around
 ASTRAY = 0.5  # metres off its path at which it looks for another
 LOOK_AHEAD = 50  # points of the path that are watched for obstacles: 2.5 m
+TAKEN = 0.6  # metres gone on another way until it is said to be one: it may end as well
 SLOW = 0.1  # m/s: a robot that drives faster stops before it takes another way
 SLIPS = 0.3  # metres of disagreement from which on the wheels do not grip
 
@@ -85,6 +86,7 @@ class Navigator:
         self._turned = self._turn_to = 0.0
         self._waited = self._without = self._since_plan = 0.0
         self._mark: tuple[float, float] | None = None
+        self._detour: tuple[float, float] | None = None
         self._marked = 0.0
 
     # ------------------------------------------------------------------ what it is told to do
@@ -231,7 +233,7 @@ class Navigator:
             self._since_plan = 0.0
             path = self._plan(pose, goal)
             if path is not None:
-                self._take(path, goal)
+                self._take(path, goal, pose)
                 return
         if self._without >= NO_WAY:
             self._block("Something stands in every way there.")
@@ -239,11 +241,11 @@ class Navigator:
     def _plan(self, pose: Pose, goal: Pose) -> Path | None:
         return plan(self.map, (pose.x, pose.y), (goal.x, goal.y), self.obstacles, self._radius)
 
-    def _take(self, path: Path, goal: Pose) -> None:
-        """Follow a way; if another was given up for it, say that it is another."""
+    def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
+        """Follow a way; one that leaves the way that was given up is told when it has been gone."""
         if self._given_up is not None and _leaves(path.points, self._given_up):
-            self._way = "replanned"
-        elif self._way == "none":
+            self._detour = (pose.x, pose.y)
+        if self._way == "none":
             self._way = "clear"
         self.state = "replanned" if self._way == "replanned" else "driving"
         self.why = ""
@@ -258,7 +260,7 @@ class Navigator:
     def _stop_following(self) -> None:
         self.path = self._pursuit = self._given_up = None
         self._waited = self._without = self._marked = 0.0
-        self._mark = None
+        self._mark = self._detour = None
 
     def _follow(
         self, pursuit: Pursuit, goal: Pose, pose: Pose, odometry: Odometry, scan: Scan, dt: float
@@ -267,6 +269,9 @@ class Navigator:
         if lengths(ahead[:1] - (pose.x, pose.y))[0] > ASTRAY:  # it found itself elsewhere
             self._pursuit = None
             return STILL
+        gone = self._detour
+        if gone is not None and hypot(pose.x - gone[0], pose.y - gone[1]) > TAKEN:
+            self.state, self._way, self._detour = "replanned", "replanned", None
         obstacles = self.obstacles
         wary_of = np.vstack((self.people, obstacles))
         twist = pursuit.command(pose, odometry.twist, scan, dt, wary_of)
@@ -283,10 +288,10 @@ class Navigator:
             self._since_plan = 0.0
             path, self._given_up = self._plan(pose, goal), ahead
             if path is not None:
-                self._take(path, goal)
+                self._take(path, goal, pose)
                 return twist if twist.forward < SLOW else STILL
-            if stands:
-                self._pursuit = None
+            self._pursuit = None
+            return STILL
         if not self._progressed(pose, dt):
             self._pursuit, self._given_up, self._since_plan = None, ahead, -AGAIN
             self._mark = None

@@ -76,14 +76,17 @@ class Film:
 
     async def _film_head(self) -> None:
         loop, camera = asyncio.get_running_loop(), self._server.camera[HEAD]
-        game = 0
+        game, ahead = 0, list[tuple[int, int]]()
         while True:
             due = loop.time() + PAUSE
             if camera.viewers and not camera.hangs:
                 if game != self._world.games:
                     game = self._world.games
-                    cards = [sitter.card for sitter in self._world.people.sitters.values()]
-                    await loop.run_in_executor(self._thread, self._head.prepare, game, cards)
+                    people = self._world.people.sitters.values()
+                    ahead = list(enumerate(sitter.card for sitter in people))
+                elif ahead:  # one between two frames, so that the stream never stands still
+                    who, card = ahead.pop(0)
+                    await loop.run_in_executor(self._thread, self._head.prepare, game, who, card)
                 scene = self._world.head_scene()
                 jpeg = await loop.run_in_executor(self._thread, self._head.frame, scene)
                 if not _outdated(scene, self._world.head_scene()):

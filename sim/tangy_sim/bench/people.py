@@ -246,6 +246,10 @@ class People:
                 if uniform() * users.ask_with_error < 1.0 or player.has_error:
                     self._ask_soon(sitter)
 
+    def ask(self, person: str) -> None:
+        """Let somebody raise the sign now, who is told to."""
+        self._ask(self.sitters[person])
+
     def _ask_soon(self, sitter: Sitter) -> None:
         self._after(ASKS, partial(self._ask, sitter))
 

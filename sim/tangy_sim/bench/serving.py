@@ -53,6 +53,7 @@ class Bench:
             "lift": lambda told: {"lifted": world.lift(str(told["kind"]))},
             "mend": lambda told: {"lifted": world.mend(str(told["fault"]))},
             "restart": lambda told: {"works": world.restart(str(told["device"]))},
+            "ask": lambda told: self._asked(str(told["person"])),
             "truth": lambda _: {"truth": world.truth()},
         }
 
@@ -159,6 +160,10 @@ class Bench:
 
     def _posed(self, told: Mapping[str, Any]) -> None:
         self.world.joints.move(*messages.trajectory(told))
+
+    def _asked(self, person: str) -> dict[str, Any]:
+        self.world.people.ask(person)
+        return {"asking": list(self.world.asking)}
 
     def _injected(self, kind: str) -> dict[str, Any]:
         self.world.inject(kind)

@@ -149,12 +149,11 @@ class HeadCamera:
                 del self._tables[next(iter(self._tables))]
         return self._tables[key]
 
-    def prepare(self, game: int, cards: Sequence[int]) -> None:
-        """Draw ahead what takes longest: the faces of a game's cards, and the tables under them."""
-        random = np.random.default_rng(self._seed)
-        for who, card in enumerate(cards):
-            self._table(game, who)
-            self._camera.take(card, {}, _view(random), random)
+    def prepare(self, game: int, who: int, card: int) -> None:
+        """Draw ahead what takes longest: the face of somebody's card, and the table under it."""
+        random = np.random.default_rng([self._seed, who])
+        self._table(game, who)
+        self._camera.take(card, {}, _view(random), random)
 
     def _face(self, scene: HeadScene) -> list[Picture]:
         """Draw a person before the room, in a few pictures."""

@@ -59,6 +59,7 @@ class LiveScreen(PlayScreen):
         self._autonomy = AUTONOMY[0]
         self._taking_over = False
         self._working = False
+        self._seen_going = ""
 
     def on_mount(self) -> None:
         """Show what is known, begin, and follow the robot."""
@@ -232,6 +233,9 @@ class LiveScreen(PlayScreen):
         state = self._world.link.state
         if not state.number:
             return
+        if state.going != self._seen_going:
+            self._seen_going = state.going
+            self._show_status()
         marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
         marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
         marks += [(Point(x, y), "*", "warn") for x, y in state.obstacles]

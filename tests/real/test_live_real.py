@@ -1,0 +1,139 @@
+"""Live games on the bench: real processes, sockets, pixels and scans from end to end."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.fault_file import load_faults
+from tangy_sim.injection import read_injection
+from tangy_tui.house import House
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.opening import open_bench
+from tangy_tui.monitoring.fault import Diagnosed
+from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tests.real.conftest import TANGY, Terminal
+
+pytestmark = pytest.mark.xdist_group("robot")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder in which one guided game was shown and learnt from."""
+    folder = tmp_path_factory.mktemp("live")
+    teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
+    for command in (teach, ["learn"]):
+        subprocess.run(  # noqa: S603
+            [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
+        )
+    return folder
+
+
+@pytest.fixture
+def house(folder: Path) -> Iterator[House]:
+    house = House(folder)
+    yield house
+    house.close()
+
+
+def games(house: House, world: BenchedWorld) -> Supervision:
+    policy, _ = load_policy(house.store, house.activity, "")
+    return house.supervision(policy, 1, asks=True, world=world)
+
+
+def play(game: Supervision, steps: int) -> list[Event]:
+    told: list[Event] = []
+    wanted = game.steps + steps
+    while game.steps < wanted and not game.over:
+        told += go_on_by_script(game, expert=True)
+    return told
+
+
+def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(house: House) -> None:
+    book = load_faults(house.robot)
+    with open_bench(house, seed=3, stepped=True, pace=2, book=book) as world:
+        game = games(house, world)
+        told = game.begin() + play(game, 4)
+        world.requests.ask_for("user2")
+        told += play(game, 2)
+        assert world.observe().place == "user2"
+        assert world.truth()["place"] == "user2"  # as it really is
+        while world.observe().place != "front" and not game.over:
+            told += play(game, 1)
+
+        acted = [event for event in told if isinstance(event, Acted)]
+        assert all(event.right for event in acted)
+        assert not [event for event in told if isinstance(event, Diagnosed)]
+        score = world.score.to_json()
+        assert score["identities"] == {"right": 1, "unknown": 0, "wrong": 0}
+        assert score["reads"]["right"] >= 1 and score["reads"]["wrong"] == 0
+        assert score["pose_error_m"]["p95"] < 0.15
+        assert len(world.truth()["called"]) == len(world.called)  # people heard every call
+
+
+def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(house: House) -> None:
+    book = load_faults(house.robot)
+    faults = [read_injection(text) for text in ("laser-disconnected@3", "camera-occluded@6")]
+    with open_bench(
+        house, seed=4, stepped=True, pace=2, book=book, injections=faults
+    ) as world:  # fmt: skip
+        assert isinstance(world, BenchedWorld)
+        game = games(house, world)
+        game.begin()
+        play(game, 8)
+        assert [fault.code for fault in game.faults] == ["laser-disconnected", "camera-occluded"]
+        assert [fault.critical for fault in game.faults] == [True, False]
+        assert all(fault.succeeded for fault in game.faults)
+        assert world.present == []
+        game.leave()
+
+
+def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> None:
+    command = [TANGY, "live", "--bench", "--pace", "3", "--seed", "5", "--data", str(folder)]
+    terminal = Terminal(command)
+    try:
+        terminal.until("Steps")
+        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+            terminal.type("y")
+        terminal.until("call number")
+        terminal.type("h")
+        terminal.until("Who needs help?")
+        terminal.type("\r")
+        terminal.until("asks for help")
+        terminal.until("drives to User 1")
+        terminal.type("\x18")
+        assert "STOPPED" in terminal.until("STOPPED")
+        terminal.type("\x1b")
+        terminal.until("Leave in the middle")
+        terminal.type("y")
+        assert terminal.wait() == 0
+    finally:
+        terminal.end()
+
+
+def test_without_drivers_it_says_what_to_do(folder: Path) -> None:
+    done = subprocess.run(  # noqa: S603
+        [TANGY, "live", "--headless", "--data", str(folder)], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "names no drivers" in done.stderr and "--bench" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_faults_can_stand_in_a_file(folder: Path, tmp_path: Path) -> None:
+    wrong = tmp_path / "faults.txt"
+    wrong.write_text("# what is to come\nlaser-disconected@3\n")
+    done = subprocess.run(  # noqa: S603
+        [TANGY, "live", "--bench", "--json", "--inject", str(wrong), "--data", str(folder)],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2 and "laser-disconnected" in done.stderr
+    assert json.dumps(done.stdout) == '""'
