@@ -243,10 +243,10 @@ class Navigator:
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
         """Follow a way; one that leaves the way that was given up is told when it has been gone."""
-        if self._given_up is not None and _leaves(path.points, self._given_up):
-            self._detour = (pose.x, pose.y)
-        if self._way == "none":
+        if self._way == "none":  # it is free again
             self._way = "clear"
+        elif self._given_up is not None and _leaves(path.points, self._given_up):
+            self._detour = (pose.x, pose.y)
         self.state = "replanned" if self._way == "replanned" else "driving"
         self.why = ""
         self.path = path
