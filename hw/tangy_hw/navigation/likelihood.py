@@ -97,8 +97,8 @@ class LikelihoodField:
             return Evidence(0.0, 0.0)
         fits = self.beams(np.asarray([pose]), points)[0]
         # a beam that fits nowhere and went through a wall speaks against the pose
-        through = self._crosses(pose, points)
-        through &= fits < 0.5
+        through = fits < 0.5
+        through[through] = self._crosses(pose, points[through])
         tells = through | (fits > 2 * FLOOR)
         if not tells.any():
             return Evidence(0.0, 0.0)

@@ -91,9 +91,8 @@ def mean(particles: Floats, weights: Floats) -> Pose:
 
 def likeliest(particles: Floats, weights: Floats) -> tuple[Pose, Floats]:
     """Return the mean of the likeliest cluster, and its covariance (3, 3)."""
-    bins = _bins(particles, BIN, pi / 6)
-    heaviest = int(np.argmax(np.bincount(np.unique(bins, return_inverse=True)[1], weights)))
-    inside = bins == np.unique(bins)[heaviest]
+    _, bins = np.unique(_bins(particles, BIN, pi / 6), return_inverse=True)
+    inside = bins == np.argmax(np.bincount(bins, weights))
     guess = mean(particles[inside], weights[inside])
     for _ in range(2):
         off = np.hypot(particles[:, 0] - guess.x, particles[:, 1] - guess.y)
