@@ -15,7 +15,7 @@ import numpy as np
 
 from tangy_hw.devices import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from tangy_hw.navigation.poses import Floats, between, compose, endpoints, placed
+from tangy_hw.navigation.poses import Floats, between, endpoints, placed
 from tangy_profiles.errors import TangyError
 
 REACH = 20.0  # metres of a beam that are used
@@ -134,8 +134,3 @@ def map_of_scans(scans: Sequence[Placed], resolution: float = 0.05) -> Occupancy
     for one in scans:
         maker.add(one.scan, one.pose)
     return maker.map()
-
-
-def followed(poses: Sequence[Pose], start: Pose) -> list[Pose]:
-    """Return poses as if the first of them had been `start`."""
-    return [compose(start, between(poses[0], pose)) for pose in poses]
