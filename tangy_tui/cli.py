@@ -29,6 +29,7 @@ from tangy_tui.verbs import (
     live,
     log,
     machine,
+    map,
     mic,
     mic_check,
     people,
@@ -106,6 +107,7 @@ VERBS: tuple[Callable[..., None], ...] = (
 )
 for verb in VERBS:
     app.command()(verb)
+app.command("map")(map.draw_map)
 people.app.command("pronounce")(people_speech.people_pronounce)
 people.app.command("voice")(people_speech.people_voice)
 people.app.command("forget")(people_forget.people_forget)

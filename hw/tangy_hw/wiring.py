@@ -15,6 +15,7 @@ from tangy_hw.bench_clock import SteppedClock
 from tangy_hw.devices import Clock, DeviceError, Laser, MachineClock, Pose
 from tangy_hw.driver_kinds import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.perception.requests.asking import RequestSource
@@ -165,7 +166,7 @@ def _counted(body: Body) -> dict[str, Callable[[], int]]:
 def _navigator(setup: RobotSetup, robot: Robot, room: Room, laser: Laser) -> Navigator:
     from tangy_hw.navigation.pursuit import Limits
 
-    known = map_of_room(room)
+    known = read_map(Path(setup.map)) if setup.map else map_of_room(room, people=len(setup.people))
     start = None if setup.start is None else Pose(*setup.start)
     seats = room.seated(len(setup.people))
     return Navigator(

@@ -215,9 +215,8 @@ class LiveWorld:
     def _read_card(self, person: str, after: float = 0.0) -> None:
         """Look at the card beside the robot, and keep what is seen of it."""
         card = self._look(after)
-        state = str(card["state"])
         self.looked("card", person, card)
-        self.tracker.seen = state if state != self.activity.unread else None
+        self.tracker.seen = card["state"] if card["state"] != self.activity.unread else None
 
     def _look(self, after: float = 0.0) -> dict[str, Any]:
         """Look at the card; `_card` is what was seen, None if it could not be read."""
@@ -234,7 +233,7 @@ class LiveWorld:
     # ------------------------------------------------------------------------ what people do
 
     def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
-        """Watch what the person beside the robot does about it; None: the card is not seen."""
+        """Watch what the person beside the robot does about it; None: that cannot be seen."""
         person, patience = self.tracker.place, self.activity.patience
         began = before = self.link.time
         reminded = False
@@ -245,8 +244,8 @@ class LiveWorld:
             if done:
                 return Response(person, action.strategy, True, seconds <= patience, seconds)
             if now - began > PATIENCES * patience:
-                if action.behaviour.effect != "none" and self._card is None:
-                    return None
+                if action.behaviour.effect == "none" or self._card is None:
+                    return None  # a sign that stays up may be forgotten, or want something else
                 return Response(person, action.strategy, False, False, now - began)
             if now - began > patience and not reminded:
                 reminded = True

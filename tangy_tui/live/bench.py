@@ -52,7 +52,7 @@ class Bench:
         seed: int,
         people: Mapping[str, str],
         stepped: bool,
-        activity: str = "bingo",
+        activity: str,
         room: str = "common-room",
         log: Path | None = None,
     ) -> None:

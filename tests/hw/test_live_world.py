@@ -113,9 +113,7 @@ def test_signs_are_requests_the_first_first(world: LiveWorld, link: FakeLink) ->
     assert state.attended == "user3" and world.tracker.queue == ["user3", "user1"]
 
 
-def test_who_waits_and_takes_the_sign_down_is_not_visited(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_who_waits_and_takes_the_sign_down_is_not_visited(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     link.sign(2)
     world.observe()
@@ -205,9 +203,7 @@ def test_of_a_card_that_is_not_seen_nobody_knows_what_was_done(
     assert world.observe().situation.user_state == "occluded"
 
 
-def test_encouragement_has_worked_when_the_sign_goes_down(
-    world: LiveWorld, link: FakeLink
-) -> None:
+def test_encouragement_has_worked_when_the_sign_goes_down(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD))
     link.meanwhile = lambda what, time: link.sign() if what == "wait" else None
     outcome = do(world, "encourage", "user1")
@@ -219,7 +215,7 @@ def test_a_sign_that_stays_up_keeps_the_request_open(world: LiveWorld, link: Fak
     beside(world, link, 1, LaidCard(CARD))
     began = link.time
     outcome = do(world, "encourage", "user1")
-    assert outcome.response is not None and not outcome.response.followed
+    assert outcome.completed and outcome.response is None
     assert link.time - began >= SIGN_SECONDS
     assert world.observe().closed is None and world.observe().attended == "user1"
 

@@ -17,6 +17,7 @@ from tests.real.browser import CHROMIUM, Browser, Tab, chromium
 from tests.real.conftest import PATIENCE
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed: no browser to look"),
     pytest.mark.xdist_group("chromium"),
 ]

@@ -21,7 +21,7 @@ from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tests.real.conftest import TANGY, Terminal
 
-pytestmark = pytest.mark.xdist_group("robot")
+pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

@@ -29,10 +29,14 @@ from tests.real.mrpt_localisation import PROGRAMS, mrpt_errors
 
 SEEDS = range(700, 705)
 
-pytestmark = pytest.mark.skipif(
-    not (Path(os.environ.get(FOLDER, "")) / "freiburg-079.log.gz").is_file(),
-    reason=f"{FOLDER} names no folder with freiburg-079.log.gz",
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.elsewhere,
+    pytest.mark.skipif(
+        not (Path(os.environ.get(FOLDER, "")) / "freiburg-079.log.gz").is_file(),
+        reason=f"{FOLDER} names no folder with freiburg-079.log.gz",
+    ),
+]
 
 
 @pytest.fixture(scope="module")

@@ -30,7 +30,7 @@ pytestmark = pytest.mark.xdist_group("robot")
 
 @pytest.fixture
 def bench() -> Iterator[Bench]:
-    bench = Bench(seed=1, people={"user1": "Ann", "user2": "Ben"}, stepped=False)
+    bench = Bench(seed=1, people={"user1": "Ann", "user2": "Ben"}, stepped=False, activity="bingo")
     yield bench
     bench.close()
 

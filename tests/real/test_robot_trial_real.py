@@ -21,6 +21,8 @@ from tests.hw.pictures import encoded, room, seen
 from tests.hw.waiting import until
 from tests.real.conftest import PATIENCE, TANGY
 
+pytestmark = pytest.mark.slow
+
 SCANNER = """
 import asyncio, numpy
 from tangy_sim.wires.scip_server import ScipServer

@@ -46,7 +46,7 @@ PYTHON = "/usr/bin/python3"
 NEEDS = "rospy, actionlib, move_base_msgs.msg, nav_msgs.msg, diagnostic_msgs.msg"
 STALE_SECONDS = 0.25
 
-pytestmark = pytest.mark.xdist_group("ros")
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("ros"), pytest.mark.elsewhere]
 
 
 def absent() -> str:

@@ -18,6 +18,8 @@ from tangy_sim.wires.scip_session import URG, UTM, Scanner
 from tests.hw.waiting import until
 from tests.real.conftest import PATIENCE
 
+pytestmark = pytest.mark.slow
+
 SEEN = np.linspace(0.1, 6.0, URG.beams)
 REACHED = URG.farthest >= SEEN
 needs_mrpt = pytest.mark.skipif(

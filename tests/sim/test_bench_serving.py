@@ -30,7 +30,7 @@ from tangy_sim.bench.serving import Bench
 from tests.sim.bench_game import ROBOT, bench
 
 FACES = {f"user{number}": number for number in range(1, 5)}
-CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench")
+CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench", "--activity", "bingo")
 
 
 class Peer:
@@ -306,7 +306,7 @@ class TestProcess:
     def test_what_cannot_be_played_is_one_sentence(
         self, wrong: list[str], capsys: pytest.CaptureFixture[str]
     ) -> None:
-        assert main(wrong) == 2
+        assert main([*wrong, "--activity", "bingo"]) == 2
         told = capsys.readouterr()
         assert told.out == "" and len(told.err.splitlines()) == 1
 

@@ -56,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--stepped", action="store_true", help="time passes by /bench/advance")
     parser.add_argument("--room", default="common-room")
     parser.add_argument("--robot", default="tangy")
-    parser.add_argument("--activity", default="bingo")
+    parser.add_argument("--activity", required=True)
     return parser
 
 

@@ -29,9 +29,11 @@ from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.room_view import Mark, RoomView
+from tangy_tui.ui.widgets.status_line import StatusLine
 
 TRACK_SECONDS = 0.2
 """Between two pictures of where the robot is."""
+REST_SECONDS = 5.0  # in which what it does is broken off
 SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
 ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
@@ -244,7 +246,16 @@ class LiveScreen(PlayScreen):
         at = Point(state.pose.x, state.pose.y)
         room.track(at, arrow if state.going else "", marks)
 
+    async def _come_to_rest(self) -> None:
+        """Stop the robot in the midst of what it does, and wait until it has broken that off."""
+        self._world.link.stop("staff ended the game")
+        until = asyncio.get_running_loop().time() + REST_SECONDS
+        while self._working and asyncio.get_running_loop().time() < until:
+            await asyncio.sleep(0.02)
+
     def _show_status(self) -> None:
+        if not all(self.query(kind) for kind in (RoomView, StatusLine, KeyLine)):
+            return  # the screen is going
         super()._show_status()
         going, over = self._going.is_set(), self._supervision.over
         self.query_one(KeyLine).show(*live_keys.keys(going=going, over=over))

@@ -166,10 +166,14 @@ class PlayScreen(PlayAsking):
         leaves = await self.app.push_screen_wait(dialog)
         self._leaving = False
         if leaves:
+            await self._come_to_rest()
             self._end_game()
             close(self, self._tally)
         elif going and not self._stopped and not self._halted:
             self._going.set()
+
+    async def _come_to_rest(self) -> None:
+        """Let what is being done come to an end before the game does."""
 
     def _end_game(self) -> None:
         """Let the log say that a game was left."""

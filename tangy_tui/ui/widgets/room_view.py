@@ -100,6 +100,7 @@ class RoomView(Widget):
         self._seen = self._from = self._to = self._at
         self._going: str | None = None
         self._held = False
+        self._tracked = False
         self._marks: dict[tuple[int, int], tuple[str, str]] = {}
         self._share = 0.0
         self._seconds = 0.0
@@ -131,7 +132,9 @@ class RoomView(Widget):
     def show(self, scene: Scene) -> None:
         """Draw a scene. A robot that is walking to the scene's place goes on walking."""
         self._scene = scene
-        if self._held:
+        if self._tracked:
+            pass  # it is where it is
+        elif self._held:
             if self._at == self._stand(scene.place):
                 self._halt()
             elif self._going != scene.place:
@@ -142,7 +145,9 @@ class RoomView(Widget):
         self._draw_again()
 
     def put(self, place: str) -> None:
-        """Put the robot in a place at once, without walking."""
+        """Put the robot in a place at once, without walking, unless it is tracked."""
+        if self._tracked:
+            return
         self._halt()
         self._at = self._stand(place)
         self._draw_again()
@@ -155,6 +160,7 @@ class RoomView(Widget):
             marks: points in metres with a character and an ink each, later ones over earlier ones.
         """
         self._halt()
+        self._tracked = True
         self._at, self._heading = at, heading
         self._marks = {}
         if self._grid is not None:

@@ -1,0 +1,231 @@
+"""The live screen: what is seen of a robot that is there, and how staff step in."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from time import sleep
+from typing import TYPE_CHECKING, Any, cast
+
+import pytest
+from textual.app import App
+
+from tangy_hw.devices import Pose
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.world import LiveWorld
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.fault import STAFF
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.driving import DrivingDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.live import LiveScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tests.hw.links import FakeLink, LaidCard
+from tests.pilot.conftest import StillClock, screen_text
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+PEOPLE = ("user1", "user2", "user3", "user4")
+
+
+class HeldLink(FakeLink):
+    """A robot that does nothing to its end before it is let."""
+
+    def __init__(self) -> None:
+        super().__init__(PEOPLE)
+        self.free = True
+        self.most = 10_000
+        """So many lines it says, and then does nothing to its end."""
+
+    def wait(self, asked: Any, seconds: float = 0.0) -> bool:
+        free = self.free and len(self.said) <= self.most
+        sleep(0.005)  # or a game would be over before anybody has pressed a key
+        return free or any(told.startswith("stop") for told in self.told)
+
+
+@pytest.fixture
+def link() -> HeldLink:
+    return HeldLink()
+
+
+@pytest.fixture
+def world(house: House, link: HeldLink) -> LiveWorld:
+    return LiveWorld(
+        house.activity,
+        PEOPLE,
+        cast(RobotLink, link),
+        house.robot,
+        house.room,
+        seed=1,
+        names=house.names,
+    )
+
+
+@pytest.fixture
+def program(house: House, world: LiveWorld, policy: Policy) -> Program:
+    supervision = house.supervision(policy, 1, asks=True, world=world)
+
+    async def start(program: Program) -> None:
+        await program.push_screen(LiveScreen(house, supervision, world, teacher="ann"))
+
+    return Program(house, start, kind=TerminalKind(full_screen=True), clock=StillClock())
+
+
+def live(pilot: TangyPilot) -> LiveScreen:
+    return next(s for s in pilot.app.screen_stack if isinstance(s, LiveScreen))
+
+
+async def until(pilot: TangyPilot, holds: Callable[[], bool]) -> None:
+    async with asyncio.timeout(20):
+        while not holds():
+            await pilot.pause(0.01)
+
+
+async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
+    """Let it do some steps, and pause."""
+    await until(pilot, lambda: live(pilot)._supervision.steps >= steps)
+    live(pilot)._going.clear()
+    await until(pilot, lambda: not live(pilot)._working)
+
+
+async def asked_about_the_next(pilot: TangyPilot) -> None:
+    """Wait until the question is there to be read: keys from before do not answer it."""
+    await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+    await until(pilot, lambda: "Next: " in screen_text(pilot.app))
+    await pilot.pause()
+
+
+async def test_staff_see_where_the_robot_is_and_where_it_goes(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        link.state = replace(
+            link.state,
+            pose=Pose(3.0, 2.5, 3.1),
+            going="user1",
+            path=((3.0, 2.5), (2.5, 3.2), (2.0, 4.3)),
+            obstacles=((6.0, 3.0),),
+        )
+        live(pilot)._track()
+        await pilot.pause()
+        shown = screen_text(pilot.app)
+        assert "◂[• •]" in shown and "*" in shown
+        assert "·" in shown
+
+
+async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        link.free = False
+        await until(pilot, lambda: live(pilot)._working)
+        await pilot.press("ctrl+x")
+        await until(pilot, lambda: "stop: staff stopped it" in link.told)
+        await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+        link.free = True
+        await pilot.press("p")
+        await until(pilot, lambda: link.told[-1] == "release")
+
+
+async def test_staff_can_ask_for_help_for_somebody(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    link.cards["user2"] = LaidCard(7)
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("h")
+        assert "Who needs help?" in screen_text(pilot.app)
+        await pilot.press("down", "enter")
+        assert "user2" in world.requests.all
+        live(pilot)._going.set()
+        await until(pilot, lambda: world.tracker.place == "user2")
+
+
+async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await pilot.press("i", "i")
+        await asked_about_the_next(pilot)
+        steps = live(pilot)._supervision.steps
+        await pilot.press("y")
+        await until(pilot, lambda: live(pilot)._supervision.steps == steps + 1)
+        await asked_about_the_next(pilot)
+        await pilot.press("n")
+        await until(pilot, lambda: bool(live(pilot).query(AskingPanel)))
+
+
+async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await pilot.press("o")
+        await until(pilot, lambda: "You say what Tangy does next." in screen_text(pilot.app))
+        assert live(pilot)._supervision.question is not None
+
+
+async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLink) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("d")
+        await until(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
+        await pilot.press("up", "left", "escape")
+        assert link.told.count("drive") == 3  # the last one stands still
+        assert not isinstance(pilot.app.screen, DrivingDialog)
+
+
+async def test_a_call_is_said_again_and_taken_back(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, house: House
+) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 3)
+        label = world.activity.deck.label(world.called[-1])
+        count = len(world.called)
+        await pilot.press("c")
+        await until(pilot, lambda: link.said[-1] == label)
+        await until(pilot, lambda: not live(pilot)._working)
+        await pilot.press("x")
+        assert len(world.called) == count - 1
+        noted = [event.body["what"] for event in house.store.events(STAFF)]
+        assert noted == [f"staff took a call back: {label}"]
+
+
+async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Program) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        for action in ("one_step", "speed", "skip"):
+            assert live(pilot).check_action(action, ()) is False
+
+
+async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
+    run: Run, program: Program, link: HeldLink, draw: Callable[[App[None]], str]
+) -> None:
+    kept = Path(__file__).parent / "pictures" / "live.svg"
+    link.most = 6
+    async with run(app=program, size=(120, 40)) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 6)
+        await until(pilot, lambda: live(pilot)._working)
+        link.sign(2)
+        link.state = replace(
+            link.state,
+            pose=Pose(4.7, 2.6, 1.9),
+            going="user2",
+            path=((4.7, 2.6), (4.5, 3.2), (4.2, 3.8), (4.0, 4.3)),
+            obstacles=((6.2, 3.0), (6.4, 3.1)),
+        )
+        live(pilot)._world.observe()
+        live(pilot)._picture._show_scene(0, drive=False, pace=0)
+        live(pilot)._track()
+        live(pilot)._show_status()
+        await pilot.pause()
+        drawn = draw(pilot.app)
+        link.most = 10_000
+    if os.environ.get("TANGY_NEW_PICTURES"):
+        kept.write_text(drawn, encoding="utf-8")
+    assert kept.read_text(encoding="utf-8") == drawn, "draw it anew with TANGY_NEW_PICTURES=1"
