@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
-from tangy_hw.devices import Picture
+from tangy_hw.devices import DeviceError, Picture
+from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
 from tangy_profiles.health import Health
 
@@ -30,6 +32,8 @@ class Commands:
         asked = self.link.ask(do, **what)
         broken = False
         while not self.link.wait(asked):
+            if silent := self.link.silent:
+                raise BrokenOff(silent)
             if not broken and (critical := self._critical()):
                 broken = True
                 self.link.ask("cancel", why=critical)
@@ -49,7 +53,8 @@ class Commands:
     def settle(self) -> None:
         """Let the robot see what is there now, where its time stands still meanwhile."""
         if self.link.setup.stepped:
-            self.link.do("settle")
+            with suppress(DeviceError):  # what is wrong with it is seen by what devices report
+                self.do("settle")
 
     def _critical(self) -> str:
         """Name a critical fault that the devices show, "" if they show none."""

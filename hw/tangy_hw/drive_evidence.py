@@ -53,14 +53,20 @@ class DriveEvidence:
         told = {name: facts[name] for name in ("still", "slip")}
         return own._replace(facts={**own.facts, **told, **self._of("still", "slip")})
 
-    def localisation(self) -> Reading:
-        """Return the reading of the sense of place."""
-        reading = self._navigator.readings()[0]
+    def found(self) -> None:
+        """The robot knows its place again."""
+        for name in ("fit", "spread"):
+            self._worst.pop(name, None)
+            self._kept.pop(name, None)
+
+    def localisation(self, age: float) -> Reading:
+        """Return the reading of the sense of place, that last worked so many s ago."""
+        reading = self._navigator.readings(age)[0]
         return reading._replace(facts={**reading.facts, **self._of("fit", "spread")})
 
-    def navigator(self) -> Reading:
-        """Return the reading of the navigation."""
-        reading = self._navigator.readings()[1]
+    def navigator(self, age: float) -> Reading:
+        """Return the reading of the navigation, that last worked so many s ago."""
+        reading = self._navigator.readings(age)[1]
         told: dict[str, Fact] = {"path": "none"} if self.blocked else self._of("path")
         return reading._replace(facts={**reading.facts, **told})
 

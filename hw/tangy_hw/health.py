@@ -52,13 +52,17 @@ class Watchdogs:
             state = self.state(reading)
             if state in (ERROR, STALE):
                 said = "says nothing" if state == STALE else "has an error"
-                return f"{self._robot.devices[name].label} {said}"
+                return f"{self._label(name)} {said}"
             if reading.facts.get("latched"):
-                return f"{self._robot.devices[name].label} is pressed"
+                return f"{self._label(name)} is pressed"
             near = reading.facts.get("near_share", 0.0)
             if isinstance(near, float) and near > DARK:
-                return f"{self._robot.devices[name].label} is covered"
+                return f"{self._label(name)} is covered"
         return ""
+
+    def _label(self, name: str) -> str:
+        device = self._robot.devices.get(name)
+        return name if device is None else device.label
 
     def state(self, reading: Reading) -> str:
         """Return the state of a device: STALE where its data is older than its profile allows."""

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable
 from contextlib import nullcontext
 
-from tangy_hw.devices import Clock
+from tangy_hw.devices import Clock, DeviceError
 
 TICK = 0.05
 """Seconds between two ticks: a base wants a command ten times a second, and staleness is to stop
@@ -40,11 +40,22 @@ class PassingTime:
         self.still = asyncio.Lock()
         """Whoever holds it sees no half of a step on a bench in a hurry."""
         self._waiting = 0
+        self._failed: BaseException | None = None
         self._wanted = asyncio.Event()
         self._next: asyncio.Future[None] | None = None
 
     async def run(self) -> None:
-        """Tick until it is cancelled."""
+        """Tick until it is cancelled; whoever waits is told if it ends otherwise."""
+        try:
+            await self._run()
+        except BaseException as error:
+            self._failed = error
+            come, self._next = self._next, None
+            if come is not None and not come.done():
+                come.set_exception(DeviceError(f"The robot's time stands still ({error!r})."))
+            raise
+
+    async def _run(self) -> None:
         step = TICK
         while True:
             if self._stepped and not self._waiting:
@@ -66,6 +77,8 @@ class PassingTime:
 
     async def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Let time pass until something holds; return whether it does, after at most so many s."""
+        if self._failed is not None:
+            raise DeviceError(f"The robot's time stands still ({self._failed!r}).")
         deadline = self.clock.now() + seconds
         self._waiting += 1
         self._wanted.set()

@@ -11,24 +11,17 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from tangy_hw.body import Body
 from tangy_hw.devices import (
     STILL,
-    Arms,
-    Base,
-    ChestScreen,
     Clock,
-    Device,
     DeviceError,
-    Laser,
     Picture,
     Pose,
-    StopButton,
     Twist,
-    Voice,
 )
 from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Report, Watchdogs
@@ -55,26 +48,6 @@ BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys hold
 
 class BrokenOff(DeviceError):
     """Something was not done to its end, because the robot has to stand still."""
-
-
-@dataclass(frozen=True)
-class Body:
-    """The devices of a robot that are there; what it has not is None."""
-
-    base: Base
-    laser: Laser
-    stop_button: StopButton | None = None
-    arms: Arms | None = None
-    voice: Voice | None = None
-    screen: ChestScreen | None = None
-    others: tuple[Device, ...] = ()
-    """What else is opened and closed: a link that several of them share."""
-
-    @property
-    def all(self) -> tuple[Device, ...]:
-        """All of them, those first through which others are reached."""
-        own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
-        return (*self.others, *(device for device in own if device is not None))
 
 
 class LiveRobot:
@@ -121,6 +94,7 @@ class LiveRobot:
         self._sent: asyncio.Task[None] | None = None
         self._gaze = ""
         self._wanted: Pose | None = None
+        self._was = ""  # how the last drive ended
         self._evidence = DriveEvidence(navigator, clock.now)
         self._ticked = clock.now()
         self._watchdogs = Watchdogs(robot, self._reports())
@@ -135,6 +109,12 @@ class LiveRobot:
         if self.requests is not None:
             await self.requests.start()
         self._ticking = asyncio.create_task(self.passing.run())
+        self._ticking.add_done_callback(self._ticked_last)
+
+    def _ticked_last(self, task: asyncio.Task[None]) -> None:
+        """Stand still for good when ticks have ended otherwise than by closing."""
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self.stopped = f"its control has failed ({error!r})"
 
     async def close(self) -> None:
         """Stop it, and switch its devices off."""
@@ -233,7 +213,7 @@ class LiveRobot:
         try:
             self.navigator.go(goal)
             arrived = await self._drive(DRIVE_SECONDS)
-            self._evidence.blocked = not arrived
+            self._evidence.blocked = self._was == "blocked"
             return arrived
         finally:
             self.going = ""
@@ -245,7 +225,12 @@ class LiveRobot:
             BrokenOff: it has to stand still, and why.
         """
         self.navigator.spin()
-        return await self._drive(SPIN_SECONDS)
+        await self._drive(SPIN_SECONDS)
+        estimate = self.navigator.estimate
+        found = estimate is not None and not estimate.lost
+        if found:
+            self._evidence.found()
+        return found
 
     async def look_at(self, what: str) -> None:
         """Turn the eyes to a card or a face, as the robot's profile says how."""
@@ -321,6 +306,7 @@ class LiveRobot:
         await self.passing.until(over, seconds)
         arrived = navigator.state == "arrived"
         hazard = self.hazard
+        self._was = navigator.state
         self._evidence.keep()
         if not arrived:
             navigator.cancel()
@@ -347,6 +333,8 @@ class LiveRobot:
                 self._hand = None
         if self.hazard:
             command = STILL
+        if command == STILL:
+            self.navigator.held()
         if command != STILL or self._driven != STILL:
             self._send(command)
         return command != STILL or self.going != ""
@@ -366,8 +354,8 @@ class LiveRobot:
         reports: dict[str, Report] = {device.name: device.reading for device in self._body.all}
         base, evidence = self._body.base, self._evidence
         reports["base"] = lambda: evidence.base(base.reading())
-        reports["localisation"] = evidence.localisation
-        reports["navigator"] = evidence.navigator
+        reports["localisation"] = lambda: evidence.localisation(self._clock.now() - self._ticked)
+        reports["navigator"] = lambda: evidence.navigator(self._clock.now() - self._ticked)
         if self.requests is not None:
             requests = self.requests
             reports["requests"] = lambda: self._filmed(requests.reading())

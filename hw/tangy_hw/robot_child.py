@@ -116,6 +116,8 @@ class RobotProcess:
             self._answer(asked, failed=str(error))
         except (KeyError, TypeError, ValueError) as error:
             self._answer(asked, failed=f"It was not asked rightly ({error!r}).")
+        except Exception as error:  # whoever asked must not wait for ever
+            self._answer(asked, failed=f"It went wrong ({error!r}).")
         else:
             self._answer(asked, done=done or {})
 

@@ -158,6 +158,8 @@ class RobotLink:
         self._closing.set()
         if process is None:
             return
+        if self.silent:  # it would not end by itself, and may not even read
+            process.kill()
         with suppress(OSError):
             assert process.stdin is not None  # noqa: S101 - it was asked for
             process.stdin.close()

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tangy_hw.bench_clock import SteppedClock
+from tangy_hw.body import Body
 from tangy_hw.devices import Clock, DeviceError, Laser, MachineClock, Pose
 from tangy_hw.driver_kinds import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
@@ -19,7 +20,7 @@ from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.perception.requests.asking import RequestSource
-from tangy_hw.robot import Body, LiveRobot
+from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_setup import RobotSetup, Setting
 from tangy_hw.senses import Senses
 from tangy_hw.sensors import Sensors, camera_sources

@@ -134,7 +134,7 @@ class LiveWorld:
                     response, succeeded = self._carry_out(action, numbers)
         except DeviceError as error:
             self.broken = str(error)
-            numbers = () if isinstance(error, BrokenOff) else numbers
+            numbers = ()
         self._executed(behaviour, succeeded)
         self.commands.settle()
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
@@ -163,7 +163,8 @@ class LiveWorld:
             case "draw":
                 self.called.extend(numbers)
                 self._due = self.link.time + self._pace
-                self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
+                with suppress(BrokenOff):  # it was called, whatever comes now
+                    self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
             case "go to user":
                 target = action.target or (tracker.queue[0] if tracker.queue else None)
                 return None, target is None or self._go(target)
@@ -271,7 +272,8 @@ class LiveWorld:
             face = numbers_of(self.activity.deck, card["card"], self.link.setup.deck_seed)
             asked = sum(1 << cell for cell, number in enumerate(face) if number in numbers)
             wanted = asked if behaviour.effect == "set missing marks" else 0
-            done = card["marked"] & asked == wanted and not card["hidden"] & asked
+            told = asked.bit_count() == len(numbers) and not card["hidden"] & asked
+            done = told and card["marked"] & asked == wanted
         if done:
             self.looked("card", place, card)
         if place in self.tracker.queue:
@@ -341,6 +343,10 @@ class LiveWorld:
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert do something about a fault; return the s it took."""
         began = self.link.time
+        if remedy.kind == "call expert" and self.link.silent:
+            with suppress(DeviceError):  # another robot process, which stands still as well
+                self.link.restart()
+                self.link.stop(remedy.fault)
         if remedy.kind == "halt":  # before and beside anything else
             self.link.stop(remedy.fault)
             return 0.0

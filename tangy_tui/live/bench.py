@@ -53,6 +53,7 @@ class Bench:
         people: Mapping[str, str],
         stepped: bool,
         activity: str,
+        robot: str,
         room: str = "common-room",
         log: Path | None = None,
     ) -> None:
@@ -69,7 +70,7 @@ class Bench:
         """
         command = [*CHILD, "--seed", str(seed), "--room", room]
         command += [f"--person={id}={name}" for id, name in people.items()]
-        command += ["--activity", activity, *(["--stepped"] if stepped else [])]
+        command += ["--activity", activity, "--robot", robot, *(["--stepped"] if stepped else [])]
         err: IO[bytes] | int = subprocess.DEVNULL
         if log is not None:
             with suppress(OSError):

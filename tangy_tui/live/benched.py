@@ -84,7 +84,6 @@ class BenchedWorld(LiveWorld):
         self._switch_tablet()
         self.came = []
         self._to_come = list(self.injections)
-        self.link.release()
         self._pass_until(lambda: not self.commands.diagnosed(self.health()))
         return super().begin()
 

@@ -60,6 +60,7 @@ def open_bench(
         people=house.names,
         stepped=stepped,
         activity=house.profile,
+        robot=str(house.robot.file),
         log=folder / BENCH_LOG,
     )
     try:

@@ -54,6 +54,7 @@ class LiveGames:
     def _play(self, expert: bool, tell: Callable[[list[Event]], None]) -> None:
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        world.link.release()  # nobody is there to say that all is well
         events = game.begin()
         self.tally.add(events)
         tell(events)

@@ -19,6 +19,7 @@ from tangy_profiles.errors import TangyError
 from tangy_sim.faulty import FaultyWorld
 from tangy_sim.injection import KINDS
 from tangy_tui.house import House
+from tangy_tui.live.benched import BenchedWorld
 from tangy_tui.monitoring.fault import (
     ENDINGS,
     OPEN,
@@ -298,7 +299,7 @@ class FaultConsole:
 
     def refuses(self) -> str:
         """Say why no fault can be brought about now; empty if one can."""
-        if not isinstance(self.supervision.world, FaultyWorld):
+        if not isinstance(self.supervision.world, FaultyWorld | BenchedWorld):
             return NOT_SIMULATED
         return NO_GAME if self.supervision.over else ""
 
@@ -309,7 +310,7 @@ class FaultConsole:
             What was done ("": nothing), and whether it is seen at once what came of it.
         """
         world = self.supervision.world
-        if not isinstance(world, FaultyWorld):
+        if not isinstance(world, FaultyWorld | BenchedWorld):
             return NOT_SIMULATED, False
         if self._game != self.supervision.games:
             self._game = self.supervision.games

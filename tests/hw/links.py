@@ -45,6 +45,7 @@ class FakeLink:
         self.time = 0.0
         self.done: list[tuple[str, dict[str, Any]]] = []
         self.told: list[str] = []
+        self.silent = ""
         self.cards: dict[str, LaidCard] = {}
         self.faces: dict[str, str | None] = {}
         self.place = "front"

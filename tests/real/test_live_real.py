@@ -58,7 +58,7 @@ def play(game: Supervision, steps: int) -> list[Event]:
 
 def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(house: House) -> None:
     book = load_faults(house.robot)
-    with open_bench(house, seed=3, stepped=True, pace=2, book=book) as world:
+    with open_bench(house, seed=3, stepped=True, pace=2, book=book, kind=BenchedWorld) as world:
         game = games(house, world)
         told = game.begin() + play(game, 4)
         world.requests.ask_for("user2")
@@ -82,9 +82,8 @@ def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(house: Hou
     book = load_faults(house.robot)
     faults = [read_injection(text) for text in ("laser-disconnected@3", "camera-occluded@6")]
     with open_bench(
-        house, seed=4, stepped=True, pace=2, book=book, injections=faults
+        house, seed=4, stepped=True, pace=2, book=book, injections=faults, kind=BenchedWorld
     ) as world:  # fmt: skip
-        assert isinstance(world, BenchedWorld)
         game = games(house, world)
         game.begin()
         play(game, 8)

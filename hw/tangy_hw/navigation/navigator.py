@@ -125,6 +125,10 @@ class Navigator:
         self._stop_following()
         self._way = "clear"
 
+    def held(self) -> None:
+        """Take note that the robot stands still, whatever the last command was."""
+        self._told = STILL
+
     def place(self, pose: Pose | None) -> None:
         """Take it that the robot is at a pose now (None: anywhere), as staff say."""
         self._localisation.place(pose)

@@ -8,6 +8,7 @@ itself.
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from math import pi
 from typing import ClassVar
 
@@ -19,6 +20,7 @@ from tangy_profiles.room import Point
 from tangy_profiles.state import FRONT
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Decision
+from tangy_tui.learning.verifying import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -61,6 +63,8 @@ class LiveScreen(PlayScreen):
         self._autonomy = AUTONOMY[0]
         self._taking_over = False
         self._working = False
+        self._turn = asyncio.Lock()
+        """Whoever has it has the supervision, and the robot."""
         self._seen_going = ""
 
     def on_mount(self) -> None:
@@ -75,6 +79,8 @@ class LiveScreen(PlayScreen):
     # ---------------------------------------------------------------------------------- game
 
     async def _begin_game(self) -> list[Event]:
+        await self._going.wait()
+        self._world.link.release()  # staff have said that all is well
         return await self._beside(self._supervision.begin)
 
     async def _step(self) -> list[Event]:
@@ -82,14 +88,15 @@ class LiveScreen(PlayScreen):
 
     async def _beside(self, work: object) -> list[Event]:
         """Do something that takes its time, while the screen lives."""
-        self._working = self._faults.busy = True
-        self._show_status()
-        try:
-            events: list[Event] = await asyncio.to_thread(work)  # type: ignore[arg-type]
-            return events
-        finally:
-            self._working = False
-            self._faults.busy = self._learning
+        async with self._turn:
+            self._working = self._faults.busy = True
+            self._show_status()
+            try:
+                events: list[Event] = await asyncio.to_thread(work)  # type: ignore[arg-type]
+                return events
+            finally:
+                self._working = False
+                self._faults.busy = self._learning
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
@@ -168,6 +175,7 @@ class LiveScreen(PlayScreen):
     async def _drive(self) -> None:
         going = self._going.is_set()
         self._going.clear()
+        self._nudge.set()
         link = self._world.link
         await self.app.push_screen_wait(
             DrivingDialog(
@@ -218,14 +226,24 @@ class LiveScreen(PlayScreen):
             self._tell_now(f"{name} asks for help.", "dim")
 
     async def _tried(self, work: object) -> None:
-        self._working = self._faults.busy = True
-        try:
-            await asyncio.to_thread(work)  # type: ignore[arg-type]
-        except TangyError as error:
-            self._tell_now(str(error), "warn")
-        finally:
-            self._working = False
-            self._faults.busy = self._learning
+        async with self._turn:
+            self._working = self._faults.busy = True
+            try:
+                await asyncio.to_thread(work)  # type: ignore[arg-type]
+            except TangyError as error:
+                self._tell_now(str(error), "warn")
+            finally:
+                self._working = False
+                self._faults.busy = self._learning
+
+    async def _learn(self, answer: Verified) -> list[Event]:
+        """Act on an answer, which takes its time, and learn from it."""
+        async with self._turn:
+            self._working = True
+            try:
+                return await super()._learn(answer)
+            finally:
+                self._working = False
 
     # -------------------------------------------------------------------------------- picture
 
@@ -249,9 +267,9 @@ class LiveScreen(PlayScreen):
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
         self._world.link.stop("staff ended the game")
-        until = asyncio.get_running_loop().time() + REST_SECONDS
-        while self._working and asyncio.get_running_loop().time() < until:
-            await asyncio.sleep(0.02)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(REST_SECONDS), self._turn:
+                pass
 
     def _show_status(self) -> None:
         if not all(self.query(kind) for kind in (RoomView, StatusLine, KeyLine)):
