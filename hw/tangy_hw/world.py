@@ -77,7 +77,7 @@ class LiveWorld:
         self.broken = ""
         """Why the last behaviour was not carried out to its end."""
         self.link = link
-        self.looked: Callable[[str, str, Any], None] = _unheeded
+        self.looked: Callable[[str, str, Any], None] = lambda *_: None
         """Is told of each card ("card") and face ("face") that was looked at, with whose place it
         is at, and what was seen."""
         self.commands = Commands(link)
@@ -90,10 +90,9 @@ class LiveWorld:
         self._begin()
 
     def _begin(self) -> None:
-        activity = self.activity
-        self.tracker = Tracker(activity, self.people)
+        self.tracker = Tracker(self.activity, self.people)
         self.called: list[int] = []
-        self._numbers = activity.deck.shuffled(self._order.random)
+        self._numbers = self.activity.deck.shuffled(self._order.random)
         self._card: CardView | None = None
         self.requests = SeenRequests(self.people, self.link)
         self._due = 0.0  # when the next number may be called
@@ -401,7 +400,3 @@ class LiveWorld:
 
 def _numbers_at(card: CardView, cells: int) -> tuple[int, ...]:
     return tuple(number for cell, number in enumerate(card.numbers) if cells >> cell & 1)
-
-
-def _unheeded(*_: Any) -> None:
-    """Take no note."""
