@@ -28,7 +28,7 @@ BASE_STOPS = 1.0  # s in which a base stands by itself: half of it its time-out,
 SAID = 0.35  # s after which it is known that the robot process has ended
 PATIENCE = 30.0
 
-pytestmark = pytest.mark.xdist_group("robot")
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
 @pytest.fixture
