@@ -106,7 +106,7 @@ def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> N
         terminal.until("Who needs help?")
         terminal.type("\r")
         terminal.until("asks for help")
-        terminal.until("drives to User 1")
+        terminal.until("coming to you")
         terminal.type("\x18")
         assert "STOPPED" in terminal.until("STOPPED")
         terminal.type("\x1b")
