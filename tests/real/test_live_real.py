@@ -111,6 +111,7 @@ def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> N
         assert "STOPPED" in terminal.until("STOPPED")
         terminal.type("\x1b")
         terminal.until("Leave in the middle")
+        terminal.settle()  # a key from before the question was there does not answer it
         terminal.type("y")
         assert terminal.wait() == 0
     finally:
