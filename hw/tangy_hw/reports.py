@@ -1,0 +1,66 @@
+"""What each device of a robot reports, with what its driving has shown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from tangy_hw.body import Body
+from tangy_hw.drive_evidence import DriveEvidence
+from tangy_hw.health import Report
+from tangy_hw.perception.requests.asking import RequestSource
+from tangy_hw.senses import Senses
+from tangy_profiles.health import OK, STALE, WARN, Reading
+from tangy_profiles.robot import Robot
+
+FILMED_PATIENCE = 4.0
+"""How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
+
+
+def reports_of(
+    robot: Robot,
+    body: Body,
+    evidence: DriveEvidence,
+    ticked: Callable[[], float],
+    *,
+    senses: Senses | None = None,
+    requests: RequestSource | None = None,
+    stepped: bool = False,
+) -> dict[str, Report]:
+    """Return how each device tells of itself, by its name.
+
+    Args:
+        robot: the profile, which says how old data may be.
+        body: the devices that move, measure and speak.
+        evidence: what drives have shown.
+        ticked: how long ago the robot has looked and decided last, in s.
+        senses: what reads pictures, if anything does.
+        requests: who asks for help, if anybody can.
+        stepped: time stands still while nobody waits for it; cameras film in real time.
+    """
+    base = body.base
+    reports: dict[str, Report] = {device.name: device.reading for device in body.all}
+    reports["base"] = lambda: evidence.base(base.reading())
+    reports["localisation"] = lambda: evidence.localisation(ticked())
+    reports["navigator"] = lambda: evidence.navigator(ticked())
+
+    def filmed(reading: Reading) -> Reading:
+        if not stepped:
+            return reading
+        late = reading.age / FILMED_PATIENCE
+        device = robot.devices.get(reading.device)
+        fresh = device is None or late <= device.stale_after
+        return reading._replace(
+            age=late, state=OK if reading.state == STALE and fresh else reading.state
+        )
+
+    def camera(senses: Senses, name: str) -> Reading:
+        readings = senses.sensors.health()
+        return filmed(next((r for r in readings if r.device == name), Reading(name, state=WARN)))
+
+    if requests is not None:
+        reports["requests"] = lambda: filmed(requests.reading())
+    if senses is not None:
+        for name in senses.sensors.cameras:
+            reports[name] = partial(camera, senses, name)
+    return reports
