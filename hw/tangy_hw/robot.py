@@ -11,7 +11,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from typing import Any
 
 from tangy_hw.body import Body
@@ -24,13 +23,14 @@ from tangy_hw.devices import (
     Twist,
 )
 from tangy_hw.drive_evidence import DriveEvidence
-from tangy_hw.health import Report, Watchdogs
+from tangy_hw.health import Watchdogs
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.planning import plan
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
+from tangy_hw.reports import reports_of
 from tangy_hw.senses import Senses
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Health, Reading
+from tangy_profiles.health import ERROR, Health, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
@@ -41,8 +41,7 @@ POSE_SECONDS = 1.5  # in which arms are where they should be
 POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
-FILMED_PATIENCE = 4.0
-"""How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
+WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
 
@@ -97,8 +96,17 @@ class LiveRobot:
         self._was = ""  # how the last drive ended
         self._evidence = DriveEvidence(navigator, clock.now)
         self._ticked = clock.now()
-        self._watchdogs = Watchdogs(robot, self._reports())
-        self._ticking: asyncio.Task[None] | None = None
+        reports = reports_of(
+            robot,
+            body,
+            self._evidence,
+            lambda: clock.now() - self._ticked,
+            senses=senses,
+            requests=requests,
+            stepped=stepped,
+        )
+        self._watchdogs = Watchdogs(robot, reports)
+        self._tasks: list[asyncio.Task[None]] = []
 
     # ------------------------------------------------------------------------ on and off
 
@@ -108,8 +116,11 @@ class LiveRobot:
             await device.start()
         if self.requests is not None:
             await self.requests.start()
-        self._ticking = asyncio.create_task(self.passing.run())
-        self._ticking.add_done_callback(self._ticked_last)
+        ticking = asyncio.create_task(self.passing.run())
+        ticking.add_done_callback(self._ticked_last)
+        self._tasks = [ticking]
+        if not self._stepped:
+            self._tasks.append(asyncio.create_task(self._watch()))
 
     def _ticked_last(self, task: asyncio.Task[None]) -> None:
         """Stand still for good when ticks have ended otherwise than by closing."""
@@ -120,9 +131,10 @@ class LiveRobot:
         """Stop it, and switch its devices off."""
         with suppress(Exception):
             await self._body.base.stop()
-        if self._ticking is not None:
-            self._ticking.cancel()
-            await asyncio.wait([self._ticking])
+        for task in self._tasks:
+            task.cancel()
+        if self._tasks:
+            await asyncio.wait(self._tasks)
         if self.requests is not None:
             await self.requests.close()
         for device in reversed(self._body.all):
@@ -339,6 +351,14 @@ class LiveRobot:
             self._send(command)
         return command != STILL or self.going != ""
 
+    async def _watch(self) -> None:
+        """Look for hazards between ticks, too: a robot that drives has no time to lose."""
+        while True:
+            await asyncio.sleep(WATCH_SECONDS)
+            if self._driven != STILL and self.hazard:
+                self.navigator.held()
+                self._send(STILL)
+
     def _send(self, command: Twist) -> None:
         """Tell the base; a command that could not be handed over is followed by the next."""
         halting = command == STILL and self._driven != STILL
@@ -347,40 +367,6 @@ class LiveRobot:
         self._driven = command
         work = self._body.base.stop() if command == STILL else self._body.base.drive(command)
         self._sent = asyncio.create_task(_quietly(work))
-
-    # ------------------------------------------------------------------------ its devices
-
-    def _reports(self) -> dict[str, Report]:
-        reports: dict[str, Report] = {device.name: device.reading for device in self._body.all}
-        base, evidence = self._body.base, self._evidence
-        reports["base"] = lambda: evidence.base(base.reading())
-        reports["localisation"] = lambda: evidence.localisation(self._clock.now() - self._ticked)
-        reports["navigator"] = lambda: evidence.navigator(self._clock.now() - self._ticked)
-        if self.requests is not None:
-            requests = self.requests
-            reports["requests"] = lambda: self._filmed(requests.reading())
-        if self.senses is not None:
-            for name in self.senses.sensors.cameras:
-                reports[name] = partial(self._camera_reading, name)
-        return reports
-
-    def _camera_reading(self, name: str) -> Reading:
-        assert self.senses is not None  # noqa: S101 - or nobody would ask
-        readings = self.senses.sensors.health()
-        return self._filmed(
-            next((r for r in readings if r.device == name), Reading(name, state=WARN))
-        )
-
-    def _filmed(self, reading: Reading) -> Reading:
-        """Return the reading of a camera; on a bench in a hurry a busy machine is given time."""
-        if not self._stepped:
-            return reading
-        late = reading.age / FILMED_PATIENCE
-        device = self.robot.devices.get(reading.device)
-        fresh = device is None or late <= device.stale_after
-        return reading._replace(
-            age=late, state=OK if reading.state == STALE and fresh else reading.state
-        )
 
 
 async def _quietly(work: Coroutine[Any, Any, None]) -> None:

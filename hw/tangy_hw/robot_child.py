@@ -12,28 +12,32 @@ nothing comes through it for a while it stops, and gives up what it was doing.
 from __future__ import annotations
 
 import asyncio
+import base64
 import json
 import sys
 import time
 from collections.abc import Awaitable, Callable
+from dataclasses import astuple
 from typing import Any
 
 from tangy_hw.devices import DeviceError, Picture, Pose, Twist
 from tangy_hw.robot import BrokenOff, LiveRobot
 from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.senses import CardSeen, Senses
 from tangy_hw.wiring import Wired, wire
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Health
 
 BEAT_SECONDS = 0.1
-SILENT_SECONDS = 0.25
-"""For so long the program may say nothing while the robot drives: it then stands within .6 s, and
-does not drive on when that takes longer than a moment."""
+SILENT_SECONDS = 0.15
+"""For so long the program may say nothing while the robot drives: three of its beats. It is told to
+stand then, and stands when it has braked; it does not drive on when that takes longer."""
 SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
 MOST_PARTICLES = 60  # that are told, of those by which it finds its place
 LONGEST_LINE = 1 << 22
 MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
+LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 
 Asked = dict[str, Any]
 Answer = dict[str, Any]
@@ -51,6 +55,8 @@ class RobotProcess:
         self._stepped = stepped
         self._heard = time.monotonic()
         self._doing: dict[int, asyncio.Task[None]] = {}
+        self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
+        self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
         self.robot.alone = self._why_alone
         self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
             "perform": self._perform,
@@ -58,6 +64,8 @@ class RobotProcess:
             "spin": self._spin,
             "card": self._card,
             "face": self._face,
+            "picture": self._small_picture,
+            "sights": self._sights,
             "wait": self._wait,
             "settle": self._settle,
             "replan": self._replan,
@@ -148,22 +156,50 @@ class RobotProcess:
         return {"found": await self.robot.spin()}
 
     async def _card(self, asked: Asked) -> Answer:
-        senses = self.robot.senses
-        if senses is None:
-            raise DeviceError("No camera looks at cards.")
+        senses = self._senses
         await self.robot.look_at("card")
         if asked.get("after"):
             await self.robot.passing.sleep(float(asked["after"]))
         seen = await senses.read_card(set(asked["called"]), int(asked.get("pictures", 5)))
+        self._looked = seen, time.monotonic()
+        if seen.card is not None:
+            self._read = self._looked
         return seen.to_json()
 
     async def _face(self, _: Asked) -> Answer:
-        senses = self.robot.senses
-        if senses is None:
-            raise DeviceError("No camera looks at faces.")
+        senses = self._senses
         await self.robot.look_at("face")
         vote = await senses.who()
         return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
+
+    async def _small_picture(self, asked: Asked) -> Answer:
+        """Give what a camera sees, as large as fits; nothing where no newer picture comes."""
+        width, height = (min(LARGEST_PICTURE, max(1, int(one))) for one in asked["fit"])
+        frame = await self._senses.sensors.picture(
+            str(asked["device"]), (width, height), after=int(asked.get("after", -1))
+        )
+        if frame is None:
+            return {}
+        pixels = base64.b64encode(frame.pixels).decode()
+        return {"seq": frame.seq, "size": [frame.width, frame.height], "pixels": pixels}
+
+    async def _sights(self, _: Asked) -> Answer:
+        """Tell how its cameras are, and what was read of cards last."""
+        sensors = self._senses.sensors
+        return {
+            "sights": {
+                name: [sensors.source(name), *astuple(sensors.sight(name))]
+                for name in sensors.cameras
+            },
+            "looked": _aged(self._looked),
+            "read": _aged(self._read),
+        }
+
+    @property
+    def _senses(self) -> Senses:
+        if self.robot.senses is None:
+            raise DeviceError("The robot has no cameras.")
+        return self.robot.senses
 
     async def _wait(self, asked: Asked) -> None:
         """Let time pass; with "asks" only until somebody asks who did not."""
@@ -239,6 +275,11 @@ def _picture(told: dict[str, Any]) -> Picture:
         tuple(map(str, told.get("before", ()))),
         str(told.get("asks", "")),
     )
+
+
+def _aged(seen: tuple[CardSeen, float] | None) -> Answer | None:
+    """Return what was seen of a card, and how long ago, in s."""
+    return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
 
 
 def _health(health: Health) -> list[list[Any]]:

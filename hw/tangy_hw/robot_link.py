@@ -1,7 +1,7 @@
 """The program's end of the robot process: it is started, asked, heard, and told that we live.
 
 It may be used from any thread. A reader's thread takes what the process says; another one tells it
-ten times a second that the program lives, so that a program that hangs has the robot stop.
+twenty times a second that the program lives, so that a program that hangs has the robot stop.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tangy_profiles.health import STALE, Health, Reading
 from tangy_profiles.worker_log import open_log
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_child")
-BEAT_SECONDS = 0.1
+BEAT_SECONDS = 0.05
 SILENT_SECONDS = 0.6
 """Without a word from it for so long, the robot process hangs; its end is known at once."""
 SILENT_STEPPED = 10.0  # on a bench in a hurry, where a busy machine may take its time

@@ -25,12 +25,10 @@ from tangy_hw.robot_setup import RobotSetup, Setting
 from tangy_hw.senses import Senses
 from tangy_hw.sensors import Sensors, camera_sources
 from tangy_profiles.activity import load_activity
-from tangy_profiles.health import OK, WARN
+from tangy_profiles.health import OK, WARN, Reading
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
 
-SPEAKS = (OK, WARN)
-"""States of a device that has said something: a chest screen that no tablet shows yet has, too."""
 WAKE_SECONDS = 8.0  # in which devices that are switched on begin to speak
 PIPE_LOOKS = 3  # pictures that may have been on their way
 AGREED_LOOKS = 2  # pictures in a row that show no other signs than are believed to be up
@@ -77,11 +75,12 @@ class Wired:
     async def _wake(self) -> None:
         """Wait until every device has said something; what does not is seen by its reading."""
         robot = self.robot
+
+        def speaks(reading: Reading) -> bool:  # a chest screen that no tablet shows yet warns
+            return reading.state == WARN or robot.state_of(reading) == OK
+
         await self._sensors.settled(WAKE_SECONDS)
-        await robot.passing.until(
-            lambda: all(robot.state_of(reading) in SPEAKS for reading in robot.health()),
-            WAKE_SECONDS,
-        )
+        await robot.passing.until(lambda: all(map(speaks, robot.health())), WAKE_SECONDS)
         await self.settle()
 
     async def settle(self) -> None:
