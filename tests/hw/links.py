@@ -53,6 +53,10 @@ class FakeLink:
         """Why what is asked for next is broken off, by what it is."""
         self.missed: set[str] = set()
         """Places that it does not arrive at."""
+        self.slow: dict[str, int] = {}
+        """How often it is waited for in vain, by what is asked for, unless that is called off."""
+        self._doing: tuple[str, dict[str, Any], Future[dict[str, Any]]] | None = None
+        self._called_off = ""
         self.meanwhile: Callable[[str, float], None] = lambda do, time: None
         """Is called with what was asked for when it is done: people do something then."""
 
@@ -73,17 +77,37 @@ class FakeLink:
         if do in self.breaks:
             answer.set_exception(BrokenOff(self.breaks.pop(do)))
             return answer
+        if do == "cancel" and self._doing is not None:
+            self._called_off = what["why"]
+            self.slow[self._doing[0]] = min(2, self.slow[self._doing[0]])  # it takes a moment
+        if do in self.slow:
+            self._doing = do, what, answer
+        else:
+            self._end(do, what, answer)
+        return answer
+
+    def _end(self, do: str, what: dict[str, Any], answer: Future[dict[str, Any]]) -> None:
         self.time += what["seconds"] if do == "wait" else SECONDS.get(do, 0.0)
         self.time += what.get("after", 0.0)
         self.meanwhile(do, self.time)
         answer.set_result(self._answer(do, what))
-        return answer
 
     def do(self, do: str, **what: Any) -> dict[str, Any]:
         return self.ask(do, **what).result()
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.0) -> bool:
-        return True
+        if self._doing is not None and asked is self._doing[2]:
+            do, what, _ = self._doing
+            if self.slow[do] > 0:
+                self.slow[do] -= 1
+                return False
+            self._doing = None
+            if self._called_off:
+                asked.set_exception(BrokenOff(self._called_off))
+                self._called_off = ""
+            else:
+                self._end(do, what, asked)
+        return asked.done()
 
     def beat(self) -> RobotState:
         return self.state

@@ -46,7 +46,7 @@ class TestNames:
             ("http://host:99999/", "no address"),
             ("http://host/a b", "no address"),
             ("concat://a|b", "no address"),
-            ("file:///pictures/a.png", "no address"),
+            ("file://host/a.png", "no address"),
             ("ftp://u:secret@host", "^ftp://host: is no address"),
         ],
     )

@@ -273,25 +273,60 @@ def test_a_call_can_be_taken_back_and_comes_again(world: LiveWorld, link: FakeLi
     assert rest[-1] == first and sorted(rest) == list(BINGO.deck.numbers)
 
 
-def test_a_critical_fault_breaks_a_behaviour_off(world: LiveWorld, link: FakeLink) -> None:
+def asked_of(link: FakeLink) -> list[str]:
+    return [asked for asked, _ in link.done]
+
+
+@pytest.mark.parametrize(("critical", "why"), [(True, "laser-disconnected"), (False, "")])
+def test_a_critical_fault_breaks_a_call_off_and_another_does_not(
+    world: LiveWorld, link: FakeLink, critical: bool, why: str
+) -> None:
     opened(world)
-    asked: list[str] = []
-    answers = iter([False, True])
-    link.wait = lambda asked, seconds=0.0: next(answers, True)  # type: ignore[method-assign]
-    ask = link.ask
+    link.slow["perform"] = 5
+    read: list[Health] = []
 
-    def noted(do: str, **what: Any) -> Any:
-        asked.append(do)
-        return ask(do, **what)
-
-    link.ask = noted  # type: ignore[method-assign]
-
-    def shows(_: Health) -> dict[str, bool]:
-        return {"laser-disconnected": True}
+    def shows(health: Health) -> dict[str, bool]:
+        read.append(health)
+        return {"camera-slow": False, "laser-disconnected": critical} if len(read) > 1 else {}
 
     world.commands.diagnosed = shows
-    do(world, "call number")
-    assert "cancel" in asked
+    outcome = do(world, "call number")
+    assert read and all(health == link.health() for health in read)
+    assert world.broken == why and outcome.completed is not critical
+    assert asked_of(link).count("cancel") == critical
+    if critical:  # nobody was told a number, so none was called, and there is nothing to be marked
+        assert ("cancel", {"why": "laser-disconnected"}) in link.done
+        assert outcome.numbers == () and world.called == []
+        assert world.tracker.count("call number") == 0 and world.scene().called == ()
+        link.slow.clear()
+        assert do(world, "call number").completed and world.broken == ""  # once it is over
+    assert world.called and world.tracker.count("call number") == 1
+
+
+def test_a_critical_fault_on_the_way_leaves_the_request_open_and_the_robot_where_it_was(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    opened(world)
+    link.cards["user2"] = LaidCard(CARD)
+    link.sign(2)
+    world.observe()
+    link.slow["go"] = 5
+    world.commands.diagnosed = lambda _: {"base-stuck": True}
+    outcome = do(world, "navigate to user", "user2")
+    assert not outcome.completed and outcome.response is None and world.broken == "base-stuck"
+    state = world.observe()
+    assert state.place == FRONT and state.attended == "user2"
+    assert tuple(state.situation) == ("navigate", "AR", "occluded")
+    assert "card" not in asked_of(link) and world.scene().card is None
+
+
+def test_a_robot_that_falls_silent_breaks_off_what_it_did(world: LiveWorld, link: FakeLink) -> None:
+    opened(world)
+    link.slow["perform"] = 5
+    link.silent = "the robot process has ended"
+    outcome = do(world, "call number")
+    assert not outcome.completed and outcome.numbers == () and world.called == []
+    assert world.broken == "the robot process has ended"
 
 
 def test_halting_stops_the_robot_before_anything_else(world: LiveWorld, link: FakeLink) -> None:

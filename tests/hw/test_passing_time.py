@@ -8,15 +8,21 @@ from contextlib import asynccontextmanager
 
 import pytest
 
+from tangy_hw.devices import DeviceError
 from tangy_hw.passing_time import AT_REST, ON_THE_WAY, TICK, PassingTime
+
+TURNS = 50
+"""Turns of the loop in which a time that does not stand still would have come far."""
 
 
 class HandClock:
-    """A clock that whoever sleeps on it turns."""
+    """A clock that whoever sleeps on it turns; while it is held, sleep does not end."""
 
     def __init__(self) -> None:
         self.time = 0.0
         self.slept: list[float] = []
+        self.free = asyncio.Event()
+        self.free.set()
 
     def now(self) -> float:
         return self.time
@@ -24,6 +30,7 @@ class HandClock:
     async def sleep(self, seconds: float) -> None:
         self.slept.append(seconds)
         self.time += seconds
+        await self.free.wait()
         await asyncio.sleep(0)
 
 
@@ -37,16 +44,37 @@ async def passing(time: PassingTime) -> AsyncIterator[None]:
         await asyncio.wait([task])
 
 
+async def turns() -> None:
+    for _ in range(TURNS):
+        await asyncio.sleep(0)
+
+
 async def test_time_stands_still_while_nobody_waits_for_it() -> None:
     clock = HandClock()
     time = PassingTime(clock, lambda: False, stepped=True)
     async with passing(time):
-        await asyncio.sleep(0.02)
-        assert clock.time == 0
+        await turns()
+        assert clock.slept == []
         await time.sleep(1.0)
-        now = clock.time
-        await asyncio.sleep(0.02)
-        assert now == clock.time == pytest.approx(1.0, abs=AT_REST)
+        slept = len(clock.slept)
+        await turns()
+        assert len(clock.slept) == slept
+        assert clock.time == pytest.approx(1.0, abs=AT_REST) and clock.time >= 1.0
+
+
+async def test_it_stands_still_again_when_whoever_waited_has_given_up() -> None:
+    clock = HandClock()
+    time = PassingTime(clock, lambda: False, stepped=True)
+    async with passing(time):
+        waits = asyncio.create_task(time.sleep(1e9))
+        await turns()
+        assert clock.slept
+        waits.cancel()
+        await asyncio.wait([waits])
+        await turns()
+        slept = len(clock.slept)
+        await turns()
+        assert len(clock.slept) == slept
 
 
 async def test_what_is_waited_for_ends_the_wait() -> None:
@@ -54,8 +82,18 @@ async def test_what_is_waited_for_ends_the_wait() -> None:
     time = PassingTime(clock, lambda: True, stepped=True)
     async with passing(time):
         assert await time.until(lambda: clock.time > 3, 100)
-        assert clock.time < 3 + 2 * ON_THE_WAY
+        assert 3 < clock.time < 3 + 2 * ON_THE_WAY
+        began = clock.time
         assert not await time.until(lambda: False, 1)
+        assert clock.time == pytest.approx(began + 1, abs=1.01 * ON_THE_WAY)
+
+
+async def test_what_holds_already_takes_no_time() -> None:
+    clock = HandClock()
+    time = PassingTime(clock, lambda: True, stepped=True)
+    async with passing(time):
+        assert await time.until(lambda: True, 100)
+    assert clock.slept == []
 
 
 async def test_steps_are_small_while_the_robot_moves_and_larger_at_rest() -> None:
@@ -71,20 +109,81 @@ async def test_steps_are_small_while_the_robot_moves_and_larger_at_rest() -> Non
 
 
 async def test_two_who_wait_share_the_time() -> None:
-    clock = HandClock()
+    clock, woke = HandClock(), {}
     time = PassingTime(clock, lambda: False, stepped=True)
+
+    async def sleeper(seconds: float) -> None:
+        await time.sleep(seconds)
+        woke[seconds] = clock.time
+
     async with passing(time):
-        await asyncio.gather(time.sleep(2.0), time.sleep(1.0))
-    assert clock.time == pytest.approx(2.0, abs=2 * AT_REST)
+        await asyncio.gather(sleeper(2.0), sleeper(1.0))
+    assert woke == pytest.approx({1.0: 1.0, 2.0: 2.0}, abs=AT_REST)
+
+
+async def test_who_waits_again_at_once_misses_nothing_that_passes_for_another() -> None:
+    clock, seen = HandClock(), []
+    time = PassingTime(clock, lambda: True, stepped=True)
+
+    async def looks() -> None:
+        while clock.time < 5:
+            await time.sleep(ON_THE_WAY / 2)
+            seen.append(clock.time)
+
+    async with passing(time):
+        await asyncio.gather(time.sleep(5.0), looks())
+    ends = [sum(clock.slept[: n + 1]) for n in range(len(clock.slept))]
+    assert seen == pytest.approx(ends[: len(seen)]) and len(seen) >= 5 / ON_THE_WAY
+
+
+async def test_nobody_sees_half_a_step() -> None:
+    clock, ticks = HandClock(), []
+
+    def tick() -> bool:
+        ticks.append(clock.time)
+        return False
+
+    time = PassingTime(clock, tick, stepped=True)
+    async with passing(time):
+        clock.free.clear()
+        waits = asyncio.create_task(time.sleep(TICK / 2))
+        await turns()
+        looks = asyncio.create_task(time.still.acquire())
+        await turns()
+        assert clock.slept and not looks.done()  # the step has begun, and is not over
+        clock.free.set()
+        await looks
+        await turns()
+        assert waits.done() and len(clock.slept) == len(ticks)
 
 
 async def test_on_the_clock_of_a_machine_ticks_come_by_themselves() -> None:
     clock, ticks = HandClock(), asyncio.Event()
 
     def tick() -> bool:
-        ticks.set()
+        if clock.time > 1:
+            ticks.set()
+        return True
+
+    time = PassingTime(clock, tick)
+    async with passing(time), asyncio.timeout(5):
+        await ticks.wait()
+        assert not time.still.locked()  # there, looking waits for nothing
+    assert set(clock.slept) == {TICK}
+
+
+@pytest.mark.parametrize("stepped", [True, False])
+async def test_who_waits_is_told_when_time_has_ended(stepped: bool) -> None:
+    clock = HandClock()
+
+    def tick() -> bool:
+        if clock.time > 1:
+            raise OSError("the base is gone")
         return False
 
-    async with passing(PassingTime(clock, tick)), asyncio.timeout(5):
-        await ticks.wait()
-    assert set(clock.slept) == {TICK}
+    time = PassingTime(clock, tick, stepped=stepped)
+    async with passing(time), asyncio.timeout(5):
+        with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
+            await time.sleep(100)
+        with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
+            await time.sleep(1)  # and whoever comes later is not left waiting
