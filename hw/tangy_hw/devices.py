@@ -179,6 +179,13 @@ class Arms(Device, Protocol):
         """
         ...
 
+    async def hold(self) -> None:
+        """Stop where it is now, with the torque that it has; what was wanted is not; never raises.
+
+        A movement that is waited for ends with a DeviceError.
+        """
+        ...
+
     async def relax(self) -> None:
         """Let all of it hang without torque; never raises."""
         ...

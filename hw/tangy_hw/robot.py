@@ -14,14 +14,7 @@ from contextlib import suppress
 from typing import Any
 
 from tangy_hw.body import Body
-from tangy_hw.devices import (
-    STILL,
-    Clock,
-    DeviceError,
-    Picture,
-    Pose,
-    Twist,
-)
+from tangy_hw.devices import STILL, Arms, Clock, DeviceError, Picture, Pose, Twist
 from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Watchdogs
 from tangy_hw.navigation.navigator import Navigator
@@ -42,6 +35,7 @@ POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
 WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
+STOP_SECONDS = 1.0  # in which arms and voice have heard that they are to stop
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
 
@@ -197,7 +191,7 @@ class LiveRobot:
             doing["shown"] = self._body.screen.show(picture)
         arms = self._body.arms
         if arms is not None and posture and (gazes or arms.reading().state != ERROR):
-            doing["posed"], self._gaze = arms.pose(posture, POSE_SECONDS), ""
+            doing["posed"], self._gaze = self._pose(arms, posture), ""
         tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
         try:
             await self.passing.until(
@@ -213,6 +207,12 @@ class LiveRobot:
         return {
             what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
         }
+
+    async def _pose(self, arms: Arms, posture: Mapping[str, Sequence[float]]) -> None:
+        """Move the arms; not when it was stopped before they were told."""
+        if self.stopped:
+            raise BrokenOff(self.stopped)
+        await arms.pose(posture, POSE_SECONDS)
 
     async def go(self, goal: Pose, name: str = "") -> bool:
         """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).
@@ -265,14 +265,24 @@ class LiveRobot:
         self._hand = twist, self._clock.now() + BY_HAND_SECONDS
 
     async def stop(self, why: str) -> None:
-        """Stand still now, and be quiet; it latches."""
+        """Stand still now, hold the arms where they are, and be quiet; it latches.
+
+        The base is first, and what fails in the rest changes nothing.
+        """
         self.stopped = self.stopped or why
         self._hand = None
         self._driven = STILL
-        await self._body.base.stop()
-        self.navigator.cancel()
-        if self._body.voice is not None:
-            await self._body.voice.hush()
+        self._gaze = ""
+        try:
+            await self._body.base.stop()
+        finally:
+            self.navigator.cancel()
+            rest: list[Coroutine[Any, Any, None]] = []
+            if self._body.arms is not None:
+                rest.append(self._body.arms.hold())
+            if self._body.voice is not None:
+                rest.append(self._body.voice.hush())
+            await _within(STOP_SECONDS, *rest)
 
     def release(self) -> None:
         """Let it move again."""
@@ -367,6 +377,16 @@ class LiveRobot:
         self._driven = command
         work = self._body.base.stop() if command == STILL else self._body.base.drive(command)
         self._sent = asyncio.create_task(_quietly(work))
+
+
+async def _within(seconds: float, *works: Coroutine[Any, Any, None]) -> None:
+    """Do things at once, for so many s at most; whatever comes of them."""
+    tasks = [asyncio.create_task(work) for work in works]
+    if tasks:
+        await asyncio.wait(tasks, timeout=seconds)
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
 
 
 async def _quietly(work: Coroutine[Any, Any, None]) -> None:

@@ -126,6 +126,26 @@ class TestArms:
                 await soon(arms.pose({"arm": (45, 30)}, 0.2))
             assert arms.reading().state == ERROR
 
+    async def test_told_to_hold_they_stay_where_they_are_and_keep_their_torque(self) -> None:
+        async with armed() as (bus, arms, _):
+            bus.servos[2].sticks = True
+            posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
+            await until(lambda: bus.servos[2].goal == round(60 * 4096 / 360))
+            bus.servos[2].position = 1500  # on its way
+            await arms.hold()
+            with pytest.raises(DeviceError, match="hold"):
+                await soon(posing)
+            await until(lambda: bus.servos[2].goal == 1500)
+            assert bus.servos[2].torque and bus.servos[1].goal == 2048 + 512
+            assert bus.servos[2].speed == 1  # as slow as can be, should it have gone too far
+            bus.servos[7].there = False
+            bus.servos[2].position = 1400
+            await arms.hold()
+            await until(lambda: bus.servos[2].goal == 1400)
+            await arms.relax()
+            await arms.hold()
+            assert not any(servo.torque for servo in bus.servos.values() if servo.there)
+
     async def test_a_joint_that_sticks_is_named_in_time(self) -> None:
         async with armed() as (bus, arms, now):
             bus.servos[2].sticks = True

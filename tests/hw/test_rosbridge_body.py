@@ -38,10 +38,15 @@ class Body:
         self.positions = {"arm/shoulder": 0.0, "arm/elbow": 0.0, "neck": 0.0}
         self.goals: dict[str, float] = {}
         self.torque: list[bool] = []
+        self.told: list[int] = []  # points of each trajectory
         server.on_message("/joint_trajectory", self.take)
         server.on_message("/joint_torque", lambda message: self.torque.append(message["data"]))
 
     def take(self, message: Any) -> None:
+        self.told.append(len(message["points"]))
+        if not message["points"]:
+            self.goals.clear()
+            return
         (point,) = message["points"]
         self.goals.update(zip(message["joint_names"], point["positions"], strict=True))
 
@@ -141,6 +146,40 @@ class TestArms:
             await until(lambda: body.torque == [False, True])
             body.step()
             await soon(posing)
+
+    async def test_arms_that_are_told_to_hold_stay_where_they_are_on_their_way(self) -> None:
+        async with armed() as (_, body, arms, _now):
+            posing = asyncio.create_task(arms.pose({"arm": (90, 45), "head": (-20,)}, seconds=1))
+            await until(lambda: body.goals)
+            body.step(0.5)
+            await until(lambda: arms.positions)
+            here = dict(body.positions)
+            await arms.hold()
+            with pytest.raises(DeviceError, match="hold"):
+                await soon(posing)
+            await until(lambda: body.told == [1, 1, 0])
+            body.step()
+            assert body.positions == here and body.torque == []
+
+    async def test_in_ros_2_they_hold_by_a_trajectory_to_where_they_are(self) -> None:
+        async with linked(ros=2) as (server, bridge, now):
+            arms, body = RosArms(bridge, LIMBS, names={"head/neck nod": "neck"}), Body(server)
+            await arms.start()
+            await soon(server.subscribed("/joint_states"))
+            body.positions["neck"] = 0.25
+            body.step()
+            await until(lambda: arms.positions)
+            await arms.hold()
+            await until(lambda: body.goals)
+            assert (body.goals, body.told) == (body.positions, [1])
+            body.goals.clear()
+            now.time += 1  # nobody knows any more where they are
+            await arms.hold()
+            await arms.relax()
+            await until(lambda: body.torque == [False])
+            await arms.hold()
+            assert not body.goals
+            await arms.close()
 
     @pytest.mark.parametrize("angles", [{"tail": (1,)}, {"arm": (1,)}, {"head": (math.nan,)}])
     async def test_what_the_body_has_not_is_refused(self, angles: Any) -> None:

@@ -168,6 +168,23 @@ class TestDrivers:
             assert 3.0 < peer.world.now - began < 6.0
             assert peer.bench.do({"do": "truth"})["truth"]["opened"]
 
+    async def test_joints_stand_soon_after_they_were_told_to_hold(self) -> None:
+        async with played() as peer:
+            joint, joints = "right_arm/shoulder pitch", peer.world.joints
+            posing = asyncio.create_task(peer.arms.pose(ROBOT.postures["wave"], 1.5))
+            await peer.passes(0.7)
+            assert 20 < joints.angle(joint) < 120
+            before = joints.angle(joint)
+            await peer.arms.hold()
+            await peer.passes(0.2)
+            stands = dict(joints.positions)
+            assert joints.angle(joint) == pytest.approx(before, abs=10)
+            assert not any(joints.speeds.values())
+            await peer.passes(2.0)
+            assert joints.positions == stands
+            with pytest.raises(DeviceError, match="hold"):
+                await posing
+
 
 class TestFaults:
     async def test_the_button_latches_until_the_expert_resets_it(self) -> None:

@@ -196,6 +196,13 @@ class DynamixelArms:
         finally:
             arriving.cancel()
 
+    async def hold(self) -> None:
+        """Stop where it is now, with the torque that it has; never raises."""
+        self._moves.end(f"{self.name} was told to hold.")
+        if not self._limp:
+            with suppress(BusError):
+                await self._do(self._stand)
+
     async def relax(self) -> None:
         """Let all of it hang without torque; never raises."""
         self._moves.end(f"{self.name} was let hang.")
@@ -255,6 +262,10 @@ class DynamixelArms:
         if limp:
             self._bus.hold()
         self._bus.move(wanted, seconds)
+
+    def _stand(self) -> None:
+        if self._bus is not None:
+            self._bus.stand()
 
     def _let_go(self) -> None:
         if self._bus is not None:

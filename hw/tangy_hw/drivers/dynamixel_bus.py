@@ -18,6 +18,7 @@ SPEED, GOAL, POSITION = (112, 4), (116, 4), (132, 4)
 TIME_BASED = 4  # bit of the drive mode: the speed of a movement is the time that it takes, in ms
 SPEED_UNIT = 0.229 * 360 / 60  # degrees a second
 FASTEST = 32_767  # of either unit; 0 would be without a limit
+STAND_SECONDS = 0.05  # in which servos brake
 LISTEN_SECONDS = 0.005  # for which a read waits; Robotis' own spins until bytes come
 TRIES = 2  # at a read: a bit that is lost on the wire is no silence
 MEANINGS = {
@@ -122,6 +123,17 @@ class Bus:
             raise BusError(f"servo {min(missing)} does not answer.")
         self._write(GOAL, {servo: value % (1 << 32) for servo, value in here.items()})
         self.torque(on=True)
+
+    def stand(self) -> None:
+        """Let all servos that answer stop where they are, with the torque that they have.
+
+        Raises:
+            BusError: the port is gone.
+        """
+        here = self._read(POSITION)
+        # A servo keeps the time or speed of the movement it is on, which would carry it on.
+        self._write(SPEED, {n: speed(0.0, STAND_SECONDS, self._modes.get(n, 0)) for n in here})
+        self._write(GOAL, {servo: value % (1 << 32) for servo, value in here.items()})
 
     def torque(self, *, on: bool) -> None:
         """Give all servos torque, or take it, and look whether they have it.

@@ -8,13 +8,16 @@ from contextlib import suppress
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
-from tangy_hw.drivers.ros_messages import Message, joints_of, trajectory_message
+from tangy_hw.drivers.ros_messages import Message, header, joints_of, trajectory_message
 from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, Reading
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Limb
+
+HOLD_SECONDS = 0.1  # in which joints are back where they were when they were told to hold
+KNOWN_SECONDS = 0.5  # for which it holds where a joint was; back to where it was before is no hold
 
 
 class RosArms:
@@ -110,6 +113,26 @@ class RosArms:
             if not self._bridge.connected:
                 raise DeviceError(f"{self.name}: the link was lost on the way.") from None
             raise
+
+    async def hold(self) -> None:
+        """Stop where it is now, with the torque that it has.
+
+        A trajectory to where joints are takes the place of the one under way. In ROS 1 an empty
+        one follows, by which its joint_trajectory_controller brakes and holds, from what it knows
+        itself of its joints; ROS 2's refuses an empty one, or goes on as it was.
+        """
+        self._moves.end(f"{self.name} was told to hold.")
+        if self._limp:
+            return
+        ros, here = self._bridge.ros, self.positions
+        with suppress(DeviceError):
+            if here and self._newest.age <= KNOWN_SECONDS:
+                message = trajectory_message(here, HOLD_SECONDS, ros)
+                self._bridge.publish(self._trajectory, message)
+            if ros == 1:
+                names = [joint for joints in self._joints.values() for joint in joints]
+                empty = {"header": header("", ros), "joint_names": names, "points": []}
+                self._bridge.publish(self._trajectory, empty)
 
     async def relax(self) -> None:
         """Let all of it hang without torque."""

@@ -39,6 +39,13 @@ class Joints:
                 speed = far / seconds if seconds > 0 else FASTEST
                 self._goals[name] = (goal, max(1e-6, min(FASTEST, speed)))
 
+    def hold(self, names: Sequence[str]) -> None:
+        """Let joints stay where they are, with no goal any more."""
+        for name in names:
+            self._goals.pop(name, None)
+            if name in self.speeds:
+                self.speeds[name] = 0.0
+
     def step(self, seconds: float, broken: Iterable[str] = ()) -> None:
         """Move on for so many s; joints of `broken` limbs stay where they are."""
         out = tuple(f"{limb}/" for limb in broken)

@@ -53,6 +53,7 @@ class Bench:
             "lift": lambda told: {"lifted": world.lift(str(told["kind"]))},
             "mend": lambda told: {"lifted": world.mend(str(told["fault"]))},
             "restart": lambda told: {"works": world.restart(str(told["device"]))},
+            "read": lambda told: self._read(str(told["text"])),
             "ask": lambda told: self._asked(str(told["person"])),
             "truth": lambda _: {"truth": world.truth()},
         }
@@ -159,11 +160,19 @@ class Bench:
         self.world.drive(float(twist["linear"]["x"]), float(twist["angular"]["z"]))
 
     def _posed(self, told: Mapping[str, Any]) -> None:
-        self.world.joints.move(*messages.trajectory(told))
+        """Take a trajectory; an empty one has joints hold, as joint_trajectory_controller does."""
+        if told["points"]:
+            self.world.joints.move(*messages.trajectory(told))
+        else:
+            self.world.joints.hold([str(name) for name in told["joint_names"]])
 
     def _asked(self, person: str) -> dict[str, Any]:
         self.world.people.ask(person)
         return {"asking": list(self.world.asking)}
+
+    def _read(self, text: str) -> dict[str, Any]:
+        self.world.read(text)
+        return {"text": text}
 
     def _injected(self, kind: str) -> dict[str, Any]:
         self.world.inject(kind)

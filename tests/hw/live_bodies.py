@@ -1,0 +1,130 @@
+"""Bodies of live robots for tests: devices that keep what they were told, and a body of them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from tangy_hw.body import Body
+from tangy_hw.devices import (
+    DeviceError,
+    Odometry,
+    Picture,
+    Pose,
+    Scan,
+    Stamped,
+    Twist,
+)
+from tangy_profiles.health import OK, Reading
+
+HERE = Pose(2.0, 1.0, 0.0)
+
+
+class ToldDevice:
+    """A device that is well, or as a test says; `told` are the commands of the whole body."""
+
+    def __init__(self, name: str, told: list[Any]) -> None:
+        self.name, self.told = name, told
+        self.state, self.age = OK, 0.0
+        self.facts: dict[str, Any] = {}
+
+    async def start(self) -> None:
+        """Begin."""
+
+    async def close(self) -> None:
+        """End."""
+
+    def reading(self) -> Reading:
+        return Reading(self.name, self.age, self.state, self.facts)
+
+
+class ToldBase(ToldDevice):
+    """Wheels that stay where they are, whatever they are told."""
+
+    odometry = Stamped(Odometry(HERE, Twist()), 0.0, 1)
+
+    async def drive(self, twist: Twist) -> None:
+        self.told.append(twist)
+
+    async def stop(self) -> None:
+        self.told.append("stop")
+
+
+class ToldLaser(ToldDevice):
+    """A scanner that sees nothing within reach."""
+
+    scan = Stamped(Scan(-1.5, 0.1, np.full(31, np.inf), 30.0), 0.0, 1)
+
+
+class ToldArms(ToldDevice):
+    """Arms whose movements last until they are told to hold."""
+
+    def __init__(self, name: str, told: list[Any]) -> None:
+        super().__init__(name, told)
+        self.held = asyncio.Event()
+        self.breaks = False
+
+    async def pose(self, angles: Mapping[str, Sequence[float]], seconds: float) -> None:
+        self.told.append("pose")
+        await self.held.wait()
+        raise DeviceError("It was told to hold.")
+
+    async def hold(self) -> None:
+        self.told.append("hold")
+        self.held.set()
+        if self.breaks:
+            raise OSError("The bus is gone.")
+
+    async def relax(self) -> None:
+        self.told.append("relax")
+
+
+class ToldVoice(ToldDevice):
+    """A voice that speaks until it is hushed; or that cannot even be hushed."""
+
+    def __init__(self, name: str, told: list[Any]) -> None:
+        super().__init__(name, told)
+        self.hushed = asyncio.Event()
+        self.hangs = self.breaks = False
+
+    async def say(self, text: str) -> None:
+        self.told.append("say")
+        await self.hushed.wait()
+
+    async def hush(self) -> None:
+        self.told.append("hush")
+        if self.breaks:
+            raise RuntimeError("no voice")
+        if self.hangs:
+            await asyncio.sleep(60)
+        self.hushed.set()
+
+
+class ToldScreen(ToldDevice):
+    async def show(self, picture: Picture) -> None:
+        self.told.append("show")
+
+
+class ToldBody:
+    """A whole body, and `told`, what its devices were told in that order."""
+
+    def __init__(self) -> None:
+        self.told: list[Any] = []
+        self.base = ToldBase("base", self.told)
+        self.laser = ToldLaser("laser", self.told)
+        self.arms = ToldArms("arms", self.told)
+        self.voice = ToldVoice("voice", self.told)
+        self.screen = ToldScreen("screen", self.told)
+
+    def body(self, *others: Any) -> Body:
+        return Body(
+            self.base,
+            self.laser,
+            arms=self.arms,
+            voice=self.voice,
+            screen=self.screen,
+            others=others,
+        )
