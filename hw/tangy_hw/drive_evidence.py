@@ -1,4 +1,8 @@
-"""What a drive shows of what is wrong, kept for a moment: some passes before anybody looks."""
+"""What a drive shows of what is wrong, kept for a moment: some passes before anybody looks.
+
+That the robot was lost for a moment is kept until it has looked round: it may have found its place
+in the meantime, but it is not where it was in the game any more.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +26,7 @@ class DriveEvidence:
         self._worst: dict[str, Fact] = {}
         self._kept: dict[str, Fact] = {}
         self._until = 0.0
+        self._lost: dict[str, Fact] = {}
 
     def begin(self) -> None:
         """Begin a drive: what was wrong with the last one is forgotten."""
@@ -36,7 +41,7 @@ class DriveEvidence:
         if facts["path"] == "replanned":
             worst["path"] = "replanned"
         if float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD:
-            worst |= {"fit": facts["fit"], "spread": facts["spread"]}
+            self._lost = {name: facts[name] for name in ("fit", "spread")}
 
     def keep(self) -> None:
         """The drive is over: keep what it has shown for a moment."""
@@ -54,15 +59,13 @@ class DriveEvidence:
         return own._replace(facts={**own.facts, **told, **self._of("still", "slip")})
 
     def found(self) -> None:
-        """The robot knows its place again."""
-        for name in ("fit", "spread"):
-            self._worst.pop(name, None)
-            self._kept.pop(name, None)
+        """The robot has looked round, and knows its place again."""
+        self._lost = {}
 
     def localisation(self, age: float) -> Reading:
         """Return the reading of the sense of place, that last worked so many s ago."""
         reading = self._navigator.readings(age)[0]
-        return reading._replace(facts={**reading.facts, **self._of("fit", "spread")})
+        return reading._replace(facts={**reading.facts, **self._lost})
 
     def navigator(self, age: float) -> Reading:
         """Return the reading of the navigation, that last worked so many s ago."""

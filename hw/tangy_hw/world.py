@@ -8,25 +8,27 @@ request that was put to them is observed, within the activity's patience or late
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from math import hypot, pi
+from math import pi
 from random import Random
 from typing import Any
 
+from tangy_hw.card_views import CardViews
 from tangy_hw.commands import Commands
 from tangy_hw.devices import DeviceError, Picture, Pose
+from tangy_hw.drive_evidence import LOST_SPREAD
+from tangy_hw.remedies import Remedies
 from tangy_hw.requests_seen import SeenRequests
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
-from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.faults import Remedy
-from tangy_profiles.health import Health
+from tangy_profiles.health import OK, Health
 from tangy_profiles.robot import Robot
-from tangy_profiles.room import Room
-from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.room import Point, Room
+from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
 
@@ -36,8 +38,6 @@ it took about as long."""
 LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
 PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
 SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
-HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
-AWAY = 0.5  # metres from the front at which the robot goes there before a game
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
 
@@ -75,12 +75,11 @@ class LiveWorld:
         self.people = tuple(people)
         self.over = True
         self.broken = ""
-        """Why the last behaviour was not carried out to its end."""
+        """Why the last behaviour was not carried out to its end, "" if it was."""
         self.link = link
-        self.looked: Callable[[str, str, Any], None] = lambda *_: None
-        """Is told of each card ("card") and face ("face") that was looked at, with whose place it
-        is at, and what was seen."""
         self.commands = Commands(link)
+        self.cards = CardViews(activity, self.commands)
+        self._remedies = Remedies(self)
         self._robot = robot
         self._room = room
         self._names = dict(names or {})
@@ -93,7 +92,7 @@ class LiveWorld:
         self.tracker = Tracker(self.activity, self.people)
         self.called: list[int] = []
         self._numbers = self.activity.deck.shuffled(self._order.random)
-        self._card: CardView | None = None
+        self.cards.view = None
         self.requests = SeenRequests(self.people, self.link)
         self._due = 0.0  # when the next number may be called
 
@@ -101,13 +100,17 @@ class LiveWorld:
         """Begin a new game and return its first state."""
         self._begin()
         self.over = False
-        front = self._room.front
-        pose = self.link.state.pose
-        if hypot(pose.x - front.x, pose.y - front.y) > AWAY:
-            with suppress(DeviceError):  # where it cannot, the first behaviour says so
-                self.commands.do("go", to=list(Pose(front.x, front.y, FACING)), name=FRONT)
+        with suppress(DeviceError):  # where it cannot, the first behaviour says so
+            self._remedies.go_back(knows_place=self._spread < LOST_SPREAD)
         self.commands.settle()
         return self.observe()
+
+    @property
+    def _spread(self) -> float:
+        """How far apart the places are at which the robot may be, in metres."""
+        health = self.link.health()
+        facts = next((r.facts for r in health if r.device == "localisation"), {})
+        return float(facts.get("spread", 0.0))
 
     def observe(self) -> ActivityState:
         """Return the joint state as the robot's sensors have it now."""
@@ -132,24 +135,18 @@ class LiveWorld:
                     numbers = found
                     response, succeeded = self._carry_out(action, numbers)
         except DeviceError as error:
-            self.broken = str(error)
-            numbers = ()
+            self.broken, numbers = str(error), ()
         self._executed(behaviour, succeeded)
         self.commands.settle()
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
         """Return the numbers that an action is about; None if there is nothing to be asked."""
-        card = self._card
         match action.behaviour.effect:
             case "draw":
                 return tuple(self._numbers[len(self.called) : len(self.called) + 1])
-            case "clear wrong marks" | "set missing marks" if card is None:
-                return None
-            case "clear wrong marks" if card is not None:
-                return _numbers_at(card, card.marked & ~card.called) or None
-            case "set missing marks" if card is not None:
-                return _numbers_at(card, card.called & ~card.marked) or None
+            case "clear wrong marks" | "set missing marks":
+                return self.cards.asked_about(action.behaviour)
         return ()
 
     def _carry_out(self, action: Action, numbers: tuple[int, ...]) -> tuple[Response | None, bool]:
@@ -157,7 +154,7 @@ class LiveWorld:
         behaviour, tracker = action.behaviour, self.tracker
         if behaviour.effect == "draw":
             self._keep_pace()
-        self._say(action, numbers)
+        self._announce(action, numbers)
         match behaviour.effect:
             case "draw":
                 self.called.extend(numbers)
@@ -177,10 +174,9 @@ class LiveWorld:
             return None, True  # nothing of what the person does about it can be seen
         return self._response(action, numbers), True
 
-    def _say(self, action: Action, numbers: tuple[int, ...]) -> None:
+    def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
         """Speak, show and gesture."""
-        target = action.target
-        name = self._names.get(target, target) if target is not None else ""
+        name = self.name_of(action.target)
         fill, deck = self.activity.fill, self.activity.deck
         called = numbers if action.behaviour.effect == "draw" else ()
         picture = Picture(
@@ -190,7 +186,30 @@ class LiveWorld:
             name if action.behaviour.attends else "",
         )
         speech = fill(action.speech, name, numbers)
-        self.commands.perform(speech, picture, self._robot.postures[action.posture])
+        self.say(speech, picture, self._robot.postures[action.posture])
+
+    def say(
+        self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+    ) -> None:
+        """Say and show something; while there is no voice, the screen shows what is said.
+
+        Raises:
+            DeviceError: neither could be done.
+        """
+        written = picture._replace(text=speech)
+        if speech and not self._has_voice:
+            self.commands.perform(speech, written, posture)
+        elif self.commands.perform(speech, picture, posture).get("said") is False:
+            self.commands.perform("", written)
+
+    @property
+    def _has_voice(self) -> bool:
+        health = self.link.health()
+        return all(reading.state == OK for reading in health if reading.device == "voice")
+
+    def name_of(self, person: str | None) -> str:
+        """Return what somebody is called, "" for nobody."""
+        return "" if person is None else self._names.get(person, person)
 
     def _keep_pace(self) -> None:
         wait = self._due - self.link.time
@@ -199,36 +218,45 @@ class LiveWorld:
 
     def _go(self, place: str) -> bool:
         """Drive to a place; beside a person, see who it is and look at the card."""
-        stand = self._room.stand(place, self.people)
-        done = self.commands.do("go", to=list(Pose(stand.x, stand.y, FACING)), name=place)
-        if not done.get("arrived"):
+        if not self.drive(place):
             return False
         self.tracker.arrive(place)
-        self._card = None
+        self.cards.view = None
         if place != FRONT:
             if self._knows_faces:
-                self.looked("face", place, self.commands.do("face").get("person"))
+                self.cards.looked("face", place, self.commands.do("face").get("person"))
             if place in self.tracker.queue:
-                self._read_card(place)
+                self.read_card(place)
         return True
 
-    def _read_card(self, person: str, after: float = 0.0) -> None:
-        """Look at the card beside the robot, and keep what is seen of it."""
-        card = self._look(after)
-        self.looked("card", person, card)
-        self.tracker.seen = card["state"] if card["state"] != self.activity.unread else None
+    def drive(self, place: str) -> bool:
+        """Drive to a place, whatever the game has of it; return whether it has arrived.
 
-    def _look(self, after: float = 0.0) -> dict[str, Any]:
-        """Look at the card; `_card` is what was seen, None if it could not be read."""
-        card = self.commands.do("card", called=self.called, after=after)
-        self._card = None
-        if card["card"] is not None:
-            deck, place = self.activity.deck, self.tracker.place
-            numbers = numbers_of(deck, card["card"], self.link.setup.deck_seed)
-            called = called_cells(deck, numbers, set(self.called))
-            if card["state"] != self.activity.unread:
-                self._card = CardView(place, numbers, card["marked"], called)
-        return card
+        Raises:
+            DeviceError: it has to stand still.
+        """
+        to = self.stand(place)
+        done = self.commands.do("go", to=list(Pose(to.x, to.y, FACING)), name=place)
+        return bool(done.get("arrived"))
+
+    def stand(self, place: str) -> Point:
+        """Return where the robot stands at a place of the game."""
+        return self._room.stand(place, self.people)
+
+    def read_card(self, person: str, after: float = 0.0) -> None:
+        """Look at the card beside the robot, after so many s, and keep what is seen of it.
+
+        Raises:
+            DeviceError: it cannot look.
+        """
+        card = self.cards.look(self.tracker.place, self.called, after)
+        self.cards.looked("card", person, card)
+        self.tracker.seen = self._told_by(card)
+
+    def _told_by(self, card: dict[str, Any]) -> str | None:
+        """Return the user activity state that a card shows, None if it is not told."""
+        state = str(card["state"])
+        return state if state != self.activity.unread else None
 
     # ------------------------------------------------------------------------ what people do
 
@@ -244,14 +272,14 @@ class LiveWorld:
             if done:
                 return Response(person, action.strategy, True, seconds <= patience, seconds)
             if now - began > PATIENCES * patience:
-                if action.behaviour.effect == "none" or self._card is None:
+                if action.behaviour.effect == "none" or self.cards.view is None:
                     return None  # a sign that stays up may be forgotten, or want something else
                 return Response(person, action.strategy, False, False, now - began)
             if now - began > patience and not reminded:
                 reminded = True
-                name = self._names.get(person, person)
+                name = self.name_of(person)
                 words = self.activity.fill(action.image, name, numbers)
-                self.commands.perform("", Picture(words, asks=name))
+                self.say("", Picture(words, asks=name))
             before = now
 
     def _is_done(self, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
@@ -261,23 +289,13 @@ class LiveWorld:
             self.commands.wait(LOOK_SECONDS)
             self.commands.settle()
             return place not in self.requests.signs
-        card = self._look(LOOK_SECONDS)
-        state = card["state"]
-        if behaviour.effect == "bring card closer":
-            done = state != self.activity.unread
-        elif card["card"] is None:
-            done = False
-        else:
-            face = numbers_of(self.activity.deck, card["card"], self.link.setup.deck_seed)
-            asked = sum(1 << cell for cell, number in enumerate(face) if number in numbers)
-            wanted = asked if behaviour.effect == "set missing marks" else 0
-            told = asked.bit_count() == len(numbers) and not card["hidden"] & asked
-            done = told and card["marked"] & asked == wanted
+        card = self.cards.look(place, self.called, LOOK_SECONDS)
+        done = self.cards.shows_done(card, behaviour, numbers)
         if done:
-            self.looked("card", place, card)
+            self.cards.looked("card", place, card)
         if place in self.tracker.queue:
-            self.tracker.seen = state if state != self.activity.unread else None
-        return bool(done)
+            self.tracker.seen = self._told_by(card)
+        return done
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
         """Let a behaviour count; whose request it settled is to take the sign down."""
@@ -309,7 +327,7 @@ class LiveWorld:
         """
         if self.called:
             label, *before = map(self.activity.deck.label, self.called[: -LAST_CALLS - 2 : -1])
-            self.commands.perform(label, Picture(label, label, tuple(before)))
+            self.say(label, Picture(label, label, tuple(before)))
 
     def void_call(self) -> int | None:
         """Take the last call back: its number counts as not called, and comes again later."""
@@ -325,14 +343,14 @@ class LiveWorld:
     def scene(self) -> Scene:
         """Return what there is to see, for a screen to draw."""
         tracker = self.tracker
-        asking = set(tracker.queue)
+        asking, view = set(tracker.queue), self.cards.view
         doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
         return Scene(
             self.link.state.going or tracker.place,
             tuple(tracker.queue),
             doing,
             tuple(self.called),
-            self._card if self._card is not None and self._card.person == tracker.place else None,
+            view if view is not None and view.person == tracker.place else None,
         )
 
     def health(self) -> Health:
@@ -341,62 +359,4 @@ class LiveWorld:
 
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert do something about a fault; return the s it took."""
-        began = self.link.time
-        if remedy.kind == "call expert" and self.link.silent:
-            with suppress(DeviceError):  # another robot process, which stands still as well
-                self.link.restart()
-                self.link.stop(remedy.fault)
-        if remedy.kind == "halt":  # before and beside anything else
-            self.link.stop(remedy.fault)
-            return 0.0
-        with suppress(DeviceError):  # what has not helped is seen by what the devices report
-            self._recover(remedy)
-        return max(0.0, self.link.time - began)
-
-    def _recover(self, remedy: Remedy) -> None:
-        person, tracker = remedy.person, self.tracker
-        if remedy.speech or remedy.image:
-            name = "" if person is None else self._names.get(person, person)
-            self.commands.perform(remedy.speech, Picture(remedy.image, asks=name))
-        match remedy.kind:
-            case "ask":
-                self._await_help(remedy)
-            case "resume":
-                self.link.release()
-            case "spin":
-                self.commands.do("spin")
-            case "restart":
-                self.commands.do("restart", device=remedy.device)
-            case "replan":
-                self.commands.do("replan")
-            case "do without":
-                self.commands.do("relax")
-            case "set aside" if person in tracker.queue:
-                tracker.queue.remove(person)
-                self.requests.over(person)
-                self.commands.do("answered", seat=self.people.index(person) + 1)
-                if person == tracker.place:
-                    tracker.seen = None
-        self.commands.settle()
-
-    def _await_help(self, remedy: Remedy) -> None:
-        """Give people time to help, and see whether they have."""
-        place, began = self.tracker.place, self.link.time
-        while self.link.time - began < HELP_SECONDS:
-            if remedy.device:
-                self.commands.wait(1.0)
-                self.commands.do("replan")
-                self.link.beat()
-                if remedy.fault not in self.commands.diagnosed(self.health()):
-                    return
-            elif place in self.tracker.queue:
-                self._read_card(place, after=1.0)
-                self.commands.settle()
-                if self.tracker.seen is not None or place not in self.requests.all:
-                    return
-            else:
-                self.commands.wait(1.0)
-
-
-def _numbers_at(card: CardView, cells: int) -> tuple[int, ...]:
-    return tuple(number for cell, number in enumerate(card.numbers) if cells >> cell & 1)
+        return self._remedies.do(remedy)

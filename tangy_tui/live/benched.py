@@ -23,7 +23,7 @@ from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim import injection
 from tangy_sim.bench.tablet import Tablet
 from tangy_sim.injection import KINDS, Injection, Kind
-from tangy_tui.live.bench import Bench
+from tangy_tui.live.bench import Bench, BenchError
 
 DRIVES = ("go to user", "go to front")
 MARKED = ("clear wrong marks", "set missing marks")
@@ -68,9 +68,15 @@ class BenchedWorld(LiveWorld):
         self.came: list[tuple[int, str]] = []
         self._to_come: list[Injection] = []
         self._chance = Random(f"{seed}/faults").random
-        self.looked = self._check
-        self._tablet = Tablet(self.link.screen) if self.link.screen else None
+        self.cards.looked = self._check
+        screen = self.link.screen
+        self._tablet = Tablet(screen, self._read) if screen else None
         return self
+
+    def _read(self, text: str) -> None:
+        """Let the people at the table read what the tablet shows."""
+        with suppress(BenchError):  # it is being closed
+            self.bench.do("read", text=text)
 
     def leave(self) -> None:
         """Close what looks at the robot from outside."""

@@ -258,7 +258,7 @@ def test_a_win_is_celebrated_beside_the_winner_only(world: LiveWorld, link: Fake
 def test_faces_are_looked_at_where_they_are_known(link: FakeLink) -> None:
     world = world_of(link, knows_faces=True)
     seen: list[tuple[str, str, Any]] = []
-    world.looked = lambda what, place, found: seen.append((what, place, found))
+    world.cards.looked = lambda what, place, found: seen.append((what, place, found))
     link.faces["user2"] = None
     beside(world, link, 2, LaidCard(CARD))
     assert seen[0] == ("face", "user2", None) and seen[1][:2] == ("card", "user2")

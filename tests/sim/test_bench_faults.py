@@ -223,15 +223,18 @@ class TestPeople:
         assert player.marked == 0b11 and not world.asking
         assert [r.followed for r in world.people.game.responses] == [False] * 3
 
-    def test_a_request_comes_to_nothing_once(self) -> None:
+    def test_what_was_asked_for_is_done_once_and_comes_to_nothing(self) -> None:
         world = opened()
         world.inject("no-effect")
         asks(world, "user4", marked=0b11)
         player = world.people.sitters["user4"].player
         say(world, "remove markers", "User 4", *player.cells(0b11))
         world.step(25.0)
-        assert player.marked == 0b11 and "no-effect" not in world.faults
-        say(world, "remove markers", "User 4", *player.cells(0b11))
+        left = player.marked
+        assert not left & 0b11 and left.bit_count() == 1 and not left & player.called
+        assert world.people.judged("user4") == "incorrectly marked" and world.asking == ("user4",)
+        assert world.people.game.responses[-1].followed and "no-effect" not in world.faults
+        say(world, "remove markers", "User 4", *player.cells(left))
         world.step(25.0)
         assert player.marked == 0
 

@@ -281,12 +281,10 @@ class People:
         if asked and self._faults.concerns("never-complies", sitter.id):
             self._refuses(sitter, response)
             return
-        if behaviour.effect in _CORRECTS and self._faults.lift("no-effect"):
-            self._refuses(sitter, response)
-            return
+        vain = behaviour.effect in _CORRECTS and self._faults.lift("no-effect")
         seconds = _shown(response.seconds, response.complied, patience)
         self.game.responses.append(response._replace(seconds=seconds))
-        self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard))
+        self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard, vain))
 
     def _refuses(self, sitter: Sitter, response: Response) -> None:
         """Let somebody do nothing about what they were asked, and give up the third time."""
@@ -297,7 +295,8 @@ class People:
         if sitter.refused >= GIVES_UP:
             self._agenda.at(self.now + 2 * patience - CLEAR, partial(self._turn_down, sitter))
 
-    def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard) -> None:
+    def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard, vain: bool) -> None:
+        """Do what was asked; in vain, if the same is wrong with another number then."""
         player, before = sitter.player, sitter.player.marked
         named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)
         match behaviour.effect:
@@ -307,8 +306,14 @@ class People:
                 return
             case "clear wrong marks":
                 player.marked &= ~named | self.activity.deck.free
+                others = ~(player.marked | player.called | named)
             case "set missing marks":
                 player.marked |= named
+                others = player.marked & player.called & ~named & ~self.activity.deck.free
+            case _:
+                others = 0
+        if vain:
+            player.marked ^= _one_of(others, len(player.numbers), self._chance)
         if behaviour.closes == "always":
             self._closed(sitter)
         elif (
@@ -360,6 +365,12 @@ class People:
     def _after(self, between: tuple[float, float], happens: Callable[[], object]) -> None:
         low, high = between
         self._agenda.at(self.now + low + (high - low) * self._moments(), happens)
+
+
+def _one_of(cells: int, count: int, uniform: Callable[[], float]) -> int:
+    """Return one of the cells of a mask, as a mask; 0 if it has none."""
+    there = [cell for cell in range(count) if cells >> cell & 1]
+    return 1 << there[int(uniform() * len(there))] if there else 0
 
 
 def _shown(seconds: float, complied: bool, patience: float) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import threading
+from collections.abc import Callable
 from contextlib import suppress
 from http.client import HTTPConnection, HTTPException
 from typing import Any
@@ -19,8 +20,10 @@ SECONDS = 2.0  # without an event after which the page is opened again
 class Tablet:
     """A tablet that shows a page until it is closed; `picture` is what it shows."""
 
-    def __init__(self, url: str) -> None:
-        """Open the page at an address."""
+    def __init__(self, url: str, shown: Callable[[str], object] = str) -> None:
+        """Open the page at an address; `shown` is told what is written there, once it is drawn."""
+        self._shown = shown
+        self._number = 0
         parts = urlsplit(url)
         self._place = (parts.hostname or "127.0.0.1", parts.port or 80)
         self.picture: dict[str, Any] = {}
@@ -66,3 +69,6 @@ class Tablet:
             number = str(self.picture["n"])
         answers.request("POST", f"/seen?page=bench&number={number}")
         answers.getresponse().read()
+        if kind == "show" and int(number) > self._number:  # and not the same once more
+            self._number = int(number)
+            self._shown(str(self.picture["text"]))

@@ -141,6 +141,11 @@ class BenchWorld:
             self._silent_from = self.now + speaking_seconds(text)
         self._speech.append(text)
 
+    def read(self, text: str) -> None:
+        """Let people read what the screen shows, which says as much as a voice that is dead."""
+        if "voice-dead" in self.faults:
+            self._understood(text)
+
     def hush(self) -> None:
         """Break off what is being said; nobody understands half a sentence."""
         self._speech.clear()
@@ -151,11 +156,14 @@ class BenchWorld:
             if "voice-dead" in self.faults:
                 continue
             self.said.append(text)
-            heard = self._hearing.hear(text)
-            if heard is not None:
-                self.people.hear(heard)
+            self._understood(text)
             if self._speech:
                 self._silent_from = self.now + speaking_seconds(self._speech[0])
+
+    def _understood(self, text: str) -> None:
+        heard = self._hearing.hear(text)
+        if heard is not None:
+            self.people.hear(heard)
 
     # ------------------------------------------------------------------------ where it is
 

@@ -1,0 +1,96 @@
+"""What a live world does about a fault: people are asked, the robot looks round, and the like."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from math import hypot
+from typing import TYPE_CHECKING
+
+from tangy_hw.devices import DeviceError, Picture
+from tangy_profiles.faults import Remedy
+
+if TYPE_CHECKING:
+    from tangy_hw.world import LiveWorld
+
+AWAY = 0.5  # metres from where it should be at which the robot drives there
+HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
+
+
+class Remedies:
+    """The remedies that a world has for what is wrong with its robot, or at its table."""
+
+    def __init__(self, world: LiveWorld) -> None:
+        self._world = world
+
+    def do(self, remedy: Remedy) -> float:
+        """Do something about a fault; return the s it took, of the robot's time."""
+        link = self._world.link
+        began = link.time
+        if remedy.kind == "call expert" and link.silent:
+            with suppress(DeviceError):  # another robot process, which stands still as well
+                link.restart()
+                link.stop(remedy.fault)
+        if remedy.kind == "halt":  # before and beside anything else
+            link.stop(remedy.fault)
+            return 0.0
+        with suppress(DeviceError):  # what has not helped is seen by what the devices report
+            self._do(remedy)
+        return max(0.0, link.time - began)
+
+    def _do(self, remedy: Remedy) -> None:
+        world, person = self._world, remedy.person
+        commands, tracker = world.commands, world.tracker
+        if remedy.speech or remedy.image:
+            world.say(remedy.speech, Picture(remedy.image, asks=world.name_of(person)))
+        match remedy.kind:
+            case "ask":
+                self._await_help(remedy)
+            case "resume":
+                world.link.release()
+            case "spin":
+                self.go_back(knows_place=False)
+            case "restart":
+                commands.do("restart", device=remedy.device)
+            case "replan":
+                commands.do("replan")
+            case "do without":
+                commands.do("relax")
+            case "set aside" if person is not None and person in tracker.queue:
+                tracker.queue.remove(person)
+                world.requests.over(person)
+                commands.do("answered", seat=world.people.index(person) + 1)
+                if person == tracker.place:
+                    tracker.seen = None
+        commands.settle()
+
+    def go_back(self, *, knows_place: bool) -> None:
+        """Let the robot be where it should be in the game; it turns first if it is lost.
+
+        Raises:
+            DeviceError: it has to stand still.
+        """
+        world = self._world
+        if not knows_place and not world.commands.do("spin").get("found"):
+            return
+        at, pose = world.stand(world.tracker.place), world.link.beat().pose
+        if hypot(pose.x - at.x, pose.y - at.y) > AWAY:
+            world.drive(world.tracker.place)
+
+    def _await_help(self, remedy: Remedy) -> None:
+        """Give people time to help, and see whether they have."""
+        world = self._world
+        commands, place, began = world.commands, world.tracker.place, world.link.time
+        while world.link.time - began < HELP_SECONDS:
+            if remedy.device:
+                commands.wait(1.0)
+                commands.do("replan")
+                world.link.beat()
+                if remedy.fault not in commands.diagnosed(world.health()):
+                    return
+            elif place in world.tracker.queue:
+                world.read_card(place, after=1.0)
+                commands.settle()
+                if world.tracker.seen is not None or place not in world.requests.all:
+                    return
+            else:
+                commands.wait(1.0)
