@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
+from tangy_profiles.health import ERROR, OK, STALE, Health, Reading, state_of
 from tangy_profiles.robot import Robot
 
 Report = Callable[[], Reading]
@@ -65,12 +65,8 @@ class Watchdogs:
         return name if device is None else device.label
 
     def state(self, reading: Reading) -> str:
-        """Return the state of a device: STALE where its data is older than its profile allows."""
-        if reading.state == ERROR:
-            return ERROR
-        device = self._robot.devices.get(reading.device)
-        fresh = device is None or reading.age <= device.stale_after
-        return reading.state if fresh else STALE
+        """Return the state of a device of the robot, as `state_of` does."""
+        return state_of(self._robot.devices.get(reading.device), reading)
 
     def _reading(self, name: str) -> Reading:
         report = self._reports.get(name)

@@ -5,9 +5,13 @@ A world hands these out (`World.health`); what they mean is the business of the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from tangy_profiles.robot import Device
 
 OK, WARN, ERROR, STALE = "OK", "WARN", "ERROR", "STALE"
 STATES = (OK, WARN, STALE, ERROR)
@@ -33,3 +37,15 @@ class Reading(NamedTuple):
 
 Health = tuple[Reading, ...]
 """The readings of all devices of a robot."""
+
+
+def state_of(device: Device | None, reading: Reading) -> str:
+    """Return the state of a device: what it says of itself, or STALE if its data is too old.
+
+    A measurement that is no number is an error. An age that is none, or has no end, is too old
+    for any device; of one that no profile knows (None) every other age is young enough.
+    """
+    if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
+        return ERROR
+    oldest = math.inf if device is None else device.stale_after
+    return reading.state if math.isfinite(reading.age) and reading.age <= oldest else STALE

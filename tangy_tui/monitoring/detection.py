@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading
-from tangy_profiles.robot import Device, Robot
+from tangy_profiles.health import state_of as state_of
+from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.effects import Effects, Mismatch
@@ -126,17 +127,6 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
             facts = reading.facts.items()
             found |= {f"{reading.device}.{fact}": value for fact, value in facts if value == value}
     return found
-
-
-def state_of(device: Device | None, reading: Reading) -> str:
-    """Return the state of a device: what it says of itself, or STALE if it says too little.
-
-    A measurement that is no number is an error.
-    """
-    if reading.state == ERROR or any(fact != fact for fact in reading.facts.values()):
-        return ERROR
-    fresh = device is None or reading.age <= device.stale_after  # no age is in no range
-    return reading.state if fresh else STALE
 
 
 def symptoms(evidence: Evidence) -> set[str]:

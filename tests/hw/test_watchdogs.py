@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import count
 
@@ -98,6 +99,17 @@ def test_a_device_can_be_taken_for_broken_whatever_it_says(state: str, why: str)
     assert said == dict.fromkeys(ROBOT.devices, OK) | {"navigator": state}
     dogs.fail("navigator", OK)
     assert dogs.hazard() == "" and all(reading.state == OK for reading in dogs.health())
+
+
+@pytest.mark.parametrize("age", [math.inf, math.nan])
+def test_an_age_without_an_end_is_too_old_for_any_device(age: float) -> None:
+    assert hazard(Reading("base", age=age)) == f"{label('base')} says nothing"
+    assert Watchdogs(ROBOT, {}).state(Reading("lift", age=age)) == STALE
+
+
+def test_a_measurement_that_is_no_number_is_an_error() -> None:
+    broken = Reading("laser", facts={"near_share": math.nan})
+    assert hazard(broken) == f"{label('laser')} has an error"
 
 
 def test_of_a_device_that_no_profile_knows_the_age_says_nothing() -> None:
