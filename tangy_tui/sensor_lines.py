@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading
 from tangy_profiles.robot import Device, Robot
 from tangy_tui.monitoring.detection import state_of
 
 if TYPE_CHECKING:
+    from tangy_hw.drivers.camera import Frame
     from tangy_hw.drivers.camera_state import Sight
-    from tangy_hw.sensors import CardSight, Sensors
+    from tangy_hw.sensors import CardSight
 
 CAMERA_STATES = {
     "OPENING": "no picture yet",
@@ -28,11 +30,52 @@ CAMERA_STATES = {
 """What is said of the states of a camera."""
 
 DEVICE_STATES = {OK: "it works", WARN: "it warns", STALE: "silent", ERROR: "failed"}
+NOW_SECONDS = 3.0  # for which what was seen at the last look is said to be so now
 SIMULATED = "simulated"
+ABSENT = "not there"
 BAD = ("DISCONNECTED", "FROZEN", STALE, ERROR)
 WELL = ("OK", OK)
 
 Clock = Callable[[], float]
+
+
+class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
+    """A robot's cameras, as a screen shows them: our own (`tangy_hw.sensors`), or those of the
+    robot process.
+
+    They are open within `async with`, and cards are read within `reading_cards`.
+    """
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The devices that are cameras with a source, in the order of the profile."""
+        ...
+
+    @property
+    def card_device(self) -> str:
+        """The device that looks at cards, "" if none does."""
+        ...
+
+    @property
+    def cards(self) -> CardSight:
+        """What was read of cards of late."""
+        ...
+
+    def source(self, device: str) -> str:
+        """Return where the data of a device comes from, as it was named."""
+        ...
+
+    def sight(self, device: str) -> Sight:
+        """Return the state of a camera and the evidence for it."""
+        ...
+
+    async def picture(self, device: str, fit: tuple[int, int], *, after: int = -1) -> Frame | None:
+        """Return a camera's newest picture (after one of such a number), made to fit; or None."""
+        ...
+
+    def reading_cards(self) -> AbstractContextManager[None]:
+        """Read cards as long as somebody is in it."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +94,8 @@ class Told:
     seconds: float | None = None
     source: str = ""
     facts: tuple[str, ...] = ()
+    live: bool = False
+    """Whether it is a real device."""
 
     @property
     def well(self) -> bool:
@@ -62,21 +107,18 @@ class Told:
         """Whether nothing at all can be known by it."""
         return self.code in BAD
 
-    @property
-    def live(self) -> bool:
-        """Whether it is a real device."""
-        return bool(self.source)
-
 
 class Teller:
-    """Tells of the devices of a robot: of real cameras, and of those that are simulated."""
+    """Tells of the devices of a robot: of those that are real, and of those that are simulated."""
 
     def __init__(
         self,
         robot: Robot,
-        sensors: Sensors | None = None,
+        sensors: Sensing | None = None,
         health: Callable[[], Health] = tuple,
         clock: Clock = time.monotonic,
+        *,
+        live: bool = False,
     ) -> None:
         """Prepare to tell.
 
@@ -84,12 +126,14 @@ class Teller:
             robot: whose devices they are.
             sensors: its real cameras, if there are any.
             health: what the devices of a game say of themselves; nothing where none is going on.
-            clock: of the time for which a simulated device has been as it is, in s.
+            clock: of the time for which a device that is no camera has been as it is, in s.
+            live: what devices say comes from a robot that is there, and what says nothing is not.
         """
         self._robot = robot
         self._sensors = sensors
         self._health = health
         self._clock = clock
+        self._live = live
         self._since: dict[str, tuple[str, float]] = {}
 
     def tell(self) -> list[Told]:
@@ -100,13 +144,15 @@ class Teller:
         return [
             _camera(device, sensors.sight(device.name), sensors.source(device.name))
             if sensors is not None and device.name in cameras
-            else self._simulated(device, readings.get(device.name))
+            else self._other(device, readings.get(device.name))
             for device in self._robot.devices.values()
         ]
 
-    def _simulated(self, device: Device, reading: Reading | None) -> Told:
+    def _other(self, device: Device, reading: Reading | None) -> Told:
         if reading is None:
             self._since.pop(device.name, None)
+            if self._live:
+                return Told(device, "", ABSENT, "The robot's file names no driver for it.")
             return Told(device, "", SIMULATED, "Nothing to be seen until a game goes on.")
         code, now = state_of(device, reading), self._clock()
         before, since = self._since.get(device.name, ("", now))
@@ -127,8 +173,9 @@ class Teller:
             why,
             reading.age,
             now - since,
-            "",
+            self._sensors.source(device.name) if self._live and self._sensors else "",
             _facts(device, dict(reading.facts)),
+            self._live,
         )
 
 
@@ -146,6 +193,7 @@ def _camera(device: Device, sight: Sight, source: str) -> Told:
         sight.seconds,
         source,
         told,
+        live=True,
     )
 
 
@@ -179,11 +227,16 @@ def card_words(cards: CardSight) -> tuple[str, str]:
     """Say which card was read and when, and why none is read now ("" where one is)."""
     now = time.monotonic()
     last = cards.last
+    problem = ""
+    if cards.problem:
+        ago = 0.0 if cards.stamp is None else now - cards.stamp
+        when = "Now" if ago < NOW_SECONDS else f"{age_words(ago)} ago"
+        problem = f"{when}: {cards.problem}."
     if last is None:
-        return "No card was read yet.", f"Now: {cards.problem}." if cards.problem else ""
+        return "No card was read yet.", problem
     hidden = f", {last.hidden.bit_count()} of its numbers hidden" if last.hidden else ""
     words = f"Card {last.card}{hidden}, read {age_words(now - last.stamp)} ago."
-    return words, f"Now: {cards.problem}." if cards.problem else ""
+    return words, problem
 
 
 def sensor_line(told: Told, width: int) -> str:

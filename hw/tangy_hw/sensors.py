@@ -91,6 +91,14 @@ class SeenCard:
     columns: int
     stamp: float
 
+    @classmethod
+    def of(
+        cls, deck: Deck, card: int, marked: int, hidden: int, stamp: float, deck_seed: int
+    ) -> SeenCard:
+        """Return a card of a deck as it was read, with the numbers that it has."""
+        numbers = numbers_of(deck, card, deck_seed)
+        return cls(card, numbers, marked, hidden, deck.free, len(deck.columns), stamp)
+
 
 @dataclass(frozen=True, slots=True)
 class CardSight:
@@ -276,17 +284,8 @@ class Sensors:
         reading = reader.read(frame.image())
         if reading.card is None:
             return CardSight(self._cards.last, reading.problem, frame.stamp)
-        deck = reader.deck
-        numbers = numbers_of(deck, reading.card, self._deck_seed)
-        seen = SeenCard(
-            reading.card,
-            numbers,
-            reading.marked,
-            reading.hidden,
-            deck.free,
-            len(deck.columns),
-            frame.stamp,
-        )
+        marks = reading.marked, reading.hidden
+        seen = SeenCard.of(reader.deck, reading.card, *marks, frame.stamp, self._deck_seed)
         return CardSight(seen, "", frame.stamp)
 
 

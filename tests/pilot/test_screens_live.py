@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from time import sleep
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import pytest
 from textual.app import App
 
 from tangy_hw.devices import Pose
-from tangy_hw.robot_link import RobotLink
 from tangy_hw.world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
@@ -23,30 +20,12 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.asking import AskingPanel
-from tangy_tui.ui.screens.live import LiveScreen
-from tangy_tui.ui.terminal import TerminalKind
-from tests.hw.links import FakeLink, LaidCard
-from tests.pilot.conftest import StillClock, screen_text
+from tests.hw.links import LaidCard
+from tests.pilot.conftest import screen_text
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
-
-PEOPLE = ("user1", "user2", "user3", "user4")
-
-
-class HeldLink(FakeLink):
-    """A robot that does nothing to its end before it is let."""
-
-    def __init__(self) -> None:
-        super().__init__(PEOPLE)
-        self.free = True
-        self.most = 10_000
-        """So many lines it says, and then does nothing to its end."""
-
-    def wait(self, asked: Any, seconds: float = 0.0) -> bool:
-        free = self.free and len(self.said) <= self.most
-        sleep(0.005)  # or a game would be over before anybody has pressed a key
-        return free or any(told.startswith("stop") for told in self.told)
 
 
 @pytest.fixture
@@ -56,42 +35,12 @@ def link() -> HeldLink:
 
 @pytest.fixture
 def world(house: House, link: HeldLink) -> LiveWorld:
-    return LiveWorld(
-        house.activity,
-        PEOPLE,
-        cast(RobotLink, link),
-        house.robot,
-        house.room,
-        seed=1,
-        names=house.names,
-    )
+    return live_world(house, link)
 
 
 @pytest.fixture
 def program(house: House, world: LiveWorld, policy: Policy) -> Program:
-    supervision = house.supervision(policy, 1, asks=True, world=world)
-
-    async def start(program: Program) -> None:
-        await program.push_screen(LiveScreen(house, supervision, world, teacher="ann"))
-
-    return Program(house, start, kind=TerminalKind(full_screen=True), clock=StillClock())
-
-
-def live(pilot: TangyPilot) -> LiveScreen:
-    return next(s for s in pilot.app.screen_stack if isinstance(s, LiveScreen))
-
-
-async def until(pilot: TangyPilot, holds: Callable[[], bool]) -> None:
-    async with asyncio.timeout(20):
-        while not holds():
-            await pilot.pause(0.01)
-
-
-async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
-    """Let it do some steps, and pause."""
-    await until(pilot, lambda: live(pilot)._supervision.steps >= steps)
-    live(pilot)._going.clear()
-    await until(pilot, lambda: not live(pilot)._working)
+    return live_program(house, world, policy)
 
 
 async def asked_about_the_next(pilot: TangyPilot) -> None:

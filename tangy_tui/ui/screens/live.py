@@ -8,11 +8,13 @@ itself.
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from contextlib import suppress
 from math import pi
 from typing import ClassVar
 
 from textual.binding import BindingType
+from textual.screen import Screen
 
 from tangy_hw.world import LiveWorld
 from tangy_profiles.errors import TangyError
@@ -21,6 +23,8 @@ from tangy_profiles.state import FRONT
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Decision
 from tangy_tui.learning.verifying import Verified
+from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.sensing import LinkedSensors
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -31,7 +35,7 @@ from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.room_view import Mark, RoomView
-from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 TRACK_SECONDS = 0.2
 """Between two pictures of where the robot is."""
@@ -45,6 +49,7 @@ TOOK_OVER = "You say what Tangy does next."
 class LiveScreen(PlayScreen):
     """Games among people. Dismissed with what they added up to."""
 
+    MODE = "live"
     HELP = live_keys.HELP
     BINDINGS: ClassVar[list[BindingType]] = live_keys.BINDINGS
 
@@ -246,6 +251,21 @@ class LiveScreen(PlayScreen):
                 self._working = False
 
     # -------------------------------------------------------------------------------- picture
+
+    def _sensors_screen(self, shown: Callable[[], Status]) -> Screen[None]:
+        """Make the screen of the devices that the robot process has."""
+        from tangy_tui.ui.screens.sensors import SensorsScreen
+
+        house, benched = self._house, isinstance(self._world, BenchedWorld)
+        sensors = LinkedSensors(self._world.link, house.robot, house.activity.deck)
+        return SensorsScreen(
+            house,
+            sensors,
+            health=sensors.health,
+            shown=shown,
+            live=True,
+            where="on the bench" if benched else "",
+        )
 
     def _track(self) -> None:
         """Draw where the robot is, and what it knows of the floor."""

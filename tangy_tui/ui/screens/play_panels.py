@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from textual.app import ComposeResult
@@ -25,7 +26,7 @@ from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
-from tangy_tui.ui.widgets.status_line import StatusLine
+from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 CHOOSABLE = ("transcript", "policy", "posteriors", "log", "faults")
@@ -36,6 +37,8 @@ ON_THE_LEFT = ("log", "faults")
 class PlayPanels(TangyScreen[Tally]):
     """Room, steps, policy, posteriors, log and faults of the games that are supervised."""
 
+    MODE = "play"
+    """What the status line calls it."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
     def __init__(self, house: House, supervision: Supervision, who: str) -> None:
@@ -88,18 +91,21 @@ class PlayPanels(TangyScreen[Tally]):
 
     def action_sensors(self) -> None:
         """Show how all devices are, over the game, which goes on."""
-        from tangy_tui.ui.screens.sensors import SensorsScreen
-
-        eyes: Eyes | None = getattr(self.app, "eyes", None)
         try:
-            sensors = None if eyes is None else eyes.sensors()
+            screen = self._sensors_screen(lambda: self.query_one(StatusLine).status)
         except TangyError as error:
             self._tell_now(str(error), "warn")
             return
-        health = self._supervision.world.health
-        line = self.query_one(StatusLine)
-        screen = SensorsScreen(self._house, sensors, health=health, shown=lambda: line.status)
         self.app.push_screen(screen)
+
+    def _sensors_screen(self, shown: Callable[[], Status]) -> Screen[None]:
+        """Make the screen of devices: those of a simulated game, and cameras that are there."""
+        from tangy_tui.ui.screens.sensors import SensorsScreen
+
+        eyes: Eyes | None = getattr(self.app, "eyes", None)
+        sensors = None if eyes is None else eyes.sensors()
+        health = self._supervision.world.health
+        return SensorsScreen(self._house, sensors, health=health, shown=shown)
 
     def action_why(self) -> None:
         """Tell why: of the chosen step, of what Tangy asks, or of the last step."""

@@ -14,7 +14,7 @@ from textual.widget import Widget
 
 from tangy_profiles.health import Health
 from tangy_tui.house import House
-from tangy_tui.sensor_lines import Teller, Told, age_words, card_words
+from tangy_tui.sensor_lines import Sensing, Teller, Told, age_words, card_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -28,13 +28,13 @@ from tangy_tui.ui.widgets.rows import Row, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import CardSight, Sensors
+    from tangy_hw.sensors import CardSight
 
 LOOK_SECONDS = 0.25
 """How often the devices are told of, and how often a picture is drawn at most."""
 
 NO_SOURCE = (
-    "No camera is named. Give one when you start Tangy, as in: tangy sensors --camera camera=0; "
+    "No camera is named. Give one when you start Tangy, as in: tangy {} --camera camera=0; "
     "or write its source into the robot's file."
 )
 
@@ -65,8 +65,9 @@ class SensorsScreen(TangyScreen[None]):
     VERTICAL_BREAKPOINTS = LOW
     TITLE = "Sensors"
     HELP = (
-        "Every device of the robot, how it is in a word, and how old its newest data is. What a "
-        "simulated device says comes from the game, and from no sensor. v, or Enter on a camera, "
+        "Every device of the robot, how it is in a word, and how old its newest data is. A ~ "
+        "stands before one that is simulated: what it says comes from the game, and from no "
+        "sensor. v, or Enter on a camera, "
         "shows what it sees, and hides it again; nothing of it is kept. Below that is the last "
         "card as it was read: what could not be seen of it is hatched, and never guessed. tab "
         "goes to the picture, and + enlarges it. A camera that was unplugged is opened again by "
@@ -80,23 +81,29 @@ class SensorsScreen(TangyScreen[None]):
     def __init__(
         self,
         house: House,
-        sensors: Sensors | None = None,
+        sensors: Sensing | None = None,
         *,
         health: Callable[[], Health] = tuple,
         shown: Shown | None = None,
+        live: bool = False,
+        where: str = "",
     ) -> None:
         """Make the screen.
 
         Args:
             house: whose robot it is.
             sensors: its cameras; they are opened here, and closed with the screen.
-            health: what the simulated devices of a game say of themselves.
+            health: what the devices of a game say of themselves.
             shown: what the status line says of that game.
+            live: those devices are a robot's that is there.
+            where: in what way it is there, in a few words.
         """
         super().__init__()
         self._house = house
         self._sensors = sensors
-        self._teller = Teller(house.robot, sensors, health)
+        self._teller = Teller(house.robot, sensors, health, live=live)
+        self._no_source = NO_SOURCE.format("live" if live else "sensors")
+        self._where = where
         self._shown = shown
         self._told: dict[str, Told] = {}
         self._frames: dict[Widget, tuple[str | None, str | None]] = {}
@@ -225,7 +232,7 @@ class SensorsScreen(TangyScreen[None]):
         devices = self._devices
         devices.show(self._device_lines)
         simulated = any(told.code and not told.live for told in self._told.values())
-        self._frame(devices, below="~ simulated" if simulated else "")
+        self._frame(devices, below="~ simulated" if simulated else self._where)
         self._tell_of_chosen()
         self._tell_of_card()
 
@@ -242,8 +249,8 @@ class SensorsScreen(TangyScreen[None]):
         picture = self.query_one(BlockPicture)
         below = ""
         if not self._cameras:
-            picture.say(NO_SOURCE)
-        elif not told.live:
+            picture.say(self._no_source)
+        elif told.device.name not in self._cameras:
             picture.say(f"No pictures come from the {told.device.label}.")
         elif not self._seen:
             picture.say(f"v shows what the {told.device.label} sees.")

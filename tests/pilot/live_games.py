@@ -1,0 +1,78 @@
+"""Live games for tests of screens: a robot process that is none, and a program."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from time import sleep
+from typing import TYPE_CHECKING, Any, cast
+
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.world import LiveWorld
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.live import LiveScreen
+from tangy_tui.ui.terminal import TerminalKind
+from tests.hw.links import FakeLink
+from tests.pilot.conftest import StillClock
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import TangyPilot
+
+PEOPLE = ("user1", "user2", "user3", "user4")
+
+
+class HeldLink(FakeLink):
+    """A robot that does nothing to its end before it is let."""
+
+    def __init__(self) -> None:
+        super().__init__(PEOPLE)
+        self.free = True
+        self.most = 10_000
+        """So many lines it says, and then does nothing to its end."""
+
+    def wait(self, asked: Any, seconds: float = 0.0) -> bool:
+        free = self.free and len(self.said) <= self.most
+        sleep(0.005)  # or a game would be over before anybody has pressed a key
+        return free or any(told.startswith("stop") for told in self.told)
+
+
+def live_world(house: House, link: HeldLink) -> LiveWorld:
+    """Make the world of a robot."""
+    return LiveWorld(
+        house.activity,
+        PEOPLE,
+        cast(RobotLink, link),
+        house.robot,
+        house.room,
+        seed=1,
+        names=house.names,
+    )
+
+
+def live_program(house: House, world: LiveWorld, policy: Policy) -> Program:
+    """Make a program that opens with the live screen."""
+    supervision = house.supervision(policy, 1, asks=True, world=world)
+
+    async def start(program: Program) -> None:
+        await program.push_screen(LiveScreen(house, supervision, world, teacher="ann"))
+
+    return Program(house, start, kind=TerminalKind(full_screen=True), clock=StillClock())
+
+
+def live(pilot: TangyPilot) -> LiveScreen:
+    return next(s for s in pilot.app.screen_stack if isinstance(s, LiveScreen))
+
+
+async def until(pilot: TangyPilot, holds: Callable[[], bool]) -> None:
+    async with asyncio.timeout(20):
+        while not holds():
+            await pilot.pause(0.01)
+
+
+async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
+    """Let it do some steps, and pause."""
+    await until(pilot, lambda: live(pilot)._supervision.steps >= steps)
+    live(pilot)._going.clear()
+    await until(pilot, lambda: not live(pilot)._working)
