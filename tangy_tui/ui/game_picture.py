@@ -106,11 +106,11 @@ class GamePicture:
                 case GameEnded(_, steps, str(reason)):
                     log.write(f"The game stopped after {counted(steps, 'step')}. {reason}", "bad")
 
-    def show_status(self, robot: str, note: str) -> None:
+    def show_status(self, robot: str, note: str, mode: str) -> None:
         """Say how the robot is, where in the game it is, and what else is to be said."""
         self._screen.query_one(StatusLine).show(
             Status(
-                mode="play",
+                mode=mode,
                 robot=robot,
                 stage="over" if self._supervision.over else self._stage,
                 game=self._game,

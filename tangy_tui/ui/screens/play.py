@@ -357,7 +357,7 @@ class PlayScreen(PlayAsking):
             robot = "ASKS"
         if self._stopped:
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
-        self._picture.show_status(robot, self._note())
+        self._picture.show_status(robot, self._note(), self.MODE)
         going = self._going.is_set()
         self.query_one(KeyLine).show(*keys(going=going, over=self._supervision.over))
         if asking is not None:
