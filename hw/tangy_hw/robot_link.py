@@ -11,7 +11,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import suppress
@@ -91,8 +90,6 @@ class RobotLink:
     def __init__(self, setup: RobotSetup, *, log: Path | None = None) -> None:
         """Prepare it; `log` takes what it writes beside its lines."""
         self.setup = setup
-        self.changed: Callable[[], None] = _nothing
-        """Is called, from the reader's thread, when the robot has told something."""
         self.screen = ""
         """The address of the chest screen's page, where it is one."""
         self._log = log
@@ -290,7 +287,6 @@ class RobotLink:
             if not asked.done():
                 asked.set_exception(BrokenOff(self._told.ended))
         self._asked.clear()
-        self.changed()
 
     def _take(self, said: dict[str, Any]) -> None:
         self._told.heard = time.monotonic()
@@ -300,7 +296,6 @@ class RobotLink:
             self._told.time = max(self._told.time, self._told.state.time)
             with self._said:
                 self._said.notify_all()
-            self.changed()
             return
         asked = self._asked.pop(said.get("id", 0), None)
         if asked is None or asked.done():
@@ -310,7 +305,3 @@ class RobotLink:
             asked.set_exception(kind(said["failed"]))
         else:
             asked.set_result(said.get("done", {}))
-
-
-def _nothing() -> None:
-    """Do nothing."""
