@@ -239,7 +239,7 @@ class LiveRobot:
         self.navigator.spin()
         await self._drive(SPIN_SECONDS)
         estimate = self.navigator.estimate
-        found = estimate is not None and not estimate.lost
+        found = estimate is not None and estimate.found
         if found:
             self._evidence.found()
         return found

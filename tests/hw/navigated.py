@@ -12,7 +12,7 @@ from tangy_hw.navigation.navigator import Navigator, State
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.poses import wrap
 from tangy_profiles.room import load_room
-from tests.hw.raycast import Wheels, driven, look, room_sides
+from tests.hw.raycast import Segments, Wheels, driven, look, room_sides
 
 ROOM = load_room()
 MAP = map_of_room(ROOM)
@@ -37,6 +37,7 @@ class DrivenRobot:
         self.rng = np.random.default_rng(seed)
         self.true, self.wheels = FRONT, Wheels(self.rng)
         self.boxes = list(boxes)
+        self.elsewhere: Segments | None = None  # what it sees instead of the room
         self.grip = 1.0
         self.stuck = self.blind = False
         self.twist, self.time = STILL, 0.0
@@ -47,7 +48,7 @@ class DrivenRobot:
     def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
         """Let time pass; say whether it came to what was waited for."""
         for _ in range(round(seconds * 10)):
-            sides = room_sides(ROOM, *self.boxes)
+            sides = self.elsewhere if self.elsewhere is not None else room_sides(ROOM, *self.boxes)
             scan = None if self.blind else look(sides, self.true, self.rng, beams=240)
             odometry = Odometry(self.wheels.pose, self.twist)
             told = self.navigator.tick(odometry, scan, 0.1)

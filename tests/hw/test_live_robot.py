@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from tangy_hw import robot as robots
-from tangy_hw.devices import MachineClock
+from tangy_hw.devices import STILL, MachineClock
+from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot import BrokenOff, LiveRobot
 from tangy_profiles.robot import load_robot
@@ -73,3 +74,28 @@ class TestStop:
                 await soon(doing)
             await stopping
             assert parts.told[-2:] == ["hold", "hush"]
+
+
+class TestSpin:
+    @pytest.mark.parametrize(
+        ("fit", "spread", "settled", "found"),
+        [
+            (1.0, 0.1, True, True),
+            (0.5, 0.1, True, True),  # somebody stands before it
+            (1.0, 0.1, False, False),
+            (1.0, 0.6, True, False),  # it might be elsewhere as well
+            (0.5, 0.6, True, False),
+        ],
+    )
+    async def test_it_has_found_its_place_when_it_believes_in_one(
+        self, fit: float, spread: float, settled: bool, found: bool
+    ) -> None:
+        estimate = Estimate(HERE, np.eye(3), spread, fit, 300, settled)
+        async with living() as (robot, _):
+            with (
+                patch.object(Navigator, "estimate", estimate),
+                patch.object(Navigator, "state", "idle", create=True),
+                patch.object(Navigator, "tick", return_value=STILL),
+                patch.object(robot.navigator, "spin"),
+            ):
+                assert await soon(robot.spin()) is found

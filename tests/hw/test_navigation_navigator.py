@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+import numpy as np
 import pytest
 
 from tangy_hw.devices import STILL, Pose
@@ -116,6 +117,27 @@ class TestFaults:
         facts = robot.navigator.facts()
         assert float(facts["fit"]) < 0.85 and float(facts["spread"]) > 0.5
         assert robot.arrives(120) and robot.off(at_seat(0))[0] < 0.15
+
+    def test_one_that_is_lost_for_good_gives_up_after_two_turns(self) -> None:
+        robot = DrivenRobot(seed=1)
+        robot.navigator.go(at_seat(0))
+        robot.run(5)
+        hall = np.array([(16, 7, 0, 9), (0, 9, 6, -6), (6, -6, 16, 7)], float)
+        robot.elsewhere, robot.true = hall, Pose(5, 2.5, 0)
+        assert robot.run(20, lambda: robot.navigator.state == "spinning")
+        turned = []
+
+        def given_up() -> bool:
+            turned.append(robot.twist.turn * 0.1)
+            return robot.navigator.state == "failed"
+
+        assert robot.run(60, given_up)
+        assert sum(turned) == pytest.approx(4 * pi, abs=0.2)
+        assert robot.navigator.why == "It does not find its place."
+        estimate = robot.navigator.estimate
+        assert estimate is not None and not estimate.found
+        robot.run(1)
+        assert robot.twist == STILL and robot.navigator.state == "failed"
 
     def test_told_to_it_turns_once_and_stands(self) -> None:
         robot = DrivenRobot()

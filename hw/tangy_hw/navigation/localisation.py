@@ -21,6 +21,7 @@ from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
 from tangy_hw.navigation.searching import Search
 
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
+WIDE = 0.5  # metres of spread from which on it thinks more than one place possible
 DOUBT = 0.95  # of the usual fit: below this a scan says little about what is usual
 MOVED, TURNED = 0.1, 0.1  # metres and radians after which the particles are weighed again
 FAST, SLOW = 0.1, 0.002  # shares of a new value in the averages of the fit
@@ -62,7 +63,12 @@ class Estimate:
     @property
     def lost(self) -> bool:
         """Whether it looks as if the robot were not where it thinks."""
-        return self.fit < LOST and self.spread > 0.5
+        return self.fit < LOST and self.spread > WIDE
+
+    @property
+    def found(self) -> bool:
+        """Whether it knows where it is: one place is believed, and no other is thought possible."""
+        return self.settled and not self.lost and self.spread < WIDE
 
 
 class Localisation:

@@ -24,13 +24,14 @@ from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
 """Nothing to do; on its way; turning to find itself; on another way; no way just now; there; there
-can never be a way."""
+can never be a way, or it does not find itself."""
 
 PATIENCE = 1.0  # seconds something may stand in the way until another way is looked for
 AGAIN = 1.0  # seconds between two looks for a way while there is none
 NO_WAY = 2.0  # seconds without a way until it is said that there is none
 PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
 SPIN = 0.5  # rad/s while it looks around
+LOOKS_ROUND = 2  # full turns without having found itself until it gives the drive up
 ASTRAY = 0.5  # metres off its path at which it looks for another
 LOOK_AHEAD = 50  # points of the path that are watched for obstacles: 2.5 m
 TAKEN = 0.6  # metres gone on another way until it is said to be one: it may end as well
@@ -222,6 +223,9 @@ class Navigator:
         self._turned += abs(odometry.twist.turn) * dt
         if self.goal is not None:  # it turns until it has found itself
             done = estimate.settled and not estimate.lost and self._turned > pi / 2
+            if not done and self._turned >= LOOKS_ROUND * 2 * pi:
+                self.state, self.why = "failed", "It does not find its place."
+                return STILL
         else:
             done = self._turned >= abs(self._turn_to)
         if done:
