@@ -60,6 +60,11 @@ class Wheels:
         )
         self._told = now
 
+    @property
+    def commanded(self) -> tuple[float, float]:
+        """The command that holds, in m/s and rad/s; zeros where none does."""
+        return self._wanted if self._told is not None else (0.0, 0.0)
+
     def halt(self) -> None:
         """Stand still at once, as with the power cut."""
         self.forward = self.turn = 0.0
@@ -82,7 +87,7 @@ class Wheels:
     def _step(self, now: float, seconds: float, stuck: bool, grip: float) -> None:
         if self._told is not None and now - self._told > SILENCE + 1e-9:
             self._told = None
-        forward, turn = self._wanted if self._told is not None else (0.0, 0.0)
+        forward, turn = self.commanded
         brakes = abs(forward) < abs(self.forward) or forward * self.forward < 0
         self.forward = _towards(self.forward, forward, (BRAKES if brakes else SPEEDS_UP) * seconds)
         self.turn = _towards(self.turn, turn, TURNS_UP * seconds)

@@ -308,6 +308,7 @@ class BenchWorld:
             "game": self.games,
             "pose": [round(value, 4) for value in pose],
             "place": self.nearest(),
+            "commanded": list(self.wheels.commanded),
             "moving": bool(self.wheels.forward or self.wheels.turn),
             "bumped": self.wheels.bumped,
             "asking": list(self.asking),
