@@ -94,6 +94,8 @@ class LiveWorld:
         self._numbers = self.activity.deck.shuffled(self._order.random)
         self.cards.view = None
         self.requests = SeenRequests(self.people, self.link)
+        self.sitting: dict[str, str] = {}
+        """Who was seen at whose place in this game, where it is not who sits there usually."""
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -208,8 +210,11 @@ class LiveWorld:
         return all(reading.state == OK for reading in health if reading.device == "voice")
 
     def name_of(self, person: str | None) -> str:
-        """Return what somebody is called, "" for nobody."""
-        return "" if person is None else self._names.get(person, person)
+        """Return what whoever sits at somebody's place is called, "" for nobody."""
+        if person is None:
+            return ""
+        person = self.sitting.get(person, person)
+        return self._names.get(person, person)
 
     def _keep_pace(self) -> None:
         wait = self._due - self.link.time
@@ -224,10 +229,19 @@ class LiveWorld:
         self.cards.view = None
         if place != FRONT:
             if self._knows_faces:
-                self.cards.looked("face", place, self.commands.do("face").get("person"))
+                self._see_who(place)
             if place in self.tracker.queue:
                 self.read_card(place)
         return True
+
+    def _see_who(self, place: str) -> None:
+        """Look who sits at a place: that person is spoken to, and what they do is theirs."""
+        person = self.commands.do("face").get("person")
+        self.cards.looked("face", place, person)
+        if person in self.people:
+            self.sitting.pop(place, None)
+            if person != place:
+                self.sitting[place] = person
 
     def drive(self, place: str) -> bool:
         """Drive to a place, whatever the game has of it; return whether it has arrived.
@@ -262,7 +276,8 @@ class LiveWorld:
 
     def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
         """Watch what the person beside the robot does about it; None: that cannot be seen."""
-        person, patience = self.tracker.place, self.activity.patience
+        place, patience = self.tracker.place, self.activity.patience
+        person = self.sitting.get(place, place)
         began = before = self.link.time
         reminded = False
         while True:
@@ -277,7 +292,7 @@ class LiveWorld:
                 return Response(person, action.strategy, False, False, now - began)
             if now - began > patience and not reminded:
                 reminded = True
-                name = self.name_of(person)
+                name = self.name_of(place)
                 words = self.activity.fill(action.image, name, numbers)
                 self.say("", Picture(words, asks=name))
             before = now

@@ -7,6 +7,7 @@ bench would do by hand: deal cards, bring a fault about, lift it, and look how t
 from __future__ import annotations
 
 import json
+import select
 import subprocess
 import sys
 import threading
@@ -21,6 +22,7 @@ from tangy_profiles.worker_log import open_log
 
 CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench")
 END_SECONDS = 3.0
+ANSWER_SECONDS = 60.0  # for what it does at once; much less than that on a machine at rest
 
 
 class BenchError(TangyError):
@@ -133,6 +135,8 @@ class Bench:
 
     def _read(self) -> dict[str, Any]:
         assert self._process.stdout is not None  # noqa: S101 - it was asked for
+        if not select.select([self._process.stdout], [], [], ANSWER_SECONDS)[0]:
+            raise BenchError("The bench does not answer.")
         line = self._process.stdout.readline()
         try:
             answer = json.loads(line)

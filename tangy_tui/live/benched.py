@@ -38,7 +38,7 @@ class Score:
     reads: Counter[str] = field(default_factory=Counter)
     identities: Counter[str] = field(default_factory=Counter)
     off: list[float] = field(default_factory=list)
-    """How far off the robot believed to be after each drive, in metres."""
+    """How far off the robot believed to be after each drive, arrived or not, in metres."""
 
     def to_json(self) -> dict[str, Any]:
         """Return it as `tangy live --json` prints it."""
@@ -177,7 +177,7 @@ class BenchedWorld(LiveWorld):
         if not self.over:
             self._let_faults_come(action)
         outcome = super().execute(action)
-        if action.behaviour.effect in DRIVES and outcome.completed:
+        if action.behaviour.effect in DRIVES:
             self._note_place()
         return outcome
 
@@ -223,10 +223,12 @@ class BenchedWorld(LiveWorld):
     def _check(self, what: str, place: str, seen: Any) -> None:
         """Count something that was seen, by how it really is."""
         if what == "face":
-            word = "unknown" if seen is None else "right" if seen == place else "wrong"
+            there = self.truth()["place"]
+            word = "unknown" if seen is None else "right" if seen == there else "wrong"
             self.score.identities[word] += 1
             return
-        there = self.truth()["people"][place]
+        truth = self.truth()
+        there = truth["people"].get(truth["place"], {"card": None, "marked": 0})
         if seen["card"] is None or seen["state"] == self.activity.unread:
             self.score.reads["hidden"] += 1
             return
@@ -235,8 +237,8 @@ class BenchedWorld(LiveWorld):
         self.score.reads["right" if same else "wrong"] += 1
 
     def _note_place(self) -> None:
-        """Note how far off the robot believes to be, now that it has arrived."""
-        if not self.link.setup.stepped:
+        """Note how far off the robot believes to be after a drive, wherever that has ended."""
+        if not self.link.setup.stepped or self.link.silent:
             return
         x, y, _ = self.truth()["pose"]
         pose = self.link.beat().pose

@@ -264,6 +264,21 @@ def test_faces_are_looked_at_where_they_are_known(link: FakeLink) -> None:
     assert seen[0] == ("face", "user2", None) and seen[1][:2] == ("card", "user2")
 
 
+def test_whoever_sits_at_somebody_elses_place_is_spoken_to_and_learnt_of(link: FakeLink) -> None:
+    world = world_of(link, knows_faces=True)
+    link.faces["user2"] = "user4"
+    beside(world, link, 2, LaidCard(CARD))
+    assert world.sitting == {"user2": "user4"}
+    link.meanwhile = lambda do, _: link.sign() if do == "wait" else None
+    outcome = do(world, "encourage", "user2", "praise")
+    assert "Dan" in link.said[-1] and "Ben" not in link.said[-1]
+    assert outcome.response is not None and outcome.response.person == "user4"
+
+    link.faces["user2"] = "user2"
+    beside(world, link, 2, LaidCard(CARD))
+    assert not world.sitting
+
+
 def test_a_call_can_be_taken_back_and_comes_again(world: LiveWorld, link: FakeLink) -> None:
     opened(world)
     assert world.void_call() is None

@@ -169,7 +169,7 @@ def seconds_to_zero(bench: Bench) -> float:
     """How long after the last scan the base is told to stand, when the scanner falls silent now."""
     began = time.monotonic()
     bench.do("inject", kind="laser-disconnected")
-    since_scan = (bench.do("truth")["truth"]["time"] - FIRST_SCAN) % SCANS
+    since_scan = float(bench.do("truth")["truth"]["time"] - FIRST_SCAN) % SCANS
     while any(bench.do("truth")["truth"]["commanded"]):
         assert time.monotonic() < began + PATIENCE
         time.sleep(0.003)
