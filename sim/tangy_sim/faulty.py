@@ -19,6 +19,7 @@ from tangy_sim import injection
 from tangy_sim.body import readings
 from tangy_sim.compliance import Preferences
 from tangy_sim.injection import KINDS, Injection, Kind
+from tangy_sim.to_come import ToCome
 from tangy_sim.users import Player, UserModel
 from tangy_sim.world import SimulatedWorld
 
@@ -70,7 +71,7 @@ class FaultyWorld(SimulatedWorld):
         self.present: dict[str, Present] = {}
         self.came: list[tuple[int, str]] = []
         """The faults that set in, and at which step."""
-        self._to_come = list(self.injections)
+        self._to_come = ToCome(self.injections, self._chance)
         self._unheard: list[Player] = []
         self._by_word = False  # whether requests are taken by voice and key
         self._refused = False
@@ -85,7 +86,7 @@ class FaultyWorld(SimulatedWorld):
     @property
     def still_to_come(self) -> list[str]:
         """The injections that have not come about in this game, but for those by chance."""
-        return [str(one) for one in self._to_come if one.chance is None]
+        return self._to_come.words
 
     # ------------------------------------------------------------------- faults come and go
 
@@ -99,12 +100,12 @@ class FaultyWorld(SimulatedWorld):
         if chosen.shows in (injection.AT_ONCE, injection.DRIVING):
             self._set_in(chosen, self.seconds - NOTICED)
         else:
-            self._to_come.append(Injection(chosen))
+            self._to_come.add(chosen)
 
     def lift(self, kind: str) -> None:
         """Put a fault right, whether it is there or to come."""
         self.present.pop(kind, None)
-        self._to_come = [i for i in self._to_come if i.kind.name != kind or i in self.injections]
+        self._to_come.drop(kind)
         if kind == "requests-silent":
             self._hear()
 
@@ -177,20 +178,11 @@ class FaultyWorld(SimulatedWorld):
         return None
 
     def _let_faults_come(self, action: Action) -> None:
-        step, left = self.tracker.step + 1, list[Injection]()
-        for one in self._to_come:
-            if one.chance is not None:
-                left.append(one)
-                comes = self._chance() < one.chance
-            elif one.step is not None:
-                comes = one.step == step
-            else:
-                comes = not one.in_recovery and self.can_show(one.kind, action)
-            if comes and one.kind.name not in self.present:
-                self._set_in(one.kind, self.seconds)
-            elif one.chance is None and not comes:
-                left.append(one)
-        self._to_come = left
+        for kind in self._to_come.due(
+            self.tracker.step + 1, lambda kind: self.can_show(kind, action)
+        ):
+            if kind.name not in self.present:
+                self._set_in(kind, self.seconds)
 
     # ----------------------------------------------------------------- what is done meanwhile
 
@@ -348,10 +340,9 @@ class FaultyWorld(SimulatedWorld):
         seconds = SECONDS.get(remedy.kind, 0.0)
         if seconds and not self.over:
             self._pass(seconds / self.users.call_seconds)
-        for one in [i for i in self._to_come if i.in_recovery]:
-            self._to_come.remove(one)
-            if one.kind.name not in self.present:
-                self._set_in(one.kind, self.seconds - NOTICED)
+        for kind in self._to_come.due_in_recovery():
+            if kind.name not in self.present:
+                self._set_in(kind, self.seconds - NOTICED)
         found = [f.kind.name for f in self.present.values() if f.kind.code == remedy.fault]
         match remedy.kind:
             case "ask":

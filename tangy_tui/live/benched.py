@@ -23,6 +23,7 @@ from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim import injection
 from tangy_sim.bench.tablet import Tablet
 from tangy_sim.injection import KINDS, Injection, Kind
+from tangy_sim.to_come import ToCome
 from tangy_tui.live.bench import Bench, BenchError
 
 DRIVES = ("go to user", "go to front")
@@ -66,8 +67,8 @@ class BenchedWorld(LiveWorld):
         self.injections = tuple(injections)
         self.score = Score()
         self.came: list[tuple[int, str]] = []
-        self._to_come: list[Injection] = []
         self._chance = Random(f"{seed}/faults").random
+        self._to_come = ToCome((), self._chance)
         self.cards.looked = self._check
         screen = self.link.screen
         self._tablet = Tablet(screen, self._read) if screen else None
@@ -89,14 +90,14 @@ class BenchedWorld(LiveWorld):
         self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
         self.came = []
-        self._to_come = list(self.injections)
+        self._to_come = ToCome(self.injections, self._chance)
         self._pass_until(lambda: not self.commands.diagnosed(self.health()))
         return super().begin()
 
     @property
     def still_to_come(self) -> list[str]:
         """The injections that have not come about in this game, but for those by chance."""
-        return [str(one) for one in self._to_come if one.chance is None]
+        return self._to_come.words
 
     @property
     def present(self) -> list[str]:
@@ -182,23 +183,16 @@ class BenchedWorld(LiveWorld):
         return outcome
 
     def _let_faults_come(self, action: Action) -> None:
-        step, left = self.tracker.step + 1, list[Injection]()
-        for one in self._to_come:
-            if one.chance is not None:
-                left.append(one)
-                comes = self._chance() < one.chance
-            elif one.step is not None:
-                comes = one.step == step
-            else:
-                comes = not one.in_recovery and self.can_show(one.kind, action)
-            if comes:
-                self.inject(one.kind.name)
-            elif one.chance is None:
-                left.append(one)
-        self._to_come = left
+        step = self.tracker.step + 1
+        for kind in self._to_come.due(step, lambda kind: self.can_show(kind, action)):
+            if kind.name not in self.present:
+                self.inject(kind.name)
 
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, somebody at the table or an expert do something about a fault."""
+        for kind in self._to_come.due_in_recovery():
+            if kind.name not in self.present:
+                self.inject(kind.name)
         if remedy.kind == "call expert":
             return self._expert_comes(remedy)
         if remedy.kind == "restart":

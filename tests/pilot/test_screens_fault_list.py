@@ -221,7 +221,7 @@ async def test_what_is_still_to_come_can_be_lifted(run: Run, house: House, polic
         assert "to come: enter lifts it" in pilot.text()
         await pilot.press("enter")
         await until(pilot, lambda: pilot.app.screen is screen)
-        assert not world._to_come
+        assert not world.still_to_come
 
 
 async def test_all_kinds_can_be_chosen(run: Run) -> None:

@@ -1,0 +1,53 @@
+"""The faults that are still to come in a game, and when each of them does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tangy_sim.injection import Injection, Kind
+
+
+class ToCome:
+    """What is to be brought about in one game and has not been yet."""
+
+    def __init__(self, injections: Sequence[Injection], chance: Callable[[], float]) -> None:
+        """Begin a game; `chance` draws a number from 0 to 1 for those that come by chance."""
+        self._given = tuple(injections)
+        self._left = list(injections)
+        self._chance = chance
+
+    @property
+    def words(self) -> list[str]:
+        """The injections that have not come about, but for those by chance."""
+        return [str(one) for one in self._left if one.chance is None]
+
+    def add(self, kind: Kind) -> None:
+        """Let a fault come as soon as it can show."""
+        self._left.append(Injection(kind))
+
+    def drop(self, kind: str) -> None:
+        """Let a fault that was added not come; those that were given stay."""
+        self._left = [i for i in self._left if i.kind.name != kind or i in self._given]
+
+    def due(self, step: int, can_show: Callable[[Kind], bool]) -> list[Kind]:
+        """Return the faults that come at a step, by `can_show` where that decides."""
+        come, left = list[Kind](), list[Injection]()
+        for one in self._left:
+            if one.chance is not None:
+                comes = self._chance() < one.chance
+            elif one.step is not None:
+                comes = one.step == step
+            else:
+                comes = not one.in_recovery and can_show(one.kind)
+            if comes:
+                come.append(one.kind)
+            if one.chance is not None or not comes:
+                left.append(one)
+        self._left = left
+        return come
+
+    def due_in_recovery(self) -> list[Kind]:
+        """Return the faults that come while another one is being recovered from."""
+        come = [one for one in self._left if one.in_recovery]
+        self._left = [one for one in self._left if not one.in_recovery]
+        return [one.kind for one in come]
