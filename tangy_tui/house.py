@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.person import Person, load_people
+from tangy_profiles.person import Person, folded, load_people
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
@@ -111,7 +111,7 @@ class House:
             TangyError: nobody, or more than one, is called that.
         """
         by_id = [p for p in self.people if p.id == wanted]
-        found = by_id or [p for p in self.people if p.name.casefold() == wanted.casefold()]
+        found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
         if len(found) == 1:
             return found[0]
         if found:
@@ -128,12 +128,12 @@ class House:
             TangyError: the name is somebody else's name or id, or a place, or means something
                 else where it is said.
         """
-        wanted = name.strip().casefold()
+        wanted = folded(name)
         taken = {FRONT: "is a place"}
         for other in self.people:
             if other.id != person.id:
                 taken |= dict.fromkeys(
-                    (other.id.casefold(), other.name.casefold()), f"is what {other.id} is called"
+                    (folded(other.id), folded(other.name)), f"is what {other.id} is called"
                 )
         if wanted in taken:
             raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +14,11 @@ from tangy_profiles.voice import VoicePreference
 
 MOST_PEOPLE = 8
 AS_EVERYBODY = VoicePreference()
+
+
+def folded(name: str) -> str:
+    """Return a name as names are compared: by small letters, an accent however it is written."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.person import MOST_PEOPLE, Person
+from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, open_house, print_json
 
@@ -180,9 +180,9 @@ def find_anybody(house: House, wanted: str) -> Person:
     """
     guests = [Person(id, name) for id, name in house.store.names().items() if id.startswith(GUEST)]
     found = [guest for guest in guests if guest.id == wanted] or [
-        guest for guest in guests if guest.name.casefold() == wanted.casefold()
+        guest for guest in guests if folded(guest.name) == folded(wanted)
     ]
-    if len(found) == 1 and not any(p.name.casefold() == wanted.casefold() for p in house.people):
+    if len(found) == 1 and not any(folded(p.name) == folded(wanted) for p in house.people):
         return found[0]
     return house.find_person(wanted)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.person import Person
+from tangy_profiles.person import Person, folded
 from tangy_profiles.reading import plain
 from tangy_profiles.state import FRONT
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
@@ -122,12 +122,12 @@ def _find(house: House, wanted: str) -> tuple[Person, bool]:
     from tangy_hw.perception.faces.keeping import CONSENT
 
     called = wanted.strip()
-    if called.casefold() == FRONT:
+    if folded(called) == FRONT:
         raise TangyError(plain(f"{called!r} is a place: choose another name."))
-    players = [p for p in house.people if called.casefold() in (p.id, p.name.casefold())]
+    players = [p for p in house.people if folded(called) in (p.id, folded(p.name))]
     names = house.store.names()
     guests = [i for i in names if i.startswith(GUEST)]
-    if players or called in guests or called.casefold() in {names[i].casefold() for i in guests}:
+    if players or called in guests or folded(called) in {folded(names[i]) for i in guests}:
         return find_anybody(house, called), False
     ids = {*names, *(event.person or "" for event in house.store.events(CONSENT))}
     numbers = [int(i.removeprefix(GUEST)) for i in ids if re.fullmatch(rf"{GUEST}\d{{1,9}}", i)]
