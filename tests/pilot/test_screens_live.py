@@ -69,6 +69,22 @@ async def test_staff_see_where_the_robot_is_and_where_it_goes(
         assert "·" in shown
 
 
+async def test_where_it_drives_to_is_seen_in_a_small_window(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(80, 24)) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        link.free = False
+        try:
+            await until(pilot, lambda: live(pilot)._working)
+            link.state = replace(link.state, going="user1")
+            await until(pilot, lambda: "drives to User 1" in pilot.lines()[0])
+            told = pilot.lines()[0]
+            assert "TANGY live" in told and "robot OK" in told and "FACILITATE" in told
+        finally:
+            link.free = True
+
+
 async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
     run: Run, program: Program, link: HeldLink
 ) -> None:

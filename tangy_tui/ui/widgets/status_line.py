@@ -14,13 +14,15 @@ from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
 
 STOP = "^x STOP"
+GAP = " │ "
 
 
 @dataclass(frozen=True, slots=True)
 class Status:
     """What the status line says; empty parts are left out.
 
-    `robot` and STOP are seen at every width; the others go from the right when there is no room.
+    `robot` and STOP are seen at every width; where there is no room the step goes first, as its
+    list has it as well, and then the others from the right.
     `alarm` writes the robot's part as a warning, with a mark; `seen` says how much was shown.
     """
 
@@ -77,15 +79,18 @@ class StatusLine(Widget):
             parts.append((f"game {status.game}", "text"))
         if status.seen:
             parts.append((f"seen {clean(status.seen)}", "text"))
-        if status.step is not None:
-            parts.append((f"step {status.step}", "text"))
+        room = width - len(STOP) - 1
         if status.note:
             parts.append((clean(status.note), "dim"))
-        room = width - len(STOP) - 1
+        if status.step is not None:
+            with_step = list(parts)
+            with_step.insert(len(parts) - bool(status.note), (f"step {status.step}", "text"))
+            if sum(cell_len(text) + len(GAP) for text, _ in with_step) - len(GAP) <= room:
+                parts = with_step
         row: list[Span] = []
         used = 0
         for n, (text, name) in enumerate(parts):
-            gap = " │ " if row else ""
+            gap = GAP if row else ""
             left = room - used - len(gap)
             if n >= 2 and cell_len(text) > left and (n < len(parts) - 1 or left < 12):
                 break
