@@ -135,6 +135,23 @@ async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> No
         assert live(pilot)._supervision.question is not None
 
 
+async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
+    run: Run, program: Program
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await pilot.press("o")
+        await until(pilot, lambda: bool(live(pilot).query(AskingPanel)))
+        await pilot.press("escape")  # out of the line
+        await until(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
+        steps = live(pilot)._supervision.steps
+        await pilot.press("escape")
+        await until(pilot, lambda: live(pilot)._supervision.steps > steps)
+        assert not live(pilot)._supervision.over and live(pilot).is_current
+        assert not live(pilot).query(AskingPanel)
+        assert "Tangy goes on by itself." in screen_text(pilot.app)
+
+
 async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLink) -> None:
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)

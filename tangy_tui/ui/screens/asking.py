@@ -46,12 +46,11 @@ from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.wording import ALL_RIGHT, counted, state_words
 
 ResultT = TypeVar("ResultT")
-
-
 HELD = "Tangy was stopped: press p to go on first, then answer."
 
 KEYS = "w why   : answer   p {}   esc give the game up"
 ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
+OWN_KEYS = "w why   : answer   p {}   esc let Tangy go on by itself"
 """The keys that count while the line does not have them."""
 TALK = "t talk   "
 """What stands before them where a key is pushed to talk."""
@@ -125,9 +124,18 @@ class AskingPanel(Vertical):
         """Why was typed: the grounds are to be shown."""
 
     def __init__(
-        self, house: House, supervision: Supervision, question: Unsure, before: str = ""
+        self,
+        house: House,
+        supervision: Supervision,
+        question: Unsure,
+        before: str = "",
+        *,
+        wanted: bool = False,
     ) -> None:
-        """Make the panel for a question of Tangy's; `before` says what was learnt from the last."""
+        """Make the panel for a question; `before` says what was learnt from the last answer.
+
+        Where it was `wanted` to be asked, who leaves it lets Tangy go on by itself.
+        """
         super().__init__(id="asking")
         self._house = house
         self._supervision = supervision
@@ -143,6 +151,7 @@ class AskingPanel(Vertical):
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
+        self._wanted = wanted
         self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"
 
@@ -181,7 +190,8 @@ class AskingPanel(Vertical):
 
     @property
     def _keys(self) -> str:
-        return (TALK if self._by_key else "") + (ACCEPTING_KEYS if self._acceptable else KEYS)
+        own = OWN_KEYS if self._wanted else KEYS
+        return (TALK if self._by_key else "") + (ACCEPTING_KEYS if self._acceptable else own)
 
     def _take_keys(self) -> None:
         if self._by_key:
@@ -218,8 +228,10 @@ class AskingPanel(Vertical):
         return self._acceptable
 
     def ask_to_give_up(self) -> None:
-        """Give the game up, if that is meant."""
-        if self._dialog is None:
+        """Give the game up, if that is meant; or let Tangy go on, if staff wanted to be asked."""
+        if self._wanted:
+            self.withdraw()
+        elif self._dialog is None:
             self.screen.run_worker(self._confirm(), name="give up", group="give up")
 
     async def _confirm(self) -> None:

@@ -118,7 +118,10 @@ class LiveScreen(PlayScreen):
             self._taking_over = False
             supervision.game.ask(TOOK_OVER, "Say what it does.", "took over")
             if supervision.question is not None:
-                await self._ask(supervision.question)
+                await self._ask(supervision.question, wanted=True)
+                if supervision.question is not None:  # it was left without an answer
+                    supervision.game.withdraw()
+                    self._tell_now("Tangy goes on by itself.", "dim")
             return False
         if not decision.sure or not self._asks_about(decision):
             return True

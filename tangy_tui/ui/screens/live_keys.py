@@ -20,10 +20,11 @@ HELP = (
     "game after what it is doing. 7 shows its devices, what its cameras see and the last card "
     "that it read; w tells why.\n"
     "i turns the dial of how much Tangy does of itself: all of it, or it asks you before it does "
-    "what it is less sure of, or before everything. o takes over: you say what it does next. d "
-    "drives it by the arrow keys. c calls the last number again, x takes it back, h asks for help "
-    "for somebody who cannot. l says that what somebody did last was done otherwise than was "
-    "seen. f brings a fault about, on the bench. Esc ends the game."
+    "what it is less sure of, or before everything. o takes over: you say what it does next, and "
+    "Esc lets it go on by itself after all. d drives it by the arrow keys. c calls the last "
+    "number again, x takes it back, h asks for help for somebody who cannot. l says that what "
+    "somebody did last was done otherwise than was seen. f brings a fault about, on the bench. "
+    "Esc ends the game."
 )
 
 BINDINGS: list[BindingType] = [

@@ -29,12 +29,15 @@ class PlayAsking(PlayPanels):
         """Show how things stand."""
         raise NotImplementedError
 
-    async def _ask(self, question: Unsure) -> None:
-        """Wait for the teacher's answer, learn it beside the screen, and go on."""
+    async def _ask(self, question: Unsure, *, wanted: bool = False) -> None:
+        """Wait for the teacher's answer, learn it beside the screen, and go on.
+
+        Where it was `wanted` to be asked it can also be left, and Tangy goes on by itself.
+        """
         self.minimize()
         self.app.clear_notifications()  # they would lie over the question
         learnt, self._picture.lesson = self._picture.lesson, ""
-        asking = AskingPanel(self._house, self._supervision, question, learnt)
+        asking = AskingPanel(self._house, self._supervision, question, learnt, wanted=wanted)
         self.add_class("-asking")
         await self.mount(asking, before="#microphone" if self.query("#microphone") else "#keys")
         if self._stopped:
