@@ -217,3 +217,39 @@ class Voice(Device, Protocol):
     async def hush(self) -> None:
         """Be quiet now; never raises."""
         ...
+
+
+class OwnNavigation(Device, Protocol):
+    """A robot's own navigation: it knows where the robot is, and drives it to goals by itself.
+
+    The facts of its reading have the `path`: clear, replanned or none.
+    """
+
+    @property
+    def pose(self) -> Stamped[Pose] | None:
+        """Where the robot says that it is; None: it did not say so yet."""
+        ...
+
+    def localisation(self) -> Reading:
+        """Return how long ago it said so, and as facts how sure it is: `fit` and `spread`."""
+        ...
+
+    def place(self, pose: Pose) -> None:
+        """Tell it that the robot is there.
+
+        Raises:
+            DeviceError: it could not be handed over.
+        """
+        ...
+
+    async def go(self, goal: Pose) -> None:
+        """Drive somewhere, and wait until it is there.
+
+        Raises:
+            DeviceError: it is not taken there, or that was called off.
+        """
+        ...
+
+    async def cancel(self) -> None:
+        """Call off where it drives to, and wait a moment until it has heard; never raises."""
+        ...

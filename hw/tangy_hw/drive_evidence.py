@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_profiles.health import Fact, Reading
 
 LOST_FIT, LOST_SPREAD = 0.85, 0.5  # as the rules for faults have it
@@ -18,7 +18,7 @@ KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong w
 class DriveEvidence:
     """The worst of a navigator's facts on the present drive, and for a moment after it."""
 
-    def __init__(self, navigator: Navigator, now: Callable[[], float]) -> None:
+    def __init__(self, navigator: Wayfinder, now: Callable[[], float]) -> None:
         self.blocked = False
         """Whether there was no way to where the robot was to go last."""
         self._navigator = navigator

@@ -5,11 +5,12 @@ Devices that share a link (a rosbridge server) share one connection.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from tangy_hw.bench_clock import SteppedClock
-from tangy_hw.devices import Clock, Device, DeviceError
+from tangy_hw.devices import Clock, Device, DeviceError, Pose
 from tangy_hw.drivers.ros_status import RosDiagnostics
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.robot_setup import Setting
@@ -48,6 +49,16 @@ class Settings:
             return dict(joined_names(self.text(key, "")))
         except ValueError as error:
             raise self.wrong(f"{key}: {error}") from None
+
+    def pose(self, key: str) -> Pose:
+        """Take a pose as "X, Y, HEADING" in metres and radians; all are 0 where it is left out."""
+        try:
+            x, y, heading = map(float, self.text(key, "0, 0, 0").split(","))
+        except ValueError:
+            x = y = heading = math.nan
+        if not all(map(math.isfinite, (x, y, heading))):
+            raise self.wrong(f"{key} must be X, Y, HEADING.")
+        return Pose(x, y, heading)
 
     def flag(self, key: str, default: bool) -> bool:
         """Take true or false."""
@@ -106,6 +117,7 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
     from tangy_hw.drivers.ros_arms import RosArms
     from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
     from tangy_hw.drivers.ros_laser import RosLaser
+    from tangy_hw.drivers.ros_navigator import RosNavigator
     from tangy_hw.drivers.ros_status import RosStopButton
     from tangy_hw.drivers.ros_voice import RosVoice
 
@@ -144,6 +156,15 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
                 hush=settings.text("hush", "/voice/hush"),
                 with_id=settings.flag("with_id", False),
                 diagnostics=diagnostics,
+            )
+        case "navigator":
+            return RosNavigator(
+                link,
+                action=settings.text("action", ""),
+                frame=settings.text("frame", "map"),
+                origin=settings.pose("origin"),
+                place=settings.text("place", "/amcl_pose"),
+                initial=settings.text("initial", "/initialpose"),
             )
     return RosArms(
         link,
@@ -210,7 +231,7 @@ def _dynamixel(wiring: Wiring, settings: Settings) -> Device:
 
 
 DRIVERS: Mapping[str, tuple[tuple[str, ...], Opens]] = {
-    "rosbridge": (("base", "laser", "stop_button", "arms", "voice"), _rosbridge),
+    "rosbridge": (("base", "laser", "stop_button", "arms", "voice", "navigator"), _rosbridge),
     "scip": (("laser",), _scip),
     "page": (("screen",), _page),
     "spoken": (("voice",), _spoken),

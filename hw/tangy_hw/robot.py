@@ -17,8 +17,7 @@ from tangy_hw.body import Body
 from tangy_hw.devices import STILL, Arms, Clock, DeviceError, Picture, Pose, Twist
 from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Watchdogs
-from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.planning import plan
+from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
 from tangy_hw.reports import reports_of
@@ -50,7 +49,7 @@ class LiveRobot:
         self,
         robot: Robot,
         body: Body,
-        navigator: Navigator,
+        navigator: Wayfinder,
         clock: Clock,
         *,
         senses: Senses | None = None,
@@ -125,6 +124,7 @@ class LiveRobot:
         """Stop it, and switch its devices off."""
         with suppress(Exception):
             await self._body.base.stop()
+        self.navigator.cancel()
         for task in self._tasks:
             task.cancel()
         if self._tasks:
@@ -227,6 +227,9 @@ class LiveRobot:
             arrived = await self._drive(DRIVE_SECONDS)
             self._evidence.blocked = self._was == "blocked"
             return arrived
+        except BaseException:
+            self.navigator.cancel()
+            raise
         finally:
             self.going = ""
 
@@ -254,10 +257,8 @@ class LiveRobot:
     def replan(self) -> None:
         """Look whether there is a way again to where there was none."""
         self._evidence.detour_taken()
-        goal, here, seen = self._wanted, self.pose, self.navigator.obstacles
-        if goal is not None and self._evidence.blocked:
-            way = plan(self.navigator.map, (here.x, here.y), (goal.x, goal.y), seen)
-            self._evidence.blocked = way is None
+        if self._wanted is not None and self._evidence.blocked:
+            self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
     def drive_by_hand(self, twist: Twist) -> None:
         """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard."""
@@ -355,9 +356,8 @@ class LiveRobot:
                 self._hand = None
         if self.hazard:
             command = STILL
-        if command == STILL:
-            self.navigator.held()
-        if command != STILL or self._driven != STILL:
+            self._stand()
+        elif command != STILL or self._driven != STILL:
             self._send(command)
         return command != STILL or self.going != ""
 
@@ -365,9 +365,14 @@ class LiveRobot:
         """Look for hazards between ticks, too: a robot that drives has no time to lose."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
-            if self._driven != STILL and self.hazard:
-                self.navigator.held()
-                self._send(STILL)
+            if (self._driven != STILL or self.navigator.drives) and self.hazard:
+                self._stand()
+
+    def _stand(self) -> None:
+        """Have the base stand, and whatever drives it past us call that off, until it has."""
+        self.navigator.held()
+        if self._driven != STILL or self.navigator.drives:
+            self._send(STILL)
 
     def _send(self, command: Twist) -> None:
         """Tell the base; a command that could not be handed over is followed by the next."""

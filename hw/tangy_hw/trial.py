@@ -77,7 +77,8 @@ async def try_robot(
         if device.looks_at and name not in found:
             what = "nothing says where its pictures come from; name its source in"
             found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
-    for name in {device for devices, _ in DRIVERS.values() for device in devices}:
+    driven = {device for devices, _ in DRIVERS.values() for device in devices}
+    for name in driven - {"navigator"}:  # without one of its own, Tangy finds the way
         if name in robot.devices and name not in found:
             what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
             found[name] = Trial(name, False, what, absent=True)

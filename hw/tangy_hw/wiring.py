@@ -13,12 +13,14 @@ import numpy as np
 
 from tangy_hw.bench_clock import SteppedClock
 from tangy_hw.body import Body
-from tangy_hw.devices import Clock, DeviceError, Laser, MachineClock, Pose
+from tangy_hw.devices import Clock, DeviceError, MachineClock, OwnNavigation, Pose
 from tangy_hw.driver_kinds import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.navigation.entrusted import Entrusted
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
+from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_hw.perception.requests.asking import RequestSource
 from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_setup import RobotSetup, Setting
@@ -36,8 +38,13 @@ SETTLE_SECONDS = 2.0  # of real time at most
 
 
 def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict[str, Any]:
-    """Return the settings of each driver: the given ones go before those of the profile."""
+    """Return the settings of each driver: the given ones go before those of the profile.
+
+    With a base that is given, the profile's own navigation is left out: it drives the other.
+    """
     own = {name: {"kind": d.kind, **d.settings} for name, d in robot.drivers.items()}
+    if "base" in given:
+        own.pop("navigator", None)
     return {**own, **given}
 
 
@@ -105,7 +112,7 @@ def wire(setup: RobotSetup) -> Wired:
     room = load_room(setup.room)
     clock: Clock = SteppedClock() if setup.stepped else MachineClock()
     wiring = Wiring(robot, activity, clock)
-    devices = {
+    devices: dict[str, Any] = {
         name: open_device(wiring, name, values)
         for name, values in drivers_of(robot, setup.drivers).items()
     }
@@ -127,7 +134,7 @@ def wire(setup: RobotSetup) -> Wired:
     live = LiveRobot(
         robot,
         body,
-        _navigator(setup, robot, room, body.laser),
+        _wayfinder(setup, robot, room, devices.get("navigator")),
         clock,
         senses=senses,
         requests=_requests(setup, room),
@@ -147,6 +154,7 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
             raise DeviceError(
                 f"{wiring.robot.title} has no driver for {needed}: it must drive and see where."
             )
+    own = [devices["navigator"]] if "navigator" in devices else []
     return Body(
         base=devices["base"],
         laser=devices["laser"],
@@ -154,7 +162,7 @@ def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
         arms=devices.get("arms"),
         voice=devices.get("voice"),
         screen=devices.get("screen"),
-        others=(*wiring.links.values(), *wiring.diagnosing.values()),
+        others=(*wiring.links.values(), *wiring.diagnosing.values(), *own),
     )
 
 
@@ -166,7 +174,10 @@ def _counted(body: Body) -> dict[str, Callable[[], int]]:
     }
 
 
-def _navigator(setup: RobotSetup, robot: Robot, room: Room, laser: Laser) -> Navigator:
+def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None) -> Wayfinder:
+    """Return what finds place and way: the robot's own navigation where it has one, or ours."""
+    if own is not None:
+        return Entrusted(own)
     from tangy_hw.navigation.pursuit import Limits
 
     known = read_map(Path(setup.map)) if setup.map else map_of_room(room, people=len(setup.people))

@@ -14,11 +14,12 @@ from websockets.asyncio.server import ServerConnection, serve
 
 from tangy_hw.devices import DeviceError, Pose
 from tangy_hw.drivers.ros_messages import pose_message
-from tangy_hw.drivers.ros_navigator import RosNavigator
+from tangy_hw.drivers.ros_navigator import AGAIN_SECONDS, RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_profiles.health import OK
+from tangy_profiles.health import OK, STALE
 from tangy_sim.wires.rosbridge_server import RosbridgeServer
-from tests.hw.ros_links import SOON, soon, until
+from tests.hw.move_base import MoveBase
+from tests.hw.ros_links import SOON, linked, soon, until
 
 ORIGIN = Pose(10.0, 20.0, math.pi / 2)
 GOAL = Pose(2.0, 1.0, 0.5)
@@ -47,37 +48,6 @@ async def navigating(ros: int) -> AsyncIterator[tuple[RosbridgeServer, RosNaviga
         await navigator.close()
         await bridge.close()
         await server.close()
-
-
-class MoveBase:
-    """move_base at the other end: its goals are taken, and end as a test says."""
-
-    def __init__(self, server: RosbridgeServer) -> None:
-        self.server = server
-        self.goals: dict[str, Any] = {}
-        self.cancelled: list[str] = []
-        server.on_message("/move_base/goal", self.take)
-        server.on_message("/move_base/cancel", lambda message: self.cancelled.append(message["id"]))
-
-    def take(self, message: Any) -> None:
-        self.goals[message["goal_id"]["id"]] = message["goal"]["target_pose"]
-        self.say(1)
-
-    @property
-    def newest(self) -> str:
-        return list(self.goals)[-1]
-
-    def say(self, code: int, text: str = "", key: str = "") -> None:
-        status = {"goal_id": {"id": key or self.newest}, "status": code, "text": text}
-        self.server.publish("/move_base/status", "", {"status_list": [status]})
-
-    def end(self, code: int, text: str = "") -> None:
-        status = {"goal_id": {"id": self.newest}, "status": code, "text": text}
-        self.server.publish("/move_base/result", "", {"status": status, "result": {}})
-
-    def feed(self, pose: Pose) -> None:
-        feedback = {"base_position": {"pose": pose_message(pose)}}
-        self.server.publish("/move_base/feedback", "", {"feedback": feedback})
 
 
 class TestMoveBase:
@@ -172,6 +142,83 @@ class TestMoveBase:
             await until(lambda: base.cancelled == list(base.goals))
             assert bridge.connected
 
+    async def test_a_goal_that_was_given_up_before_it_was_taken_is_not_sent_again(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            base.takes = False
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            base.goals.clear()
+            cancelling = asyncio.create_task(navigator.cancel())
+            await asyncio.sleep(1.2 * AGAIN_SECONDS)
+            assert not base.goals and len(base.cancelled) == 1
+            base.say(1, key=base.cancelled[0])  # it is taken after all
+            await until(lambda: len(base.cancelled) == 2)
+            base.say(2, key=base.cancelled[0])
+            await soon(cancelling)
+            with pytest.raises(DeviceError):
+                await soon(going)
+            base.say(1, key=base.cancelled[0])
+            base.say(1, key="of somebody else")
+            await until(lambda: len(base.cancelled) == 3)
+            assert len(set(base.cancelled)) == 1
+
+    async def test_a_goal_of_a_process_of_ours_that_was_killed_is_given_up(self) -> None:
+        async with navigating(1) as (server, _, _bridge):
+            base = MoveBase(server)
+            await soon(server.subscribed("/move_base/status"))
+            base.say(1, key="of somebody else")
+            base.say(3, key="tangy-1234-1")
+            base.say(1, key="tangy-1234-2")
+            await until(lambda: base.cancelled)
+            assert base.cancelled == ["tangy-1234-2"]
+
+    async def test_it_tells_where_it_is_how_sure_that_is_and_how_old(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            base = MoveBase(server)
+            assert navigator.localisation().state == STALE
+            base.place(IN_MAP, 0.2)
+            await until(lambda: navigator.pose)
+            place = navigator.localisation()
+            assert place[2:] == (OK, {"fit": 1.0, "spread": pytest.approx(0.2)})
+            base.place(IN_MAP, 0.8)
+            await until(lambda: navigator.localisation().facts["fit"] == 0.0)
+
+    async def test_the_place_of_a_robot_that_stands_is_as_old_as_its_link(self) -> None:
+        async with linked() as (server, bridge, now):
+            navigator = RosNavigator(bridge)
+            await navigator.start()
+            await soon(server.subscribed("/amcl_pose", "/move_base/status"))
+            base = MoveBase(server)
+            base.place(IN_MAP)
+            await until(lambda: navigator.pose)
+            now.time += 60
+            base.idle()
+            await until(lambda: navigator.reading().age == 0)
+            assert navigator.localisation().age == 0
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: base.goals)
+            assert navigator.localisation().age == 0  # it has only begun to drive
+            now.time += 2
+            base.say(1)
+            await until(lambda: navigator.reading().age == 0)
+            assert navigator.localisation().age == 2
+            base.feed(IN_MAP)
+            await until(lambda: navigator.localisation().age == 0)
+            base.end(3)
+            await soon(going)
+            await navigator.close()
+
+    async def test_it_is_told_where_it_is(self) -> None:
+        async with navigating(1) as (server, navigator, _):
+            told = list[Any]()
+            server.on_message("/initialpose", told.append)
+            navigator.place(GOAL)
+            await until(lambda: told)
+            assert pose_in(told[0]["pose"]) == pytest.approx(IN_MAP)
+            assert len(told[0]["pose"]["covariance"]) == 36
+            assert told[0]["header"]["frame_id"] == "map"
+
 
 class TestNavigateToPose:
     async def test_it_drives_tells_of_detours_and_arrives(self) -> None:
@@ -254,6 +301,41 @@ class TestNavigateToPose:
             await navigator.cancel()
             with pytest.raises(DeviceError, match="was cancelled"):
                 await soon(going)
+            await navigator.close()
+            await bridge.close()
+
+    async def test_a_goal_that_goes_on_after_it_was_given_up_is_given_up_again(self) -> None:
+        cancelled = list[str]()
+
+        async def attend(link: ServerConnection) -> None:
+            async for text in link:
+                message = json.loads(text)
+                if message["op"] == "send_action_goal":
+                    asyncio.get_running_loop().create_task(drive(link, message["id"]))
+                elif message["op"] == "cancel_action_goal":
+                    cancelled.append(message["id"])
+
+        async def drive(link: ServerConnection, key: str) -> None:
+            while len(cancelled) < 2:  # the first is not heard
+                fed = {"op": "action_feedback", "id": key}
+                at = {"current_pose": {"pose": pose_message(IN_MAP)}}
+                await link.send(json.dumps({**fed, "values": at}))
+                await asyncio.sleep(0.02)
+            over = {"op": "action_result", "id": key, "status": 5, "result": False, "values": {}}
+            await link.send(json.dumps(over))
+
+        async with serve(attend, "127.0.0.1", 0) as server:
+            port = next(iter(server.sockets)).getsockname()[1]
+            bridge = Rosbridge(f"ws://127.0.0.1:{port}", ros=2)
+            navigator = RosNavigator(bridge)
+            await navigator.start()
+            assert await bridge.wait_connected(SOON)
+            going = asyncio.create_task(navigator.go(GOAL, 30))
+            await until(lambda: navigator.pose)
+            await soon(navigator.cancel())
+            with pytest.raises(DeviceError, match="was cancelled"):
+                await soon(going)
+            assert len(cancelled) == 2
             await navigator.close()
             await bridge.close()
 

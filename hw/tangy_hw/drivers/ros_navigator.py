@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import secrets
 from contextlib import suppress
 from itertools import count
@@ -22,7 +23,8 @@ from tangy_hw.drivers.ros_messages import (
 from tangy_hw.drivers.ros_newest import Newest, awaited
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.rosbridge_waiting import Goal, LinkLost
-from tangy_profiles.health import OK, Reading
+from tangy_hw.navigation.localisation import WIDE
+from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.reading import plain
 
 DRIVE_SECONDS = 180.0
@@ -30,7 +32,11 @@ TAKEN_SECONDS = 3.0  # in which a goal has been taken, or nobody takes goals the
 AGAIN_SECONDS = 0.5  # until a goal that nobody took is sent again: topics of ROS 1 begin late
 CANCEL_SECONDS = 2.0  # for which the end of what was cancelled is waited for
 
-SUCCEEDED = 3  # as actionlib_msgs/GoalStatus numbers them
+TOLD = (0.25, *(0.0,) * 6, 0.25, *(0.0,) * 27, 0.07)  # m2 and rad2, (6, 6): how sure staff are
+
+OURS = "tangy-"  # with which the id of a goal of ROS 1 begins
+UNDER_WAY = (0, 1)  # as actionlib_msgs/GoalStatus numbers them
+SUCCEEDED = 3
 OVER = {2: "was cancelled", 4: "found no way", 5: "refused", 8: "was cancelled", 9: "lost the goal"}
 
 State = Literal["idle", "driving", "arrived", "failed"]
@@ -49,6 +55,7 @@ class RosNavigator:
         frame: str = "map",
         origin: Pose = Pose(0.0, 0.0, 0.0),  # noqa: B008 - it cannot change
         place: str = "/amcl_pose",
+        initial: str = "/initialpose",
     ) -> None:
         """Name its action and topics.
 
@@ -57,15 +64,19 @@ class RosNavigator:
             frame: of the robot's map.
             origin: where in the robot's map the room's frame is.
             place: where the robot says by geometry_msgs/PoseWithCovarianceStamped that it is.
+            initial: where it is told so.
         """
         self.name = name
         self.state: State = "idle"
-        self._bridge, self._frame, self._origin, self._place = bridge, frame, origin, place
+        self._bridge, self._frame, self._origin = bridge, frame, origin
+        self._place, self._initial = place, initial
         self._action = action or ("/move_base" if bridge.ros == 1 else "/navigate_to_pose")
         self._newest: Newest[None] = Newest(bridge.clock)
         self._pose: Newest[Pose] = Newest(bridge.clock)
+        self._spread = 0.0
+        self._since = bridge.clock()  # when the newest drive began
         self._path: Path = "clear"
-        self._mark, self._numbers = f"tangy-{secrets.token_hex(4)}", count(1)
+        self._mark, self._numbers = f"{OURS}{secrets.token_hex(4)}", count(1)
         self._drive: _Drive | None = None
         self._orphan: _Drive | None = None
         self._known: dict[str, _Drive] = {}
@@ -97,6 +108,7 @@ class RosNavigator:
             return
         self._begun = True
         self._newest.restart()
+        self._bridge.advertise(self._initial, "geometry_msgs/PoseWithCovarianceStamped")
         if self._place:
             self._bridge.subscribe(
                 self._place, "geometry_msgs/PoseWithCovarianceStamped", self._hear_place
@@ -129,6 +141,28 @@ class RosNavigator:
             return Reading(self.name, age, self._bridge.reading().state, {"path": self._path})
         return self._newest.reading(self.name, OK, {"path": self._path})
 
+    def localisation(self) -> Reading:
+        """Return how long ago the robot said where it is, and how sure it is of that.
+
+        It may say so only as it moves: while it is to stand, the age is the link's. How well the
+        room fits it does not say: it does, until several places are thought possible.
+        """
+        age, link = self._pose.age, self._bridge.reading().age
+        age = min(age, self._bridge.clock() - self._since if self.state == "driving" else link)
+        fit = 0.0 if self._spread > WIDE else 1.0
+        state = STALE if self.pose is None else OK
+        return Reading("localisation", age, state, {"fit": fit, "spread": self._spread})
+
+    def place(self, pose: Pose) -> None:
+        """Tell the robot that it is there, within some 50 cm.
+
+        Raises:
+            DeviceError: there is no link.
+        """
+        there = {"pose": pose_message(within(pose, self._origin)), "covariance": list(TOLD)}
+        head = header(self._frame, self._bridge.ros)
+        self._bridge.publish(self._initial, {"header": head, "pose": there})
+
     async def go(self, goal: Pose, seconds: float = DRIVE_SECONDS) -> None:
         """Drive somewhere in the room, and wait until it is there; cancelling this cancels that.
 
@@ -141,8 +175,9 @@ class RosNavigator:
         target = {"header": header(self._frame, self._bridge.ros), "pose": pose_message(place)}
         drive = self._drive = _Drive(f"{self._mark}-{next(self._numbers)}")
         self._known[drive.key] = drive
-        self.state, self._path = "driving", "clear"
-        self._newest.restart()
+        self.state, self._path, self._since = "driving", "clear", self._bridge.clock()
+        if self._bridge.ros == 2:  # it speaks while it drives alone; what it said before is old
+            self._newest.restart()
         try:
             if self._bridge.ros == 1:
                 await self._send(drive, target)
@@ -193,21 +228,23 @@ class RosNavigator:
             "goal": {"target_pose": target},
         }
         until = clock() + TAKEN_SECONDS
-        while clock() < until and not drive.over.done():
+        while clock() < until and not (drive.over.done() or drive.given_up):
             self._bridge.publish(f"{self._action}/goal", goal)
             if await awaited(drive.taken, min(until, clock() + AGAIN_SECONDS), clock, self._linked):
                 return
-        if not drive.over.done():
+        if not (drive.over.done() or drive.given_up):
             raise DeviceError(f"{self.name}: nobody takes goals at {self._action}.")
 
     async def _seek(self, drive: _Drive, target: Message) -> None:
         """Send a goal as an action, over a link of its own."""
         await self._goals.wait_connected(TAKEN_SECONDS)
+        if drive.given_up:  # while it was waited for
+            return
         goal = self._goals.send_goal(
             self._action,
             "nav2_msgs/NavigateToPose",
             {"pose": target, "behavior_tree": ""},
-            self._feed,
+            lambda values: self._fed(drive, values),
         )
         drive.goal = goal
 
@@ -221,7 +258,11 @@ class RosNavigator:
         goal.over.add_done_callback(over)
 
     def _give_up(self, drive: _Drive) -> None:
-        """Cancel at the robot; what cannot be cancelled now is as soon as there is a link."""
+        """Cancel at the robot; what cannot be cancelled now is as soon as there is a link.
+
+        Where it is lost it is said again, when the goal is heard of.
+        """
+        drive.given_up = True
         if drive.over.done() and not drive.lost:
             return
         if not self._linked():
@@ -229,9 +270,13 @@ class RosNavigator:
         elif drive.goal is not None:
             self._bridge.cancel_goal(drive.goal)
         elif self._bridge.ros == 1:
-            identity = {"stamp": time_message(0, 1), "id": drive.key}
-            with suppress(DeviceError):
-                self._bridge.publish(f"{self._action}/cancel", identity, urgent=True)
+            self._call_off(drive.key)
+
+    def _call_off(self, key: str) -> None:
+        """Cancel a goal of ROS 1."""
+        identity = {"stamp": time_message(0, 1), "id": key}
+        with suppress(DeviceError):
+            self._bridge.publish(f"{self._action}/cancel", identity, urgent=True)
 
     def _give_up_orphan(self) -> None:
         drive, self._orphan = self._orphan, None
@@ -248,13 +293,20 @@ class RosNavigator:
         self._told(message["status"])
 
     def _told(self, status: Message) -> None:
-        """Hear what became of a goal; of those of others nothing is done."""
-        drive = self._known.get(status["goal_id"]["id"])
+        """Hear what became of a goal; those of others are none of our business.
+
+        A goal of ours that nobody wants is given up again: a cancellation can be lost, and a
+        process of ours that was killed could say none.
+        """
+        key, code = status["goal_id"]["id"], status["status"]
+        drive = self._known.get(key)
+        wanted = drive is not None and not drive.given_up
+        if not wanted and code in UNDER_WAY and str(key).startswith(OURS):
+            self._call_off(key)
         if drive is None:
             return
         if not drive.taken.done():
             drive.taken.set_result(None)
-        code = status["status"]
         if code == SUCCEEDED:
             drive.end()
         elif code in OVER:
@@ -262,6 +314,15 @@ class RosNavigator:
             drive.end(plain(f"{self.name} {OVER[code]}{': ' if said else '.'}{said}"))
             if code == 4:
                 self._path = "none"
+
+    def _fed(self, drive: _Drive, values: Message) -> None:
+        """Hear of a drive in ROS 2."""
+        now = self._bridge.clock()
+        if not drive.given_up:
+            self._feed(values)
+        elif drive.goal is not None and now > drive.told + AGAIN_SECONDS:
+            drive.told = now
+            self._bridge.cancel_goal(drive.goal)
 
     def _feed(self, values: Message) -> None:
         """Hear where the robot is on its way."""
@@ -272,6 +333,8 @@ class RosNavigator:
         self._pose.take(seen_from(pose_of(at["pose"]), self._origin))
 
     def _hear_place(self, message: Message) -> None:
+        covariance = message["pose"].get("covariance") or (0.0,) * 36
+        self._spread = math.sqrt(max(number(covariance[0]) + number(covariance[7]), 0.0))
         self._pose.take(seen_from(pose_of(message["pose"]["pose"]), self._origin))
 
 
@@ -281,7 +344,8 @@ class _Drive:
     def __init__(self, key: str) -> None:
         self.key = key
         self.goal: Goal | None = None
-        self.lost = False
+        self.lost = self.given_up = False
+        self.told = -math.inf  # when it was said again that it is given up
         loop = asyncio.get_running_loop()
         self.taken: asyncio.Future[None] = loop.create_future()
         self.over: asyncio.Future[None] = loop.create_future()

@@ -90,6 +90,9 @@ class Navigator:
         self._detour: tuple[float, float] | None = None
         self._marked = 0.0
 
+    drives = False
+    """Nothing drives the base but the commands that `tick` returns."""
+
     # ------------------------------------------------------------------ what it is told to do
     def go(self, goal: Pose) -> None:
         """Drive to a pose; another goal takes the place of the one before.
@@ -127,7 +130,7 @@ class Navigator:
         self._way = "clear"
 
     def held(self) -> None:
-        """Take note that the robot stands still, whatever the last command was."""
+        """Take note that the robot must stand still now, whatever the last command was."""
         self._told = STILL
 
     def place(self, pose: Pose | None) -> None:
@@ -135,6 +138,11 @@ class Navigator:
         self._localisation.place(pose)
         self._obstacles.forget()
         self._stop_following()
+
+    def finds_way(self, goal: Pose) -> bool:
+        """Say whether there is a way to a goal from where it is, past all that it sees."""
+        estimate = self._estimate
+        return estimate is not None and self._plan(estimate.pose, goal) is not None
 
     # ------------------------------------------------------------------ what it knows
     @property

@@ -1,0 +1,317 @@
+"""Robots that find their way themselves: goals go there, and come back when it must not drive."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from tangy_hw import robot as robots
+from tangy_hw.devices import (
+    STILL,
+    DeviceError,
+    MachineClock,
+    Odometry,
+    OwnNavigation,
+    Pose,
+    Stamped,
+    Twist,
+)
+from tangy_hw.drivers.ros_navigator import RosNavigator
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.navigation import entrusted
+from tangy_hw.navigation.entrusted import Entrusted
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.trial import try_robot
+from tangy_hw.wiring import wire
+from tangy_profiles.activity import load_activity
+from tangy_profiles.health import STALE
+from tangy_profiles.robot import load_robot
+from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tests.hw.live_bodies import ToldBody
+from tests.hw.move_base import MoveBase
+from tests.hw.ros_links import SOON, soon, until
+
+GOAL = Pose(2.0, 1.0, 0.5)
+START = Pose(1.0, 1.0, 0.0)
+
+
+class Living:
+    """A robot with a navigation of its own, and that at the other end of the link."""
+
+    def __init__(
+        self, robot: LiveRobot, parts: ToldBody, base: MoveBase, living: asyncio.Task[None]
+    ) -> None:
+        self.robot, self.parts, self.base, self.living = robot, parts, base, living
+
+    def facts(self, device: str) -> object:
+        return next(r.facts for r in self.robot.health() if r.device == device)
+
+
+@asynccontextmanager
+async def living(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Living]:
+    monkeypatch.setattr(robots, "BLOCKED_SECONDS", 0.1)
+    monkeypatch.setattr(robots, "HAZARD_SECONDS", 0.4)
+    monkeypatch.setattr(entrusted, "AGAIN_SECONDS", 0.1)
+    server, parts = RosbridgeServer(), ToldBody()
+    await server.start()
+    bridge = Rosbridge(server.url)
+    navigation = RosNavigator(bridge)
+    satisfied: OwnNavigation = navigation
+    robot = LiveRobot(
+        load_robot(), parts.body(bridge, navigation), Entrusted(satisfied), MachineClock()
+    )
+    await robot.start()
+    assert await bridge.wait_connected(SOON)
+    await soon(server.subscribed("/amcl_pose", "/move_base/status"))
+    base = MoveBase(server)
+
+    async def live() -> None:
+        while True:
+            base.idle()
+            await asyncio.sleep(0.05)
+
+    task = asyncio.create_task(live())
+    base.place(START)
+    await until(lambda: not robot.hazard)
+    try:
+        yield Living(robot, parts, base, task)
+    finally:
+        task.cancel()
+        await robot.close()
+        await server.close()
+
+
+async def test_it_goes_where_it_is_told_and_says_where_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        assert one.robot.pose == pytest.approx(START)
+        going = asyncio.create_task(one.robot.go(GOAL, "user1"))
+        await until(lambda: one.base.goals)
+        one.base.feed(Pose(1.5, 1.0, 0.0))
+        await until(lambda: one.robot.pose.x == pytest.approx(1.5))
+        assert one.robot.going == "user1" and not going.done()
+        one.base.end(3)
+        assert await soon(going) is True
+        assert one.facts("navigator") == {"path": "clear"}
+        assert not one.base.cancelled and one.parts.told == []  # nobody drives the base but it
+
+
+async def test_a_robot_that_must_not_drive_hands_nothing_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        await one.robot.stop("not yet")
+        with pytest.raises(BrokenOff, match="not yet"):
+            await soon(one.robot.go(GOAL))
+        one.robot.release()
+        one.parts.laser.age = 1.0
+        with pytest.raises(BrokenOff, match="laser"):
+            await soon(one.robot.go(GOAL))
+        one.parts.laser.age = 0.0
+        navigator = one.robot.navigator
+        await asyncio.sleep(0.2)
+        navigator.go(GOAL)
+        navigator.tick(Odometry(START, STILL), None, 0.05)
+        assert navigator.drives
+        navigator.held()
+        await until(lambda: not navigator.drives)
+        navigator.cancel()
+        await asyncio.sleep(0.1)
+        assert not one.base.goals
+
+
+async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(entrusted, "CLEARING_SECONDS", 0.5)
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.base.end(4, "no path")
+        assert await soon(going) is False
+        assert one.facts("navigator") == {"path": "none"}
+        one.robot.replan()
+        assert one.facts("navigator") == {"path": "none"}
+        await asyncio.sleep(0.6)
+        one.robot.replan()
+        assert one.facts("navigator") == {"path": "clear"}
+
+
+async def test_a_goal_that_is_refused_is_no_blocked_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.base.end(5, "no such frame")
+        assert await soon(going) is False
+        assert one.facts("navigator") == {"path": "clear"}
+
+
+async def test_a_stop_stops_the_base_until_the_goal_is_known_to_be_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        await one.robot.stop("a hand was in the way")
+        assert one.parts.told[0] == "stop"
+        await until(lambda: one.base.cancelled == list(one.base.goals))
+        with pytest.raises(BrokenOff, match="a hand"):
+            await soon(going)
+        told = len(one.parts.told)
+        await until(lambda: len(one.parts.told) > told + 2)
+        assert set(one.parts.told[told:]) == {"stop"}
+        one.base.end(2)
+        await until(lambda: not one.robot.navigator.drives)
+        await asyncio.sleep(0.05)
+        told = len(one.parts.told)
+        await asyncio.sleep(0.1)
+        assert len(one.parts.told) == told
+
+
+async def test_what_it_drives_by_falls_silent_and_it_stands_until_it_speaks_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.parts.laser.age = 1.0
+        await until(lambda: one.base.cancelled)
+        one.base.end(2)
+        one.parts.laser.age = 0.0
+        await until(lambda: len(one.base.goals) == 2)
+        one.base.end(3)
+        assert await soon(going) is True
+
+
+async def test_a_device_that_stays_silent_ends_the_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.parts.laser.age = 1.0
+        await until(lambda: one.base.cancelled)
+        one.base.end(2)
+        with pytest.raises(BrokenOff, match="laser scanner says nothing"):
+            await soon(going)
+        assert len(one.base.goals) == 1
+
+
+async def test_a_navigation_that_falls_silent_ends_the_drive(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        one.living.cancel()
+        one.base.feed(START)
+        with pytest.raises(BrokenOff, match="says nothing"):
+            await soon(going)
+        assert one.base.cancelled and "stop" in one.parts.told
+
+
+async def test_a_drive_that_is_called_off_is_called_off_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        going = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: one.base.goals)
+        going.cancel()
+        await until(lambda: one.base.cancelled == list(one.base.goals))
+        one.base.end(2)
+        second = asyncio.create_task(one.robot.go(GOAL))
+        await until(lambda: len(one.base.goals) == 2)
+        one.robot.drive_by_hand(Twist(0.1, 0.0))
+        await until(lambda: len(one.base.cancelled) >= 2)
+        assert await soon(second) is False
+        await until(lambda: Twist(0.1, 0.0) in one.parts.told)
+
+
+async def test_it_may_be_wide_of_its_place_and_turns_to_find_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async with living(monkeypatch) as one:
+        one.base.place(START, 0.9)
+        await until(lambda: one.facts("localisation") == {"fit": 0.0, "spread": pytest.approx(0.9)})
+        turning = Odometry(START, Twist(0.0, 10.0))
+        monkeypatch.setattr(type(one.parts.base), "odometry", Stamped(turning, 0.0, 1))
+        spinning = asyncio.create_task(one.robot.spin())
+        await until(lambda: any(isinstance(t, Twist) and t.turn > 0 for t in one.parts.told))
+        one.base.place(START, 0.1)
+        assert await soon(spinning) is True
+        assert one.facts("localisation") == {"fit": 1.0, "spread": pytest.approx(0.1)}
+        assert not one.base.goals
+
+
+async def test_without_a_link_the_drive_is_over() -> None:
+    async with living_silent() as (way, _):
+        way.go(GOAL)
+        way.tick(Odometry(START, STILL), None, 0.05)
+        await until(lambda: way.state != "driving")
+        assert way.state == "failed" and "link" in way.why and not way.drives
+
+
+@asynccontextmanager
+async def living_silent() -> AsyncIterator[tuple[Entrusted, Rosbridge]]:
+    bridge = Rosbridge("ws://127.0.0.1:9")
+    navigation = RosNavigator(bridge)
+    await navigation.start()
+    try:
+        yield Entrusted(navigation), bridge
+    finally:
+        await navigation.close()
+        await bridge.close()
+
+
+async def test_one_that_says_nothing_is_stale_and_knows_no_place() -> None:
+    async with living_silent() as (way, _):
+        place, navigator = way.readings()
+        assert (place.state, navigator.state, way.estimate) == (STALE, STALE, None)
+        assert way.tick(Odometry(START, STILL), None, 0.1) == STILL
+        with pytest.raises(DeviceError):
+            way.place(START)
+        way.place(None)
+        assert len(way.obstacles) == len(way.particles) == 0 and way.path is None
+
+
+def robot_file(folder: Path, navigator: str) -> Path:
+    """Write the profile of a robot that has a navigation of its own."""
+    path = folder / "mine.toml"
+    at = 'kind = "rosbridge", at = "ws://127.0.0.1:9"'
+    drivers = f"base = {{ {at} }}\nlaser = {{ {at} }}\nnavigator = {{ {at}{navigator} }}"
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    path.write_text(f"{shipped}\n[drivers]\n{drivers}\n", encoding="utf-8")
+    return path
+
+
+class TestProfiles:
+    def test_a_profile_names_it_and_where_its_map_lies(self, tmp_path: Path) -> None:
+        path = robot_file(tmp_path, ', ros = 2, origin = "10, 20, 1.57", place = "/pose"')
+        wired = wire(RobotSetup(str(path), "bingo", ("user1",)))
+        assert isinstance(wired.robot.navigator, Entrusted)
+
+    def test_on_a_bench_that_has_another_base_it_is_left_out(self, tmp_path: Path) -> None:
+        path = robot_file(tmp_path, "")
+        base = {"base": {"kind": "rosbridge", "at": "ws://127.0.0.1:10"}}
+        wired = wire(RobotSetup(str(path), "bingo", ("user1",), drivers=base))
+        assert isinstance(wired.robot.navigator, Navigator)
+
+    @pytest.mark.parametrize("origin", ["1, 2", "a, b, c", "1, 2, nan", "1, 2, 3, 4"])
+    def test_a_place_of_the_map_that_is_none_is_refused(self, tmp_path: Path, origin: str) -> None:
+        path = robot_file(tmp_path, f', origin = "{origin}"')
+        with pytest.raises(DeviceError, match=r"navigator \(rosbridge\): origin must be X, Y"):
+            wire(RobotSetup(str(path), "bingo", ("user1",)))
+
+    async def test_a_robot_without_one_misses_nothing(self, tmp_path: Path) -> None:
+        path = robot_file(tmp_path, "")
+        text = path.read_text(encoding="utf-8")
+        found = await try_robot(load_robot(str(path)), load_activity("bingo"), {}, 0.1)
+        assert "nobody answers" in next(one.text for one in found if one.device == "navigator")
+        path.write_text(text[: text.index("navigator = ")], encoding="utf-8")
+        found = await try_robot(load_robot(str(path)), load_activity("bingo"), {}, 0.1)
+        assert "navigator" not in [one.device for one in found]
