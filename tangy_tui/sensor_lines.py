@@ -8,9 +8,8 @@ from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import Device, Robot
-from tangy_tui.monitoring.detection import state_of
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame

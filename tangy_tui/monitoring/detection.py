@@ -12,8 +12,7 @@ from collections.abc import Mapping
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
-from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading
-from tangy_profiles.health import state_of as state_of
+from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading, state_of
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted
