@@ -94,12 +94,13 @@ def supervised(course: Course) -> Iterator[Supervised]:
         store.transaction(),
     ):
         for one in shown:
-            _keep(store, one)
+            keep(store, one)
         people = tuple(load_people(course.users))
         yield Supervised(course.activity, people, policy, store, robot, load_faults(robot))
 
 
-def _keep(store: Store, shown: Demonstration) -> None:
+def keep(store: Store, shown: Demonstration) -> None:
+    """Write a demonstration into a log, as if it had been given in the program."""
     name = {"demonstration": shown.id}
     about = {
         "activity": shown.activity,

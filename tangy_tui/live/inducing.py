@@ -15,7 +15,7 @@ from tangy_sim.injection import KINDS
 from tangy_tui.experiments.classroom import GUIDED, Course
 from tangy_tui.experiments.induced import Inducer, Planned
 from tangy_tui.experiments.recovering import plan_of, play_games
-from tangy_tui.experiments.supervised import lessons
+from tangy_tui.experiments.supervised import keep, lessons
 from tangy_tui.experiments.sweep import Case, Settings
 from tangy_tui.house import House
 from tangy_tui.live.benched import BenchedWorld
@@ -76,10 +76,12 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
     plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]
     number = seed * 1_000_000 + first
     activity, users = settings["activity"], settings["users"]
-    _, policy = lessons(Course(activity, users, GUIDED, 1))
+    shown, policy = lessons(Course(activity, users, GUIDED, 1))
     with TemporaryDirectory(prefix="tangy-bench-") as scratch:
         house = House(Path(scratch), activity=activity, users=users)
         try:
+            for one in shown:  # from which the effects of behaviours are learnt as well
+                keep(house.store, one)
             with open_bench(
                 house, seed=number, stepped=True, book=load_faults(house.robot), kind=InducingBench
             ) as world:
