@@ -103,16 +103,16 @@ class LiveWorld:
         self._begin()
         self.over = False
         with suppress(DeviceError):  # where it cannot, the first behaviour says so
-            self._remedies.go_back(knows_place=self._spread < LOST_SPREAD)
+            self._remedies.go_back(knows_place=not self.lost)
         self.commands.settle()
         return self.observe()
 
     @property
-    def _spread(self) -> float:
-        """How far apart the places are at which the robot may be, in metres."""
+    def lost(self) -> bool:
+        """Whether the robot does not know where it stands: its places are too far apart."""
         health = self.link.health()
         facts = next((r.facts for r in health if r.device == "localisation"), {})
-        return float(facts.get("spread", 0.0))
+        return float(facts.get("spread", 0.0)) >= LOST_SPREAD
 
     def observe(self) -> ActivityState:
         """Return the joint state as the robot's sensors have it now."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from tangy_hw.devices import DeviceError
@@ -11,6 +12,7 @@ from tangy_hw.robot_link import RobotLink
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.world import FACING, PACE_SECONDS, LiveWorld
 from tangy_profiles.health import Health
+from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
 from tangy_sim.injection import Injection
@@ -40,6 +42,8 @@ def open_bench(
     book: FaultBook | None = None,
     injections: Sequence[Injection] = (),
     kind: type[B] = BenchedWorld,  # type: ignore[assignment]
+    map_: str = "",
+    lost: bool = False,
 ) -> Iterator[B]:
     """Open the robot's own devices as a bench simulates them.
 
@@ -50,6 +54,8 @@ def open_bench(
         book: the fault rules, by which a behaviour is broken off.
         injections: the faults that are to come in each game.
         kind: the kind of world.
+        map_: the robot finds its way by this map, not by the measures of the room.
+        lost: the robot is not told where it stands.
 
     Raises:
         TangyError: the bench or the robot process does not begin.
@@ -77,7 +83,8 @@ def open_bench(
             cameras={CAMERA: bench.wires.head},
             requests=f"signs:{bench.wires.infrared}",
             corners=bench.wires.corners,
-            start=_start(house.room, tuple(house.names)),
+            start=None if lost else _start(house.room, tuple(house.names)),
+            map=map_,
             stepped=stepped,
             seed=seed,
             faces=_drawn_people(bench.wires.faces),
@@ -108,8 +115,11 @@ def open_robot(
     requests: str = "",
     corners: tuple[tuple[float, float], ...] = (),
     map_: str = "",
+    lost: bool = False,
 ) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile.
+
+    It stands at the front, unless it is `lost`: then it is to find its place by itself.
 
     Raises:
         TangyError: the profile names none, or the robot process does not begin.
@@ -130,7 +140,7 @@ def open_robot(
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,
         corners=corners,
-        start=_start(house.room, tuple(house.names)),
+        start=None if lost else _start(house.room, tuple(house.names)),
         seed=seed,
         faces={p: rows.tolist() for p, rows in known.items() if p in house.names},
         map=map_,
@@ -153,6 +163,7 @@ def _linked(
     link = RobotLink(setup, log=house.store.folder / LOG)
     try:
         link.start()
+        link.beat()  # a game begins by what the robot says of itself
         world = kind(
             house.activity,
             list(house.names),
@@ -185,6 +196,27 @@ class _Diagnosis:
 
         evidence = device_evidence(self._robot, health)
         return {one.rule.code: one.rule.critical for one in diagnose(self._book, evidence)}
+
+
+def check_map(house: House, map_: str) -> None:
+    """Look whether a robot could play by a map, before one is switched on.
+
+    Raises:
+        TangyError: it is no map, or the robot cannot stand there where it has to.
+    """
+    from tangy_hw.navigation.map_files import MapFileError, read_map
+    from tangy_hw.navigation.planning import PlanError, check_goal
+
+    known = read_map(Path(map_))
+    people = tuple(house.names)
+    for place in (FRONT, *people):
+        at = house.room.stand(place, people)
+        try:
+            check_goal(known, (at.x, at.y))
+        except PlanError as error:
+            where = "the front" if place == FRONT else f"{house.name(place)}'s place"
+            told = f"{map_}: {where} ({at.x:g}, {at.y:g}) cannot be driven to on it. {error}"
+            raise MapFileError(plain(told)) from None
 
 
 def _start(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:

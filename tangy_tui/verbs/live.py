@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -70,6 +70,18 @@ def live(
     pace: Annotated[
         float, typer.Option(min=1, max=300, help="Seconds from one call to the next.")
     ] = PACE,
+    map_: Annotated[
+        str,
+        typer.Option(
+            "--map", metavar="FILE.yaml", help="The map of the room, as `tangy map` draws it."
+        ),
+    ] = "",
+    lost: Annotated[
+        bool,
+        typer.Option(
+            "--lost", help="Tangy does not stand at the front: it turns, and finds its place."
+        ),
+    ] = False,
     camera: Cameras = None,
     requests: Annotated[
         str, typer.Option(help="Where requests come from, as for `tangy requests`.")
@@ -108,7 +120,14 @@ def live(
             notices = [*notices, last]
         say_notices(notices)
         number = house.game_seed(seed)
-        opening = _opening(house, bench, number, faults, pace, camera, requests, table)
+        if map_:
+            from tangy_tui.live.opening import check_map
+
+            check_map(house, map_)
+        own = {
+            "cameras": camera or (), "requests": requests, "corners": _corners(table),
+        }  # fmt: skip
+        opening = _opening(house, bench, faults, own, seed=number, pace=pace, map_=map_, lost=lost)
         if screen:
             from tangy_tui.ui.run import run_live
 
@@ -150,16 +169,17 @@ def _listed(given: list[str]) -> list[str]:
 
 
 def _opening(
-    house: House,
-    bench: bool,
-    seed: int,
-    faults: tuple[str, ...],
-    pace: float,
-    camera: list[str] | None,
-    requests: str,
-    table: str,
+    house: House, bench: bool, faults: tuple[str, ...], own: dict[str, Any], **both: Any
 ) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
-    """Return what opens the robot, or its bench (in a hurry, if that is asked for)."""
+    """Return what opens the robot, or its bench (in a hurry, if that is asked for).
+
+    Args:
+        house: whose robot it is.
+        bench: its devices are simulated.
+        faults: that are to come on the bench.
+        own: what only a robot that is there is told: its cameras and request sensor.
+        both: what both are told.
+    """
     from tangy_profiles.fault_file import load_faults
     from tangy_sim.injection import read_injection
     from tangy_tui.live.opening import open_bench, open_robot
@@ -169,18 +189,8 @@ def _opening(
 
     def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
         if bench:
-            return open_bench(
-                house, seed=seed, stepped=stepped, pace=pace, book=book, injections=to_come
-            )
-        return open_robot(
-            house,
-            seed=seed,
-            pace=pace,
-            book=book,
-            cameras=camera or (),
-            requests=requests,
-            corners=_corners(table),
-        )
+            return open_bench(house, stepped=stepped, book=book, injections=to_come, **both)
+        return open_robot(house, book=book, **own, **both)
 
     return opening
 

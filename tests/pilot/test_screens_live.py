@@ -13,6 +13,7 @@ from textual.app import App
 
 from tangy_hw.devices import Pose
 from tangy_hw.world import LiveWorld
+from tangy_profiles.health import OK, Reading
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF
@@ -83,6 +84,24 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
             assert "TANGY live" in told and "robot OK" in told and "FACILITATE" in told
         finally:
             link.free = True
+
+
+async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    well = link.state.health
+    astray = Reading("localisation", 0.0, OK, {"fit": 1.0, "spread": 4.0})
+    link.state = replace(link.state, health=(astray, *well))
+    link.free = False
+    async with run(app=program, size=(120, 40)) as pilot:
+        try:
+            await until(pilot, lambda: "finds its place" in pilot.lines()[0])
+            assert [do for do, _ in link.done] == ["spin"]
+            await until(pilot, lambda: "does not know where it stands" in screen_text(pilot.app))
+        finally:
+            link.state = replace(link.state, health=well)
+            link.free = True
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
 
 
 async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(

@@ -43,6 +43,7 @@ REST_SECONDS = 5.0  # in which what it does is broken off
 SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
 ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
+LOOKS_ROUND = "Tangy does not know where it stands: it turns on the spot, then drives to the front."
 TOOK_OVER = "You say what Tangy does next."
 
 
@@ -70,7 +71,7 @@ class LiveScreen(PlayScreen):
         self._working = False
         self._turn = asyncio.Lock()
         """Whoever has it has the supervision, and the robot."""
-        self._seen_going = ""
+        self._seen_doing = ""
 
     def on_mount(self) -> None:
         """Show what is known, begin, and follow the robot."""
@@ -85,6 +86,8 @@ class LiveScreen(PlayScreen):
 
     async def _begin_game(self) -> list[Event]:
         await self._going.wait()
+        if self._world.lost:
+            self._write(LOOKS_ROUND, "warn")
         self._world.link.release()  # staff have said that all is well
         return await self._beside(self._supervision.begin)
 
@@ -276,8 +279,8 @@ class LiveScreen(PlayScreen):
         state = self._world.link.state
         if not state.number:
             return
-        if state.going != self._seen_going:
-            self._seen_going = state.going
+        if (doing := self._doing()) != self._seen_doing:
+            self._seen_doing = doing
             self._show_status()
         marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
         marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
@@ -303,12 +306,19 @@ class LiveScreen(PlayScreen):
 
     def _note(self) -> str:
         """Say what the robot is doing, or what the keys would do next."""
-        if self._stopped or self._learning or self._supervision.over or not self._going.is_set():
+        idle = self._supervision.over and not self._working
+        if self._stopped or self._learning or idle or not self._going.is_set():
             return super()._note()
+        return self._doing() or (self._autonomy if self._autonomy != AUTONOMY[0] else "")
+
+    def _doing(self) -> str:
+        """Say what keeps the robot busy on its wheels, "" if nothing does."""
+        if self._working and self._world.lost:
+            return "finds its place"
         going = self._world.link.state.going
-        if going:
-            return f"drives to {'the front' if going == FRONT else self._house.name(going)}"
-        return self._autonomy if self._autonomy != AUTONOMY[0] else ""
+        if not going:
+            return ""
+        return f"drives to {'the front' if going == FRONT else self._house.name(going)}"
 
 
 def _acts(autonomy: str) -> str:

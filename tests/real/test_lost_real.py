@@ -1,0 +1,46 @@
+"""A robot that is not told where it stands, and finds its place on a map by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+from pathlib import Path
+
+import pytest
+
+from tangy_hw.navigation.map_files import write_map
+from tangy_hw.navigation.occupancy import map_of_room
+from tangy_profiles.fault_file import load_faults
+from tangy_tui.house import House
+from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.opening import open_bench
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
+FOUND = 0.15  # metres by which it may be off
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    house = House(tmp_path / "data")
+    yield house
+    house.close()
+
+
+@pytest.mark.parametrize("seed", [5, 9])
+def test_it_finds_itself_wherever_it_stands_and_drives_to_the_front(
+    house: House, tmp_path: Path, seed: int
+) -> None:
+    map_ = tmp_path / "room.yaml"
+    write_map(map_of_room(house.room, people=4), map_)
+    book = load_faults(house.robot)
+    with open_bench(
+        house, seed=seed, stepped=True, book=book, kind=BenchedWorld, map_=str(map_), lost=True
+    ) as world:
+        assert world.lost
+        world.bench.do("inject", kind="carried-off")  # to anywhere in the room
+        world.begin()
+        assert not world.lost
+        x, y, _ = world.truth()["pose"]
+        believed = world.link.beat().pose
+        assert hypot(believed.x - x, believed.y - y) < FOUND
+        assert hypot(house.room.front.x - x, house.room.front.y - y) < 0.5
