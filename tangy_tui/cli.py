@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Annotated, Any
 
 import typer
@@ -123,13 +124,19 @@ app.add_typer(faces.app, name="faces")
 app.add_typer(log.app, name="log")
 
 
+@cache
+def commands() -> Callable[..., Any]:
+    """Return all verbs with their options; to make them takes longer than most verbs run."""
+    return typer.main.get_command(app)
+
+
 def main() -> None:
     """Run the command line and exit with its status."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without UTF-8 still gets its line
     try:
-        status = app(standalone_mode=False)
+        status = commands()(standalone_mode=False)
     except TangyError as error:
         print(f"tangy: {error}", file=sys.stderr)
         status = 2

@@ -11,11 +11,12 @@ import hashlib
 import json
 import platform
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from itertools import product
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
@@ -182,31 +183,14 @@ def learn_policy(
         raise NothingToLearnFrom(
             "There is nothing to learn from yet: demonstrate a game first, with tangy teach."
         )
-    import numpy as np
-    import sklearn
-    from sklearn.ensemble import RandomForestClassifier
-
-    encode = encoder(activity)
-    forest = RandomForestClassifier(
-        n_estimators=settings.trees,
-        bootstrap=settings.bootstrap,
-        min_samples_leaf=settings.min_samples_leaf,
-        random_state=settings.seed % 2**32,
-    )
-    forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
-    shares = forest.predict_proba(np.array([encode(s) for s in situations]))
-    behaviours = [str(name) for name in forest.classes_]
+    forest = grown(settings, tuple(rows), tuple(situations))
     seen = Counter(situation for situation, _ in shown)
     table: dict[Situation, Decision] = {}
-    for situation, row in zip(situations, shares.tolist(), strict=True):
-        votes = sorted(
-            ((b, round(share, 9)) for b, share in zip(behaviours, row, strict=True) if share > 0),
-            key=lambda vote: (-vote[1], vote[0]),
-        )
+    for situation, votes in zip(situations, forest.votes, strict=True):
         table[situation] = Decision(
             votes[0][0],
             votes[0][1],
-            tuple(votes),
+            votes,
             seen[situation],
             situation in contested,
             right.get(situation, ()),
@@ -219,13 +203,7 @@ def learn_policy(
         settings=settings,
         table=MappingProxyType(table),
         digest=_digest(settings, rows, table, resolutions),
-        versions=MappingProxyType(
-            {
-                "python": platform.python_version(),
-                "numpy": str(np.__version__),
-                "scikit-learn": str(sklearn.__version__),
-            }
-        ),
+        versions=MappingProxyType(dict(forest.versions)),
         resolutions=tuple(resolutions),
     )
 
@@ -234,12 +212,64 @@ def _name_by_count(activity: str, ids: Sequence[str]) -> str:
     return f"{activity}-{len(ids)}"
 
 
-def encoder(activity: Activity) -> Any:
-    """Return the one-hot encoding of a situation (stage, request, user state)."""
+class Forest(NamedTuple):
+    """What a forest answers: in each situation the behaviours voted for, most votes first."""
+
+    votes: tuple[tuple[tuple[str, float], ...], ...]
+    versions: tuple[tuple[str, str], ...]
+
+
+@lru_cache(maxsize=256)
+def grown(
+    settings: ForestSettings,
+    rows: tuple[tuple[Situation, str], ...],
+    situations: tuple[Situation, ...],
+) -> Forest:
+    """Grow a forest from rows and ask it about every situation; from the same rows only once.
+
+    A hundred trees take a tenth of a second, and the same demonstrations are learnt from again
+    whenever a policy is looked at, compared, or learnt after a conflict that there was not.
+    """
+    import numpy as np
+    import sklearn
+    from sklearn.ensemble import RandomForestClassifier
+
+    encode = encoder(situations)
+    forest = RandomForestClassifier(
+        n_estimators=settings.trees,
+        bootstrap=settings.bootstrap,
+        min_samples_leaf=settings.min_samples_leaf,
+        random_state=settings.seed % 2**32,
+    )
+    forest.fit(np.array([encode(s) for s, _ in rows]), [behaviour for _, behaviour in rows])
+    shares = forest.predict_proba(np.array([encode(s) for s in situations]))
+    behaviours = [str(name) for name in forest.classes_]
+    return Forest(
+        tuple(
+            tuple(
+                sorted(
+                    (
+                        (behaviour, round(share, 9))
+                        for behaviour, share in zip(behaviours, row, strict=True)
+                        if share > 0
+                    ),
+                    key=lambda vote: (-vote[1], vote[0]),
+                )
+            )
+            for row in shares.tolist()
+        ),
+        (
+            ("python", platform.python_version()),
+            ("numpy", str(np.__version__)),
+            ("scikit-learn", str(sklearn.__version__)),
+        ),
+    )
+
+
+def encoder(situations: Sequence[Situation]) -> Callable[[Situation], list[float]]:
+    """Return the one-hot encoding of a situation (stage, request, user state) among all of them."""
     words = [
-        *((0, stage) for stage in activity.stages),
-        *((1, request) for request in ("ANR", "AR")),
-        *((2, state.name) for state in activity.user_states),
+        word for part in range(3) for word in dict.fromkeys((part, s[part]) for s in situations)
     ]
     place = {word: index for index, word in enumerate(words)}
 

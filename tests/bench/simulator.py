@@ -84,7 +84,7 @@ def lookup(policy: Policy) -> tuple[float, float]:
 
     activity = load_activity("bingo")
     situations = list(activity.situations)
-    encode = encoder(activity)
+    encode = encoder(list(all_situations(activity)))
     rows = np.array([encode(s) for s in all_situations(activity)])
     forest = RandomForestClassifier(n_estimators=100, bootstrap=False, random_state=0)
     forest.fit(rows, [policy.decide(s).behaviour for s in all_situations(activity)])

@@ -25,6 +25,7 @@ from tangy_tui.learning.policy import (
     NotOfThisActivity,
     Policy,
     all_situations,
+    grown,
     learn_policy,
 )
 from tangy_tui.learning.reachable import joint_states
@@ -50,7 +51,7 @@ def everything(activity: Activity, *without: Situation) -> list[tuple[Situation,
 # ------------------------------------------------------------------------------- exactness
 
 
-@pytest.mark.parametrize("first", range(0, 100, 10))
+@pytest.mark.parametrize("first", range(0, 50, 10))
 def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
     first: int, activity: Activity, cover: Cover
 ) -> None:
@@ -64,11 +65,8 @@ def test_it_is_exact_after_any_covering_demonstration_of_one_to_eight_people(
             assert decision.sure
 
 
-@pytest.mark.parametrize("first", range(0, 20, 10))
-def test_the_papers_bagging_is_exact_too_with_lower_votes(
-    first: int, activity: Activity, cover: Cover
-) -> None:
-    for seed in range(first, first + 10):
+def test_the_papers_bagging_is_exact_too_with_lower_votes(activity: Activity, cover: Cover) -> None:
+    for seed in range(10):
         shown = cover("bingo", seed, 1 + seed % 8)
         policy = learn_policy(activity, shown, settings=replace(PAPER, seed=seed))
         assert policy.exact(activity)
@@ -109,6 +107,7 @@ def test_it_depends_on_what_was_shown_and_on_nothing_else(activity: Activity) ->
     rows = everything(activity)
     one = learn_policy(activity, [showing(*rows)], settings=FEW)
     parts = [showing(*rows[:4], id="a"), showing(*rows[4:], id="b")]
+    grown.cache_clear()  # the same trees grow again, and are not only remembered
     other = learn_policy(activity, parts, settings=FEW, name="other")
     assert other.table == one.table
     assert other.digest == one.digest
