@@ -40,6 +40,11 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tangy"))
 # them after every 700 new ones, as Python does, takes a fifth of the suite's time.
 gc.set_threshold(100_000, 10, 10)
 
+# An installed program is compiled already. Where the environment forbids to keep what was compiled,
+# each of the hundreds of programs that tests start, and each worker, would compile it all again.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 TESTS = Path(__file__).parent
 
 

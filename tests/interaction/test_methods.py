@@ -269,8 +269,8 @@ def test_the_regret_of_bayes_ucb_is_at_most_65_hundredths_of_thompsons() -> None
 
 
 def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
-    thompson = regret(bench.thompson, bench.shared, 300)
-    assert regret(bench.bayes_ucb_prior, bench.shared, 300, earlier=True) <= 0.5 * thompson
+    thompson = regret(bench.thompson, bench.shared, 150)
+    assert regret(bench.bayes_ucb_prior, bench.shared, 150, earlier=True) <= 0.5 * thompson
 
 
 # ---------------------------------------------------------------------------------- in words

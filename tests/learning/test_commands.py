@@ -306,9 +306,8 @@ class TestPeople:
 
     @given(st.lists(st.text(max_size=20), min_size=1, max_size=8))
     def test_any_names_leave_the_phrases_of_the_activity_as_they_are(
-        self, names: list[str]
+        self, activity: Activity, names: list[str]
     ) -> None:
-        activity = load_activity("bingo")
         book = Phrasebook(activity, [Person(f"user{n}", name) for n, name in enumerate(names, 1)])
         for behaviour in activity.behaviours.values():
             for phrase in behaviour.phrases:

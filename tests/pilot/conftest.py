@@ -110,7 +110,7 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
             quiet = 0
         elif loop._ready or thinks:
             quiet = 0
-        elif screen is not None and _to_be_painted(screen):
+        elif screen is not None and not app._exit and _to_be_painted(screen):
             screen._on_timer_update()  # as Textual does at the next sixtieth of a second
             quiet = 0
         else:
