@@ -1,7 +1,8 @@
 """The program's end of the robot process: it is started, asked, heard, and told that we live.
 
 It may be used from any thread. A reader's thread takes what the process says; another one tells it
-twenty times a second that the program lives, so that a program that hangs has the robot stop.
+twenty times a second that the program lives, so that a program that hangs has the robot stop. That
+thread lives on where only a screen hangs: a screen says itself that it is `alive`.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ BEAT_SECONDS = 0.05
 SILENT_SECONDS = 0.6
 """Without a word from it for so long, the robot process hangs; its end is known at once."""
 SILENT_STEPPED = 10.0  # on a bench in a hurry, where a busy machine may take its time
+HANGS_SECONDS = 2.0
+"""A screen that has not said for so long that it lives hangs: staff could not stop the robot."""
 START_SECONDS = 30.0
 ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itself before
 END_SECONDS = 3.0
@@ -100,6 +103,7 @@ class RobotLink:
         self._lock = threading.Lock()
         self._said = threading.Condition()
         self._closing = threading.Event()
+        self._alive: float | None = None  # when a screen last said that it lives
         self._threads: list[threading.Thread] = []
 
     # ------------------------------------------------------------------------- its process
@@ -256,6 +260,13 @@ class RobotLink:
         """Let the robot move again."""
         self.tell("release")
 
+    def alive(self) -> None:
+        """Say that the screen lives, which from the first time on has to be said again and again.
+
+        Where it is not, the robot process is not told either that the program lives.
+        """
+        self._alive = time.monotonic()
+
     # ------------------------------------------------------------------------- the threads
 
     def _write(self, line: str) -> bool:
@@ -273,8 +284,10 @@ class RobotLink:
     def _beat(self, process: subprocess.Popen[bytes]) -> None:
         number = 0
         while not self._closing.wait(BEAT_SECONDS) and process.poll() is None:
-            number += 1
-            self._write(f'{{"beat":{number}}}')
+            alive = self._alive
+            if alive is None or time.monotonic() - alive < HANGS_SECONDS:
+                number += 1
+                self._write(f'{{"beat":{number}}}')
 
     def _listen(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None  # noqa: S101 - it was asked for

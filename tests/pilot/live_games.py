@@ -29,8 +29,13 @@ class HeldLink(FakeLink):
     def __init__(self) -> None:
         super().__init__(PEOPLE)
         self.free = True
+        self.stamps = 0
+        """How often the screen has said that it lives."""
         self.most = 10_000
         """So many lines it says, and then does nothing to its end."""
+
+    def alive(self) -> None:
+        self.stamps += 1
 
     def wait(self, asked: Any, seconds: float = 0.0) -> bool:
         free = self.free and len(self.said) <= self.most

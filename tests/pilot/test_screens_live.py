@@ -160,7 +160,7 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
     async with run(app=program, size=(120, 40)) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
         await pilot.press("o")
-        await until(pilot, lambda: bool(live(pilot).query(AskingPanel)))
+        await until(pilot, lambda: any(one._open for one in live(pilot).query(AskingPanel)))
         await pilot.press("escape")  # out of the line
         await until(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
         steps = live(pilot)._supervision.steps
@@ -195,6 +195,20 @@ async def test_a_call_is_said_again_and_taken_back(
         assert len(world.called) == count - 1
         noted = [event.body["what"] for event in house.store.events(STAFF)]
         assert noted == [f"staff took a call back: {label}"]
+
+
+async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: link.stamps > 1)
+        for key in ("question_mark", "7"):
+            await pilot.press(key)
+            await until(pilot, lambda: pilot.app.screen is not live(pilot))
+            stamps = link.stamps
+            await until(pilot, lambda stamps=stamps: link.stamps > stamps + 2)  # type: ignore[misc]
+            await pilot.press("escape")
+            await until(pilot, lambda: pilot.app.screen is live(pilot))
 
 
 async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Program) -> None:

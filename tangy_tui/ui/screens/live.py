@@ -274,7 +274,8 @@ class LiveScreen(PlayScreen):
         )
 
     def _track(self) -> None:
-        """Draw where the robot is, and what it knows of the floor."""
+        """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
+        self._world.link.alive()
         room = self.query_one(RoomView)
         state = self._world.link.state
         if not state.number:

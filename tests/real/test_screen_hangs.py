@@ -1,0 +1,68 @@
+"""A screen that hangs stops the robot, although the rest of the program lives."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from tangy_hw.robot import BrokenOff
+from tangy_hw.robot_link import HANGS_SECONDS, RobotLink
+from tangy_tui.live.bench import Bench
+from tests.real.bench_setup import setup_on
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
+FAR = [9.0, 1.2, 1.57]  # some ten seconds away
+STOPS = 0.6  # s
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    people = {"user1": "Ann", "user2": "Ben"}
+    bench = Bench(seed=1, people=people, stepped=False, activity="bingo", robot="tangy")
+    yield bench
+    bench.close()
+
+
+@pytest.fixture
+def link(bench: Bench) -> Iterator[RobotLink]:
+    link = RobotLink(setup_on(bench))
+    link.start()
+    yield link
+    link.close()
+
+
+def until(holds: Callable[[], bool]) -> None:
+    end = time.monotonic() + 20
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def moves(bench: Bench) -> bool:
+    return bool(bench.do("truth")["truth"]["moving"])
+
+
+def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
+    bench: Bench, link: RobotLink
+) -> None:
+    drive = link.ask("go", to=FAR)
+    until(lambda: moves(bench))
+    link.alive()
+    said = time.monotonic()
+    until(lambda: "the program says nothing" in link.state.hazard)
+    until(lambda: not moves(bench))
+    assert HANGS_SECONDS - 0.1 < time.monotonic() - said < HANGS_SECONDS + STOPS
+    with pytest.raises(BrokenOff):
+        drive.result(10)
+
+    link.alive()
+    until(lambda: link.state.hazard == "")
+
+
+def test_a_program_without_a_screen_need_not_say_it(bench: Bench, link: RobotLink) -> None:
+    link.ask("go", to=FAR)
+    until(lambda: moves(bench))
+    time.sleep(HANGS_SECONDS + 1.0)
+    assert moves(bench) and link.state.hazard == ""
