@@ -12,19 +12,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Ascii,
-    Data,
-    Games,
-    Json,
-    Seed,
-    Users,
-    full_screen,
-    open_house,
-    print_json,
-    say_notices,
-)
+from tangy_tui.verbs import common
+from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
@@ -34,7 +23,6 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Event, Supervision
 
 PACE = 30.0  # as in tangy_hw.world, which is not to be imported here
-SCRIPTED = "scripted"
 LARGEST_LIST = 100_000  # bytes of a list of faults
 
 
@@ -44,15 +32,13 @@ def live(
         bool,
         typer.Option("--bench", help="Without a robot: its devices are simulated, and its people."),
     ] = False,
-    games: Games = 1,
-    users: Users = 4,
+    games: common.Games = 1,
+    users: common.Users = 4,
     headless: Annotated[
         bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
     ] = False,
-    activity: ActivityName = "bingo",
-    policy: Annotated[
-        str, typer.Option(help="The policy to play by: a name or a digest; default the last.")
-    ] = "",
+    activity: common.ActivityName = "bingo",
+    policy: PolicyName = "",
     inject: Annotated[
         list[str] | None,
         typer.Option(
@@ -61,12 +47,8 @@ def live(
             "stand in a file, one on each line. Repeatable.",
         ),
     ] = None,
-    teacher: Annotated[
-        str | None, typer.Option(help="Who answers where Tangy asks; 'scripted' knows the game.")
-    ] = None,
-    expert: Annotated[
-        str, typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you.")
-    ] = "",
+    teacher: Teacher = None,
+    expert: Expert = "",
     pace: Annotated[
         float, typer.Option(min=1, max=300, help="Seconds from one call to the next.")
     ] = PACE,
@@ -89,10 +71,10 @@ def live(
     table: Annotated[
         str, typer.Option(help="The table's corners in the pictures, as for `tangy requests`.")
     ] = "",
-    seed: Seed = None,
-    data: Data = None,
-    as_json: Json = False,
-    ascii_only: Ascii = False,
+    seed: common.Seed = None,
+    data: common.Data = None,
+    as_json: common.Json = False,
+    ascii_only: common.Ascii = False,
 ) -> None:
     """Let Tangy facilitate games with its devices, by the policy it has learnt.
 
@@ -100,25 +82,16 @@ def live(
     simulated devices over their own wires. Devices are watched all the time; what goes wrong is
     diagnosed, and a critical fault stops the robot until staff clear it.
     """
-    from tangy_tui.house import teacher_name
-    from tangy_tui.learning.policies import load_policy, need_policy
-    from tangy_tui.monitoring.games import uncleared
+    from tangy_tui.learning.policies import need_policy
 
-    who = plain(teacher or teacher_name())[:40]
-    if expert not in ("", SCRIPTED):
-        raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
+    who = who_answers(teacher, expert)
     if inject and not bench:
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
     faults = tuple(_listed(inject or []))
-    screen = not (headless or as_json) and full_screen()
-    with open_house(data, activity, users, robot=robot) as house:
+    screen = not (headless or as_json) and common.full_screen()
+    with common.open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
-        learnt, notices = load_policy(house.store, house.activity, policy)
-        left = None if as_json else uncleared(house.store)
-        if left is not None:
-            last = f"The last game ended with a fault that nobody cleared: {left.name}."
-            notices = [*notices, last]
-        say_notices(notices)
+        learnt = recall(house, policy, quiet=as_json)
         number = house.game_seed(seed)
         if map_:
             from tangy_tui.live.opening import check_map
@@ -220,7 +193,7 @@ def _play(
     played.play(bar, expert=expert, tell=tell)
     document = played.document()
     if as_json:
-        print_json(document)
+        common.print_json(document)
         return
     reports.print_tally(house, played.tally, supervision.persuasion.beliefs)
     for name in ("reads", "identities"):

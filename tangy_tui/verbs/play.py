@@ -8,21 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Ascii,
-    Data,
-    Games,
-    Json,
-    Seed,
-    Users,
-    full_screen,
-    open_house,
-    print_json,
-    print_line,
-    say_notices,
-)
+from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,
     Listening,
@@ -31,6 +17,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
+from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
@@ -40,16 +27,12 @@ if TYPE_CHECKING:
 
 
 def play(
-    games: Games = 1,
-    users: Users = 4,
+    games: common.Games = 1,
+    users: common.Users = 4,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
-    activity: ActivityName = "bingo",
-    policy: Annotated[
-        str, typer.Option(help="The policy to play by: a name or a digest; default the last.")
-    ] = "",
-    teacher: Annotated[
-        str | None, typer.Option(help="Who answers where Tangy asks; 'scripted' knows the game.")
-    ] = None,
+    activity: common.ActivityName = "bingo",
+    policy: PolicyName = "",
+    teacher: Teacher = None,
     inject: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,10 +41,7 @@ def play(
             "at every step (~0.02), or while another is recovered from (@recovery). Repeatable.",
         ),
     ] = None,
-    expert: Annotated[
-        str,
-        typer.Option(help="Who clears what halts Tangy; 'scripted' mends it. Default: you."),
-    ] = "",
+    expert: Expert = "",
     mic: Mic = None,
     hands_free: HandsFree = False,
     spoken_answers: SpokenAnswers = False,
@@ -75,10 +55,10 @@ def play(
             min=1, max=1000, help="Times life; 20, or 1 where Tangy speaks or cameras are real."
         ),
     ] = None,
-    seed: Seed = None,
-    data: Data = None,
-    as_json: Json = False,
-    ascii_only: Ascii = False,
+    seed: common.Seed = None,
+    data: common.Data = None,
+    as_json: common.Json = False,
+    ascii_only: common.Ascii = False,
 ) -> None:
     """Let Tangy facilitate games in simulation, by the policy it has learnt.
 
@@ -87,26 +67,22 @@ def play(
     from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
     With --camera that device is real: cover its lens, and Tangy asks to have it uncovered.
     """
-    from tangy_tui.house import teacher_name
     from tangy_tui.inputs import keys_from_terminal
     from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.policies import load_policy, need_policy
-    from tangy_tui.monitoring.games import uncleared
+    from tangy_tui.learning.policies import need_policy
 
-    who = plain(teacher or teacher_name())[:40]
-    if expert not in ("", "scripted"):
-        raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
+    who = who_answers(teacher, expert)
     faults = tuple(inject or ())
     listening = Listening(mic, hands_free, spoken_answers, mode)
     listening.check()
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
-    screen = not (headless or as_json) and full_screen()
+    screen = not (headless or as_json) and common.full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
-    with open_house(data, activity, users, robot=robot) as house:
+    with common.open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         if screen:
             from tangy_hw.sensors import sensors_of
@@ -132,16 +108,9 @@ def play(
                     sensors=sensors,
                 )
             )
-        learnt, notices = load_policy(house.store, house.activity, policy)
-        left = None if as_json else uncleared(house.store)
-        if left is not None:
-            notices = [
-                *notices,
-                f"The last game ended with a fault that nobody cleared: {left.name}.",
-            ]
-        say_notices(notices)
+        learnt = recall(house, policy, quiet=as_json)
         by_lines = not (headless or as_json)
-        scripted = who == "scripted"
+        scripted = who == SCRIPTED
         supervision = house.supervision(learnt, seed, asks=by_lines or scripted, injections=faults)
         if not by_lines:
             _play_headless(
@@ -157,7 +126,7 @@ def play(
             supervision,
             games,
             house.name,
-            print_line,
+            common.print_line,
             read,
             who,
             demonstrations=lambda: [
@@ -170,18 +139,18 @@ def play(
 
 def demo(
     seed: Annotated[int, typer.Option(help="Another seed, other games.")] = 1,
-    data: Data = None,
+    data: common.Data = None,
     plain_lines: Annotated[bool, typer.Option("--plain", help="By lines.")] = False,
-    as_json: Json = False,
-    ascii_only: Ascii = False,
+    as_json: common.Json = False,
+    ascii_only: common.Ascii = False,
 ) -> None:
     """See the whole story in a minute: three demonstrations, learning, one game."""
     from tempfile import TemporaryDirectory
 
-    with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_house(
+    with TemporaryDirectory(prefix="tangy-demo-") as scratch, common.open_house(
         data or Path(scratch), "bingo", 4
     ) as house:  # fmt: skip
-        if full_screen() and not (plain_lines or as_json):
+        if common.full_screen() and not (plain_lines or as_json):
             from tangy_tui.ui.run import run_demo
 
             status = run_demo(house, seed=seed, ascii_only=ascii_only)
@@ -191,7 +160,7 @@ def demo(
 
         tally = tell(house, seed, (lambda _: None) if as_json else print)
         if as_json:
-            print_json(tally)
+            common.print_json(tally)
 
 
 def _play_headless(
@@ -238,7 +207,7 @@ def _play_headless(
             told["answers"] = [lesson_document(house, one) for one in lessons]
         if injected:
             told["did_not_come_about"] = dict(absent)
-        print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
+        common.print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
             print(lesson_words(house.activity, lesson))

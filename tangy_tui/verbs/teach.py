@@ -13,19 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Ascii,
-    Data,
-    Games,
-    Json,
-    Seed,
-    Users,
-    full_screen,
-    open_house,
-    print_json,
-    print_line,
-)
+from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,
     Listening,
@@ -44,7 +32,7 @@ if TYPE_CHECKING:
 
 
 def teach(
-    activity: ActivityName = "bingo",
+    activity: common.ActivityName = "bingo",
     script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
     mic: Mic = None,
     hands_free: HandsFree = False,
@@ -58,12 +46,12 @@ def teach(
     teacher: Annotated[
         str | None, typer.Option(help="Whose demonstration it is; 'scripted' for the built-in one.")
     ] = None,
-    games: Games = 1,
+    games: common.Games = 1,
     speed: Annotated[
         float | None,
         typer.Option(min=0.1, max=1000, help="Watch the scripted teacher, x times life."),
     ] = None,
-    users: Users = 4,
+    users: common.Users = 4,
     guided: Annotated[
         bool, typer.Option("--guided", help="A game in which every situation comes about.")
     ] = False,
@@ -72,10 +60,10 @@ def teach(
         typer.Option(metavar="N@STEP", help="Show demonstration N again from a step on."),
     ] = None,
     new: Annotated[bool, typer.Option("--new", help="Leave an unfinished game as it is.")] = False,
-    seed: Seed = None,
-    data: Data = None,
-    as_json: Json = False,
-    ascii_only: Ascii = False,
+    seed: common.Seed = None,
+    data: common.Data = None,
+    as_json: common.Json = False,
+    ascii_only: common.Ascii = False,
 ) -> None:
     """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
     from tangy_tui.house import teacher_name
@@ -88,14 +76,14 @@ def teach(
     listening = Listening(mic, hands_free, spoken_answers, mode, record)
     listening.check()
     sound = keys_from_terminal(script) if mic == "-" else 0  # before it is asked for a screen
-    screen = not (plain_lines or script or as_json) and full_screen()
+    screen = not (plain_lines or script or as_json) and common.full_screen()
     if not screen:
         listening = replace(listening, hands_free=True)  # there is no key to talk with
-    with open_house(data, activity, users) as house:
+    with common.open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
         ears = listening.ears(house, teaching.phrasebook, who, sound=sound)
-        if who == "scripted" and (speed is None or not full_screen()):
+        if who == "scripted" and (speed is None or not common.full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif screen:
             from tangy_tui.ui.run import run_teaching
@@ -144,7 +132,7 @@ def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
                         "shown so far."
                     )
     if as_json:
-        print_json({"demonstrations": [demonstration_document(d) for d in done]})
+        common.print_json({"demonstrations": [demonstration_document(d) for d in done]})
 
 
 def _teach_by_lines(
@@ -168,7 +156,7 @@ def _teach_by_lines(
         "data": None if folder == data_folder(None).absolute() else str(folder),
     }
     who = None if teaching.teacher == plain(teacher_name())[:40] else teaching.teacher
-    write: Callable[[str], None] = (lambda _: None) if as_json else print_line
+    write: Callable[[str], None] = (lambda _: None) if as_json else common.print_line
     lines = TeachingLines(
         teaching,
         line_reader(script),
@@ -182,7 +170,7 @@ def _teach_by_lines(
     )
     asyncio.run(lines.run(resume=resume))
     if as_json:
-        print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
+        common.print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
 
 
 def _seen(house: House, teaching: Teaching) -> list[str]:

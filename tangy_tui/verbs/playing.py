@@ -1,0 +1,68 @@
+"""What the verbs that play games share: who answers, who clears, and by which policy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import say_notices
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+    from tangy_tui.learning.policy import Policy
+
+PolicyName = Annotated[
+    str,
+    typer.Option("--policy", help="The policy to play by: a name or a digest; default the last."),
+]
+Teacher = Annotated[
+    str | None,
+    typer.Option("--teacher", help="Who answers where Tangy asks; 'scripted' knows the game."),
+]
+Expert = Annotated[
+    str,
+    typer.Option(
+        "--expert", help="Who clears what halts Tangy; 'scripted' mends it. Default: you."
+    ),
+]
+SCRIPTED = "scripted"
+"""Who answers, or clears, by what the activity expects."""
+
+
+def who_answers(teacher: str | None, expert: str) -> str:
+    """Return who answers where Tangy asks.
+
+    Raises:
+        TangyError: there is no such expert.
+    """
+    from tangy_tui.house import teacher_name
+
+    if expert not in ("", SCRIPTED):
+        raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
+    return plain(teacher or teacher_name())[:40]
+
+
+def recall(house: House, wanted: str, *, quiet: bool) -> Policy:
+    """Return the policy to play by; say what is to be known before, also of the last game.
+
+    Args:
+        house: whose policy it is.
+        wanted: its name or digest, "" for the last one.
+        quiet: whether the last game is left out.
+
+    Raises:
+        TangyError: there is no such policy.
+    """
+    from tangy_tui.learning.policies import load_policy
+    from tangy_tui.monitoring.games import uncleared
+
+    learnt, notices = load_policy(house.store, house.activity, wanted)
+    left = None if quiet else uncleared(house.store)
+    if left is not None:
+        last = f"The last game ended with a fault that nobody cleared: {left.name}."
+        notices = [*notices, last]
+    say_notices(notices)
+    return learnt
