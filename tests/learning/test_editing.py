@@ -300,16 +300,21 @@ def seen(editor: Editor) -> object:
     return used(library), library.resolutions, [c.situation for c in library.conflicts]
 
 
+def editor_of_three(store: Store) -> Editor:
+    """Log three demonstrations, two of which have something in common."""
+    logged(store, "aaa", ["greeting", "joke", "encourage"])
+    logged(store, "bbb", ["joke", "joke"])
+    logged(store, "ccc", ["greeting"])
+    return editor_of(store)
+
+
 @given(CHANGES)
 @settings(max_examples=60)
 def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
     changes: list[tuple[str, int, int]],
 ) -> None:
     with empty_store() as store:
-        logged(store, "aaa", ["greeting", "joke", "encourage"])
-        logged(store, "bbb", ["joke", "joke"])
-        logged(store, "ccc", ["greeting"])
-        editor = editor_of(store)
+        editor = editor_of_three(store)
         states = [seen(editor)]
         steps = {id for ids in used(editor.library).values() for id in ids}
         for what, one, other in changes:
@@ -335,10 +340,7 @@ def test_no_step_is_learnt_from_twice_whatever_is_done(
     changes: list[tuple[str, int, int]],
 ) -> None:
     with empty_store() as store:
-        logged(store, "aaa", ["greeting", "joke", "encourage"])
-        logged(store, "bbb", ["joke", "joke"])
-        logged(store, "ccc", ["greeting"])
-        editor = editor_of(store)
+        editor = editor_of_three(store)
         for what, one, other in changes:
             change(editor, what, one, other)
             ids = [id for steps in used(editor.library).values() for id in steps]

@@ -14,7 +14,6 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.library import (
-    BEGUN,
     FINISHED,
     STEP,
     UNDONE,
@@ -33,36 +32,18 @@ from tangy_tui.learning.policies import (
     unused_name,
 )
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
+from tests.shown import log_demonstration
 
 Demonstrate = Callable[[str, int, int], Demonstration]
 FEW = ForestSettings(trees=5)
-
-
-def log(store: Store, shown: Demonstration) -> None:
-    """Log a demonstration as a teaching session does."""
-    store.append(
-        BEGUN,
-        {
-            "demonstration": shown.id,
-            "activity": shown.activity,
-            "teacher": shown.teacher,
-            "seed": shown.seed,
-            "people": list(shown.people),
-        },
-    )
-    for step in shown.steps:
-        store.append(STEP, {"demonstration": shown.id, **step.to_json()})
-    if shown.finished:
-        store.append(FINISHED, {"demonstration": shown.id})
 
 
 @pytest.fixture
 def shown(store: Store, demonstrate: Demonstrate) -> list[Demonstration]:
     """Two demonstrations that are in the log."""
     given = [replace(demonstrate("bingo", seed, 4), teacher=f"Ada {seed}") for seed in (1, 2)]
-    with store.transaction():
-        for one in given:
-            log(store, one)
+    for one in given:
+        log_demonstration(store, one)
     return given
 
 
@@ -93,8 +74,8 @@ def test_demonstrations_that_interleave_are_kept_apart(
     store: Store, demonstrate: Demonstrate
 ) -> None:
     one, other = demonstrate("bingo", 1, 4), demonstrate("bingo", 2, 4)
-    log(store, replace(one, steps=one.steps[:3], finished=False))
-    log(store, other)
+    log_demonstration(store, replace(one, steps=one.steps[:3], finished=False))
+    log_demonstration(store, other)
     store.append(STEP, {"demonstration": one.id, **one.steps[3].to_json()})
     found = read_demonstrations(store, "bingo")
     assert found == [replace(one, steps=one.steps[:4], finished=False), other]
@@ -142,7 +123,7 @@ def test_the_last_policy_of_each_activity_counts(
     learnt(activity, shown, store)
     last = learnt(activity, shown[:1], store)
     made_up = demonstrate("lanterns", 1, 4)
-    log(store, made_up)
+    log_demonstration(store, made_up)
     other = learnt(lanterns, [made_up], store)
     assert load_policy(store, activity)[0] == last
     assert load_policy(store, lanterns)[0] == other
@@ -152,7 +133,7 @@ def test_later_demonstrations_do_not_change_a_kept_policy(
     store: Store, activity: Activity, shown: list[Demonstration], demonstrate: Demonstrate
 ) -> None:
     policy = learnt(activity, shown, store)
-    log(store, demonstrate("bingo", 3, 4))
+    log_demonstration(store, demonstrate("bingo", 3, 4))
     assert load_policy(store, activity) == (policy, [])
 
 

@@ -7,6 +7,8 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from time import sleep
 
@@ -87,8 +89,9 @@ def test_whoever_has_read_enough_is_no_error(tmp_path: Path) -> None:
         assert told.wait(60) == 1
 
 
-def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) -> None:
-    data = ["--data", str(tmp_path / "data")]
+@contextmanager
+def greeting(data: list[str], until: bytes) -> Iterator[subprocess.Popen[bytes]]:
+    """Teach by lines in another process, which has greeted everyone and said something."""
     with subprocess.Popen(  # noqa: S603 - our own interpreter
         [*TANGY, "teach", "--plain", *data], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as taught:
@@ -96,7 +99,13 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
         assert taught.stdout is not None
         taught.stdin.write(b"greet everyone\ny\n")
         taught.stdin.flush()
-        assert any(b"Tangy says" in line for line in iter(taught.stdout.readline, b""))
+        assert any(until in line for line in iter(taught.stdout.readline, b""))
+        yield taught
+
+
+def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) -> None:
+    data = ["--data", str(tmp_path / "data")]
+    with greeting(data, b"Tangy says") as taught:
         busy = tangy("teach", "--plain", *data, home=tmp_path)
         assert busy.returncode == 2
         assert f"process {taught.pid} is writing to".encode() in busy.stderr
@@ -109,14 +118,7 @@ def test_a_writer_that_was_killed_leaves_the_folder_to_the_next(tmp_path: Path) 
 
 def test_ctrl_c_leaves_a_session_by_lines_at_once_and_keeps_its_steps(tmp_path: Path) -> None:
     data = ["--data", str(tmp_path / "data")]
-    with subprocess.Popen(  # noqa: S603 - our own interpreter
-        [*TANGY, "teach", "--plain", *data], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as taught:
-        assert taught.stdin is not None
-        assert taught.stdout is not None
-        taught.stdin.write(b"greet everyone\ny\n")
-        taught.stdin.flush()
-        assert any(b"Now: facilitate" in line for line in iter(taught.stdout.readline, b""))
+    with greeting(data, b"Now: facilitate") as taught:
         sleep(0.5)  # until the next line is waited for
         taught.send_signal(signal.SIGINT)
         try:

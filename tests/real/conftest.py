@@ -123,6 +123,18 @@ class Terminal:
         self.close()
 
 
+def ended(pid: int) -> bool:
+    """Wait for a process to end."""
+    try:
+        descriptor = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return True
+    try:
+        return bool(select.select([descriptor], [], [], PATIENCE)[0])
+    finally:
+        os.close(descriptor)
+
+
 OpenTerminal = Callable[..., Terminal]
 
 

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic, sleep
 
@@ -16,8 +17,13 @@ from tangy_tui.experiments import cluster
 from tangy_tui.experiments.persuading import play
 from tangy_tui.experiments.sweep import Sweep, Where
 
-pytest.importorskip("distributed", reason="the extra tangy[cluster] is not installed")
-pytestmark = pytest.mark.xdist_group("cluster")
+pytestmark = [
+    pytest.mark.xdist_group("cluster"),
+    pytest.mark.skipif(
+        find_spec("distributed") is None,  # and not imported by every worker
+        reason="the extra tangy[cluster] is not installed",
+    ),
+]
 
 SCHEDULER = ["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"]
 WORKER = ["-m", "distributed.cli.dask_worker", "--host", "127.0.0.1", "--nthreads", "1"]

@@ -30,6 +30,7 @@ from tangy_tui.learning.speech.recogniser import WORKER, Recogniser, SpeechUnava
 from tangy_tui.learning.speech.understanding import understand, wanted
 from tangy_tui.learning.verifying import Say, Stop
 from tests.hw.sounds import wav
+from tests.real.conftest import PATIENCE, ended
 from tests.real.voices import FESTIVAL, NOISES, Voices
 
 pytestmark = [
@@ -39,7 +40,6 @@ pytestmark = [
 
 T = TypeVar("T")
 
-PATIENCE = 30.0
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 WANTED = wanted(BOOK, USUAL)
 FEW = Wanted(("call number", "tell a joke", "go to the front"))
@@ -121,18 +121,6 @@ def studio(_studio: Studio) -> Studio:
     _studio.told.clear()
     _studio.recogniser.partial = lambda words: None
     return _studio
-
-
-def ended(pid: int) -> bool:
-    """Wait for a process to end."""
-    try:
-        descriptor = os.pidfd_open(pid)
-    except ProcessLookupError:
-        return True
-    try:
-        return bool(select.select([descriptor], [], [], PATIENCE)[0])
-    finally:
-        os.close(descriptor)
 
 
 class TestVoices:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import select
 import shutil
 import signal
 import subprocess
@@ -16,7 +15,7 @@ import pytest
 
 from tangy_hw.sound.wav import RATE
 from tests.hw.sounds import wav
-from tests.real.conftest import PATIENCE
+from tests.real.conftest import PATIENCE, ended
 from tests.real.voices import Voices
 
 if TYPE_CHECKING:
@@ -99,18 +98,6 @@ def children(pid: int) -> list[int]:
             if parent == pid:
                 found.append(int(entry.name))
     return found
-
-
-def ended(pid: int) -> bool:
-    """Wait for a process to end."""
-    try:
-        descriptor = os.pidfd_open(pid)
-    except ProcessLookupError:
-        return True
-    try:
-        return bool(select.select([descriptor], [], [], PATIENCE)[0])
-    finally:
-        os.close(descriptor)
 
 
 def test_a_recording_is_asked_about_and_becomes_a_step(
