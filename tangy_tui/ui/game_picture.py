@@ -112,7 +112,7 @@ class GamePicture:
             Status(
                 mode=mode,
                 robot=robot,
-                stage="over" if self._supervision.over else self._stage,
+                stage="over" if self._supervision.over and self._game else self._stage,
                 game=self._game,
                 step=self._step,
                 note=note,

@@ -98,6 +98,10 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
             await until(pilot, lambda: "finds its place" in pilot.lines()[0])
             assert [do for do, _ in link.done] == ["spin"]
             await until(pilot, lambda: "does not know where it stands" in screen_text(pilot.app))
+            assert "OVER" not in pilot.lines()[0] and "i autonomy" in pilot.lines()[-1]
+            await pilot.press("escape")
+            await until(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
+            await pilot.press("n")
         finally:
             link.state = replace(link.state, health=well)
             link.free = True

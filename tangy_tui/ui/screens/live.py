@@ -76,6 +76,7 @@ class LiveScreen(PlayScreen):
     def on_mount(self) -> None:
         """Show what is known, begin, and follow the robot."""
         super().on_mount()
+        self._show_status()
         self.set_interval(TRACK_SECONDS, self._track)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -83,6 +84,11 @@ class LiveScreen(PlayScreen):
         return action not in NOT_LIVE and super().check_action(action, parameters)
 
     # ---------------------------------------------------------------------------------- game
+
+    @property
+    def _at_rest(self) -> bool:
+        """Whether no game goes on, nor begins: for that the robot may drive."""
+        return self._supervision.over and not self._working
 
     async def _begin_game(self) -> list[Event]:
         await self._going.wait()
@@ -302,13 +308,12 @@ class LiveScreen(PlayScreen):
         if not all(self.query(kind) for kind in (RoomView, StatusLine, KeyLine)):
             return  # the screen is going
         super()._show_status()
-        going, over = self._going.is_set(), self._supervision.over
-        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=over))
+        going = self._going.is_set()
+        self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self._at_rest))
 
     def _note(self) -> str:
         """Say what the robot is doing, or what the keys would do next."""
-        idle = self._supervision.over and not self._working
-        if self._stopped or self._learning or idle or not self._going.is_set():
+        if self._stopped or self._learning or self._at_rest or not self._going.is_set():
             return super()._note()
         return self._doing() or (self._autonomy if self._autonomy != AUTONOMY[0] else "")
 

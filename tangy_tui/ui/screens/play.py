@@ -147,7 +147,7 @@ class PlayScreen(PlayAsking):
             steps.release()
         elif (asking := self._asking) is not None:
             asking.ask_to_give_up()
-        elif self._supervision.over or self._leave_after is not None:
+        elif self._at_rest or self._leave_after is not None:
             close(self, self._tally)
         elif not self._leaving:
             self.run_worker(self._leave(), name="leave")
@@ -198,6 +198,11 @@ class PlayScreen(PlayAsking):
         if self._asking is not None:
             self._asking.hold(True)
         self._show_status()
+
+    @property
+    def _at_rest(self) -> bool:
+        """Whether no game goes on."""
+        return self._supervision.over
 
     def _refused(self) -> bool:
         """Say, after a STOP or while Tangy asks, what has to be done first."""
@@ -359,7 +364,7 @@ class PlayScreen(PlayAsking):
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
         self._picture.show_status(robot, self._note(), self.MODE)
         going = self._going.is_set()
-        self.query_one(KeyLine).show(*keys(going=going, over=self._supervision.over))
+        self.query_one(KeyLine).show(*keys(going=going, over=self._at_rest))
         if asking is not None:
             asking.show_keys(going=going)
         self._faults.show()
@@ -370,6 +375,6 @@ class PlayScreen(PlayAsking):
             return "p goes on"
         if self._learning:
             return "learning"
-        if self._supervision.over:
-            return "g plays again"
+        if self._at_rest:
+            return "g plays again" if self._supervision.games else ""
         return f"x{self._speed:g}" if self._going.is_set() else "paused"
