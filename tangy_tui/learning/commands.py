@@ -304,13 +304,14 @@ class Phrasebook:
         """Compare by an edit distance over words, each weighed by how much it tells."""
         told = [self._weight(word) for word in phrase]
         spent = [self._weight(word) for word in said]
+        wanted = list(enumerate(zip([stem(word) for word in phrase], told, strict=True)))
         row = [0.0]
         for weight in told:
             row.append(row[-1] + weight)
-        for word, cost in zip(said, spent, strict=True):
+        for word, cost in zip([stem(word) for word in said], spent, strict=True):
             last, row = row, [row[0] + cost]
-            for place, (known, weight) in enumerate(zip(phrase, told, strict=True)):
-                swap = 0.0 if stem(word) == stem(known) else cost + weight
+            for place, (known, weight) in wanted:
+                swap = 0.0 if word == known else cost + weight
                 row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
         return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
 
