@@ -191,12 +191,12 @@ async def test_how_it_looks(
     picture: Callable[[App[Any]], None],
 ) -> None:
     why = "Nothing can be seen in the picture."
-    link.sight = replace(WELL, state="COVERED", why=why, seconds=800.0, age=30.0)
+    link.sight = replace(WELL, state="COVERED", why=why, seconds=800.0, age=200.0)
     link.looked = link.read = {**READ, "age": -9.0}
     async with run(make(), size) as pilot:
         pilot.type("v")
         await shown(pilot, "Card 17")
         await shown(pilot, BLOCK)
         await shown(pilot, "covered for 13 min")
-        await shown(pilot, "covered, 30 s old")
+        await shown(pilot, "covered, 3 min old")
         picture(pilot.app)
