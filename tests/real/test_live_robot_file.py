@@ -1,0 +1,96 @@
+"""`tangy live --robot FILE`: a robot that is there, named by its file, and how the program ends.
+
+The robot is a bench that runs beside the program and not under it, as a robot does.
+"""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_tui.live.bench import Bench
+from tests.real.conftest import TANGY, Terminal
+from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
+
+ROOT = Path(__file__).parents[2]
+PROFILE = ROOT / "profiles/tangy_profiles/robots/tangy.toml"
+PEOPLE = {f"user{number}": f"User {number}" for number in range(1, 5)}
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder in which one guided game was shown and learnt from."""
+    folder = tmp_path_factory.mktemp("robot")
+    teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
+    for command in (teach, ["learn"]):
+        subprocess.run(  # noqa: S603
+            [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
+        )
+    return folder
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench(seed=3, people=PEOPLE, stepped=False, activity="bingo", robot="tangy")
+    bench.do("begin")
+    yield bench
+    bench.close()
+
+
+def robot_file(bench: Bench, folder: Path) -> Path:
+    """Write the file of the robot that the bench is, as the README tells."""
+    at = bench.wires.rosbridge
+    drivers = [
+        "[drivers]",
+        *(f'{name} = {{ kind = "rosbridge", at = "{at}" }}' for name in ROSBRIDGE),
+        f'laser = {{ kind = "scip", at = "{bench.wires.scip}" }}',
+        'screen = { kind = "page", port = 0 }',
+    ]
+    text = PROFILE.read_text().replace('# source = "/dev/video0"', f'source = "{bench.wires.head}"')
+    file = folder / "robot.toml"
+    file.write_text(f"{text}\n" + "\n".join(drivers) + "\n")
+    return file
+
+
+ROSBRIDGE = ("base", "stop_button", "arms", "voice")
+
+
+def program(bench: Bench, folder: Path) -> Terminal:
+    corners = ",".join(f"{x:g},{y:g}" for x, y in bench.wires.corners)
+    command = [
+        *(TANGY, "live", "--robot", str(robot_file(bench, folder)), "--pace", "3"),
+        *("--requests", f"signs:{bench.wires.infrared}", "--table", corners),
+        *("--data", str(folder)),
+    ]
+    return Terminal(command)
+
+
+@pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGSTOP, signal.SIGHUP])
+def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
+    folder: Path, bench: Bench, ending: signal.Signals
+) -> None:
+    terminal = program(bench, folder)
+    try:
+        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+            terminal.settle()
+            terminal.type("y")
+        terminal.until("call number")
+        bench.do("ask", person="user2")
+        terminal.until("coming to you")
+        wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+
+        terminal.process.send_signal(ending)
+        assert seconds_to_stop(bench) <= STOPS
+        stood = bench.do("truth")["truth"]["pose"]
+        time.sleep(0.5)
+        assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
+    finally:
+        terminal.process.send_signal(signal.SIGCONT)
+        terminal.end()
