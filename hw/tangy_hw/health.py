@@ -16,6 +16,10 @@ DRIVES_BY = ("link", "stop_button", "base", "laser", "localisation", "navigator"
 DARK = 0.6
 """Share of beams that end at once from which a laser scanner is covered (robot notes)."""
 
+BLIND = 0.01
+"""Share of beams that change within a second below which a laser scanner sees nothing, or says the
+same again and again; what it measures varies even in a room where nothing moves."""
+
 
 class Watchdogs:
     """The health of a robot: one report for each device of its profile."""
@@ -55,9 +59,10 @@ class Watchdogs:
                 return f"{self._label(name)} {said}"
             if reading.facts.get("latched"):
                 return f"{self._label(name)} is pressed"
-            near = reading.facts.get("near_share", 0.0)
-            if isinstance(near, float) and near > DARK:
+            if _measured(reading, "near_share", 0.0) > DARK:
                 return f"{self._label(name)} is covered"
+            if _measured(reading, "variety", 1.0) < BLIND:
+                return f"{self._label(name)} sees nothing new"
         return ""
 
     def _label(self, name: str) -> str:
@@ -73,3 +78,9 @@ class Watchdogs:
         reading = Reading(name) if report is None else report()
         silenced = self._silenced.get(name)
         return reading if silenced is None else reading._replace(state=silenced)
+
+
+def _measured(reading: Reading, fact: str, otherwise: float) -> float:
+    """Return what a device measures; what it is taken for where it does not tell that."""
+    value = reading.facts.get(fact, otherwise)
+    return otherwise if isinstance(value, str) else float(value)

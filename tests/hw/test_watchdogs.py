@@ -8,7 +8,8 @@ from itertools import count
 
 import pytest
 
-from tangy_hw.health import DARK, Watchdogs
+from tangy_hw.health import BLIND, DARK, Watchdogs
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.robot import load_robot
 
@@ -88,6 +89,22 @@ def test_it_must_not_drive_with_the_laser_covered() -> None:
     covered = Reading("laser", facts={"near_share": DARK + 0.01})
     assert hazard(covered) == "laser scanner is covered"
     assert hazard(Reading("laser", facts={"near_share": DARK})) == ""
+
+
+def test_it_must_not_drive_while_the_laser_sees_nothing_or_the_same_again_and_again() -> None:
+    blind = Reading("laser", facts={"near_share": 0.0, "variety": BLIND - 0.001})
+    assert hazard(blind) == "laser scanner sees nothing new"
+    assert hazard(Reading("laser", facts={"near_share": 0.0, "variety": 0})) != ""
+    assert hazard(Reading("laser", facts={"near_share": 0.0, "variety": BLIND})) == ""
+    assert hazard(Reading("laser", facts={"near_share": 0.0})) == ""  # a second is not over yet
+
+
+def test_it_stands_by_the_limits_by_which_a_covered_laser_is_diagnosed() -> None:
+    rule = load_faults(ROBOT).rule("laser-occluded")
+    assert {(one.key, one.test, one.value) for (one,) in rule.when} == {
+        ("laser.near_share", "above", DARK),
+        ("laser.variety", "below", BLIND),
+    }
 
 
 @pytest.mark.parametrize(("state", "why"), [(ERROR, "has an error"), (STALE, "says nothing")])
