@@ -10,7 +10,7 @@ from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Report
 from tangy_hw.perception.requests.asking import RequestSource
 from tangy_hw.senses import Senses
-from tangy_profiles.health import OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.robot import Robot
 
 FILMED_PATIENCE = 4.0
@@ -23,6 +23,7 @@ def reports_of(
     evidence: DriveEvidence,
     ticked: Callable[[], float],
     *,
+    failed: Callable[[], str] = str,
     senses: Senses | None = None,
     requests: RequestSource | None = None,
     stepped: bool = False,
@@ -34,6 +35,7 @@ def reports_of(
         body: the devices that move, measure and speak.
         evidence: what drives have shown.
         ticked: how long ago the robot has looked and decided last, in s.
+        failed: what of its control has failed, "" if nothing has.
         senses: what reads pictures, if anything does.
         requests: who asks for help, if anybody can.
         stepped: time stands still while nobody waits for it; cameras film in real time.
@@ -42,7 +44,12 @@ def reports_of(
     reports: dict[str, Report] = {device.name: device.reading for device in body.all}
     reports["base"] = lambda: evidence.base(base.reading())
     reports["localisation"] = lambda: evidence.localisation(ticked())
-    reports["navigator"] = lambda: evidence.navigator(ticked())
+
+    def navigator() -> Reading:
+        reading = evidence.navigator(ticked())
+        return reading._replace(state=ERROR) if failed() else reading
+
+    reports["navigator"] = navigator
 
     def filmed(reading: Reading) -> Reading:
         if not stepped:

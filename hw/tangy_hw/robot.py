@@ -3,43 +3,40 @@
 Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
 how, and tells the base. What it must not do it does not do, whatever the program wants: while an
 emergency stop is pressed, a device that it drives by is silent, or the program is, it stands still.
-A stop waits behind nothing and latches; only `release` takes it back.
+A stop waits behind nothing and latches; only whoever asked for it takes it back by `release`.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from typing import Any
 
 from tangy_hw.body import Body
-from tangy_hw.devices import STILL, Arms, Clock, DeviceError, Picture, Pose, Twist
+from tangy_hw.devices import STILL, Clock, Picture, Pose, Twist
 from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Watchdogs
 from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
+from tangy_hw.performing import Performer
 from tangy_hw.reports import reports_of
 from tangy_hw.senses import Senses
-from tangy_profiles.health import ERROR, Health, Reading
+from tangy_hw.stopping import STAFF, Stops
+from tangy_hw.stopping import BrokenOff as BrokenOff
+from tangy_hw.wheels import Wheels
+from tangy_profiles.health import Health, Reading
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
 DRIVE_SECONDS = 180.0  # for one drive; ten metres with three detours take 60
 SPIN_SECONDS = 60.0
-SPEECH_SECONDS = 60.0  # for one line
-POSE_SECONDS = 1.5  # in which arms are where they should be
 POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
-HAZARD_SECONDS = 1.0  # that it may have to stand still on its way, before it gives the drive up
+HAZARD_SECONDS = 1.0
+"""That it may have to stand still, or be left alone, before it gives up what it does."""
 WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
-STOP_SECONDS = 1.0  # in which arms and voice have heard that they are to stop
 BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
-
-
-class BrokenOff(DeviceError):
-    """Something was not done to its end, because the robot has to stand still."""
 
 
 class LiveRobot:
@@ -73,8 +70,8 @@ class LiveRobot:
         self.requests = requests
         self.alone: Callable[[], str] = str
         """Says why nobody holds the reins any more, "" as long as somebody does."""
-        self.stopped = ""
-        """Why it was stopped, until it is released."""
+        self.left: Callable[[str], None] = lambda why: None
+        """Is called once when nobody has held the reins for a while, with why."""
         self.going = ""
         """Where it is driving to."""
         self.passing = PassingTime(clock, self._tick, stepped=stepped)
@@ -82,9 +79,11 @@ class LiveRobot:
         self._clock = clock
         self._stepped = stepped
         self._hand: tuple[Twist, float] | None = None
-        self._driven = STILL
-        self._sent: asyncio.Task[None] | None = None
-        self._gaze = ""
+        self._wheels = Wheels(body.base)
+        self._stops = Stops()
+        self._alone_since: float | None = None
+        self._left_alone = False
+        self._performer = Performer(body, self.passing, robot.gaze, lambda: self._halted)
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended
         self._evidence = DriveEvidence(navigator, clock.now)
@@ -94,6 +93,7 @@ class LiveRobot:
             body,
             self._evidence,
             lambda: clock.now() - self._ticked,
+            failed=lambda: self.failed,
             senses=senses,
             requests=requests,
             stepped=stepped,
@@ -109,21 +109,22 @@ class LiveRobot:
             await device.start()
         if self.requests is not None:
             await self.requests.start()
-        ticking = asyncio.create_task(self.passing.run())
-        ticking.add_done_callback(self._ticked_last)
-        self._tasks = [ticking]
+        self._tasks = [asyncio.create_task(self.passing.run())]
         if not self._stepped:
             self._tasks.append(asyncio.create_task(self._watch()))
+        for task in self._tasks:
+            task.add_done_callback(self._ended)
 
-    def _ticked_last(self, task: asyncio.Task[None]) -> None:
-        """Stand still for good when ticks have ended otherwise than by closing."""
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        """Stand still for good when its control has ended otherwise than by closing."""
         if not task.cancelled() and (error := task.exception()) is not None:
-            self.stopped = f"its control has failed ({error!r})"
+            self._stops.failed = f"its control has failed ({error!r})"
+            self._tasks.append(asyncio.create_task(self._halt()))
 
     async def close(self) -> None:
         """Stop it, and switch its devices off."""
         with suppress(Exception):
-            await self._body.base.stop()
+            await self._wheels.stop()
         self.navigator.cancel()
         for task in self._tasks:
             task.cancel()
@@ -162,6 +163,21 @@ class LiveRobot:
         return () if self.requests is None else self.requests.asking
 
     @property
+    def stopped(self) -> str:
+        """Why it was stopped, until all who did have released it."""
+        return self._stops.why
+
+    @property
+    def failed(self) -> str:
+        """What of its control has failed, for good; "" if nothing has."""
+        return self._stops.failed
+
+    @property
+    def _halted(self) -> str:
+        """Why nothing of it may move, "" if it may."""
+        return self.stopped or (self.alone() if self._left_alone else "")
+
+    @property
     def hazard(self) -> str:
         """Why it stands still, "" if it may drive."""
         return self.stopped or self.alone() or self._watchdogs.hazard()
@@ -184,35 +200,9 @@ class LiveRobot:
         Raises:
             BrokenOff: it was stopped meanwhile.
         """
-        doing: dict[str, Coroutine[Any, Any, None]] = {}
-        if self._body.voice is not None and text:
-            doing["said"] = self._body.voice.say(text)
-        if self._body.screen is not None and picture is not None:
-            doing["shown"] = self._body.screen.show(picture)
-        arms = self._body.arms
-        if arms is not None and posture and (gazes or arms.reading().state != ERROR):
-            doing["posed"], self._gaze = self._pose(arms, posture), ""
-        tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
-        try:
-            await self.passing.until(
-                lambda: bool(self.stopped) or all(task.done() for task in tasks.values()),
-                SPEECH_SECONDS,
-            )
-        finally:
-            for task in tasks.values():
-                task.cancel()
-            await asyncio.gather(*tasks.values(), return_exceptions=True)
-        if self.stopped:
-            raise BrokenOff(self.stopped)
-        return {
-            what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
-        }
-
-    async def _pose(self, arms: Arms, posture: Mapping[str, Sequence[float]]) -> None:
-        """Move the arms; not when it was stopped before they were told."""
-        if self.stopped:
-            raise BrokenOff(self.stopped)
-        await arms.pose(posture, POSE_SECONDS)
+        return await self._performer.perform(
+            text=text, picture=picture, posture=posture, gazes=gazes
+        )
 
     async def go(self, goal: Pose, name: str = "") -> bool:
         """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).
@@ -249,10 +239,7 @@ class LiveRobot:
 
     async def look_at(self, what: str) -> None:
         """Turn the eyes to a card or a face, as the robot's profile says how."""
-        angles = self.robot.gaze.get(what)
-        if angles and self._body.arms is not None and self._gaze != what:
-            await self.perform(posture=angles, gazes=True)
-            self._gaze = what
+        await self._performer.look_at(what)
 
     def replan(self) -> None:
         """Look whether there is a way again to where there was none."""
@@ -265,29 +252,26 @@ class LiveRobot:
         self.navigator.cancel()
         self._hand = twist, self._clock.now() + BY_HAND_SECONDS
 
-    async def stop(self, why: str) -> None:
-        """Stand still now, hold the arms where they are, and be quiet; it latches.
+    async def stop(self, why: str, by: str = STAFF) -> None:
+        """Stand still now, hold the arms where they are, and be quiet; it latches, for `by`.
 
         The base is first, and what fails in the rest changes nothing.
         """
-        self.stopped = self.stopped or why
+        self._stops.hold(why, by)
+        await self._halt()
+
+    async def _halt(self) -> None:
         self._hand = None
-        self._driven = STILL
-        self._gaze = ""
         try:
-            await self._body.base.stop()
+            await self._wheels.stop()
         finally:
             self.navigator.cancel()
-            rest: list[Coroutine[Any, Any, None]] = []
-            if self._body.arms is not None:
-                rest.append(self._body.arms.hold())
-            if self._body.voice is not None:
-                rest.append(self._body.voice.hush())
-            await _within(STOP_SECONDS, *rest)
+            await self._performer.be_still()
 
-    def release(self) -> None:
-        """Let it move again."""
-        self.stopped, self._evidence.blocked = "", False
+    def release(self, by: str = "") -> None:
+        """Let it move again as far as somebody is concerned, or whoever had stopped it."""
+        self._stops.release(by)
+        self._evidence.blocked = False
 
     def fail(self, device: str, state: str) -> None:
         """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
@@ -333,7 +317,7 @@ class LiveRobot:
         self._evidence.keep()
         if not arrived:
             navigator.cancel()
-            await self._body.base.stop()
+            await self._wheels.stop()
         if hazard and not arrived:
             raise BrokenOff(hazard)
         return arrived
@@ -354,46 +338,36 @@ class LiveRobot:
             command = twist if now < until else STILL
             if now >= until:
                 self._hand = None
+        self._mind()
         if self.hazard:
             command = STILL
             self._stand()
-        elif command != STILL or self._driven != STILL:
-            self._send(command)
+        elif command != STILL or not self._wheels.stand:
+            self._wheels.send(command)
         return command != STILL or self.going != ""
 
     async def _watch(self) -> None:
         """Look for hazards between ticks, too: a robot that drives has no time to lose."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
-            if (self._driven != STILL or self.navigator.drives) and self.hazard:
+            self._mind()
+            if (self._wheels.driven != STILL or self.navigator.drives) and self.hazard:
                 self._stand()
 
     def _stand(self) -> None:
         """Have the base stand, and whatever drives it past us call that off, until it has."""
         self.navigator.held()
-        if self._driven != STILL or self.navigator.drives:
-            self._send(STILL)
+        if not self._wheels.stand or self.navigator.drives:
+            self._wheels.send(STILL)
 
-    def _send(self, command: Twist) -> None:
-        """Tell the base; a command that could not be handed over is followed by the next."""
-        halting = command == STILL and self._driven != STILL
-        if not halting and self._sent is not None and not self._sent.done():
-            return
-        self._driven = command
-        work = self._body.base.stop() if command == STILL else self._body.base.drive(command)
-        self._sent = asyncio.create_task(_quietly(work))
-
-
-async def _within(seconds: float, *works: Coroutine[Any, Any, None]) -> None:
-    """Do things at once, for so many s at most; whatever comes of them."""
-    tasks = [asyncio.create_task(work) for work in works]
-    if tasks:
-        await asyncio.wait(tasks, timeout=seconds)
-    for task in tasks:
-        task.cancel()
-    await asyncio.gather(*tasks, return_exceptions=True)
-
-
-async def _quietly(work: Coroutine[Any, Any, None]) -> None:
-    with suppress(DeviceError):  # its reading tells
-        await work
+    def _mind(self) -> None:
+        """Hold the arms and be quiet, once, when nobody has held the reins for a while."""
+        why, now = self.alone(), self._clock.now()
+        if not why:
+            self._alone_since, self._left_alone = None, False
+        elif self._alone_since is None:
+            self._alone_since = now
+        elif not self._left_alone and now - self._alone_since > HAZARD_SECONDS:
+            self._left_alone = True
+            self._tasks.append(asyncio.create_task(self._performer.be_still()))
+            self.left(why)

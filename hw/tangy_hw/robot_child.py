@@ -24,6 +24,7 @@ from tangy_hw.devices import DeviceError, Picture, Pose, Twist
 from tangy_hw.robot import BrokenOff, LiveRobot
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.senses import CardSeen, Senses
+from tangy_hw.stopping import STAFF
 from tangy_hw.wiring import Wired, wire
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Health
@@ -58,6 +59,7 @@ class RobotProcess:
         self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
         self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
         self.robot.alone = self._why_alone
+        self.robot.left = self._break_off
         self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
             "perform": self._perform,
             "go": self._go,
@@ -90,10 +92,11 @@ class RobotProcess:
         if "beat" in asked:
             return
         if do == "stop":  # it waits behind nothing
-            await self.robot.stop(str(asked.get("why", "stopped")))
-            self._break_off(str(asked.get("why", "stopped")))
+            why = str(asked.get("why", "stopped"))
+            await self.robot.stop(why, str(asked.get("by", STAFF)))
+            self._break_off(why)
         elif do == "release":
-            self.robot.release()
+            self.robot.release(str(asked.get("by", "")))
         elif do == "cancel":
             self.robot.navigator.cancel()
             self._break_off(str(asked.get("why", "called off")))
@@ -265,6 +268,7 @@ class RobotProcess:
             "asks": [[ask.seat, ask.since] for ask in robot.asking],
             "hazard": robot.hazard,
             "stopped": robot.stopped,
+            "failed": robot.failed,
         }
 
 

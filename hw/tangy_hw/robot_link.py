@@ -22,6 +22,7 @@ from typing import IO, Any
 from tangy_hw.devices import DeviceError, Pose
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.stopping import STAFF
 from tangy_profiles.health import STALE, Health, Reading
 from tangy_profiles.worker_log import open_log
 
@@ -44,7 +45,8 @@ NOWHERE = Pose(0.0, 0.0, 0.0)
 class RobotState:
     """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
 
-    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it.
+    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
+    `failed` what has failed of its control, for which only another robot process helps.
     """
 
     number: int = 0
@@ -58,6 +60,7 @@ class RobotState:
     asks: tuple[tuple[int, float], ...] = ()
     hazard: str = ""
     stopped: str = ""
+    failed: str = ""
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
@@ -74,6 +77,7 @@ class RobotState:
             tuple((int(seat), since) for seat, since in body["asks"]),
             body["hazard"],
             body["stopped"],
+            body["failed"],
         )
 
 
@@ -252,13 +256,13 @@ class RobotLink:
         """Tell the robot something, and wait for no answer."""
         self._write(json.dumps({"do": do, **what}))
 
-    def stop(self, why: str) -> None:
-        """Stop the robot now; it waits behind nothing, and latches until `release`."""
-        self.tell("stop", why=why)
+    def stop(self, why: str, by: str = STAFF) -> None:
+        """Stop the robot now; it waits behind nothing, and latches until `by` releases it."""
+        self.tell("stop", why=why, by=by)
 
-    def release(self) -> None:
-        """Let the robot move again."""
-        self.tell("release")
+    def release(self, by: str = "") -> None:
+        """Let the robot move again as far as somebody is concerned, or whoever stopped it."""
+        self.tell("release", by=by)
 
     def alive(self) -> None:
         """Say that the screen lives, which from the first time on has to be said again and again.

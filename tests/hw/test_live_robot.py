@@ -11,11 +11,13 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
+from tangy_hw import performing
 from tangy_hw import robot as robots
-from tangy_hw.devices import STILL, MachineClock
+from tangy_hw.devices import STILL, DeviceError, MachineClock, Twist
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
 from tests.hw.navigated import MAP
@@ -62,7 +64,7 @@ class TestStop:
         async with living() as (robot, parts):
             parts.voice.hangs = True
             began = monotonic()
-            with patch.object(robots, "STOP_SECONDS", 0.05):
+            with patch.object(performing, "STOP_SECONDS", 0.05):
                 await soon(robot.stop("enough"))
             assert monotonic() - began < 1 and parts.told[:2] == ["stop", "hold"]
 
@@ -73,7 +75,77 @@ class TestStop:
             with pytest.raises(BrokenOff):
                 await soon(doing)
             await stopping
-            assert parts.told[-2:] == ["hold", "hush"]
+            assert parts.told[:3] == ["stop", "hold", "hush"] and "pose" not in parts.told
+
+    async def test_a_command_that_was_about_to_be_handed_over_never_is(self) -> None:
+        async with living() as (robot, parts):
+            assert robot.hazard == ""
+            robot.drive_by_hand(Twist(0.3, 0.0))
+            robot._tick()
+            await robot.stop("enough")
+            assert parts.told[0] == "stop"
+            await until(lambda: parts.told.count("stop") == 2)  # once more, at the next tick
+            await asyncio.sleep(0.1)
+            assert Twist(0.3, 0.0) not in parts.told and parts.told.count("stop") == 2
+
+
+class TestOwnersOfStops:
+    async def test_it_moves_again_when_all_who_stopped_it_have_let_it_go(self) -> None:
+        async with living() as (robot, _):
+            await robot.stop("staff stopped it")
+            await robot.stop("base-runaway", "fault")
+            robot.release("fault")
+            assert robot.stopped == robot.hazard == "staff stopped it"
+            robot.release("staff")
+            assert robot.stopped == robot.hazard == ""
+
+    async def test_it_says_why_for_whoever_still_holds_it(self) -> None:
+        async with living() as (robot, _):
+            await robot.stop("staff stopped it")
+            await robot.stop("base-runaway", "fault")
+            robot.release("staff")
+            assert robot.stopped == "base-runaway"
+            await robot.stop("staff stopped it")
+            robot.release()
+            assert robot.stopped == ""
+
+
+class TestFailure:
+    async def test_it_stands_for_good_when_its_control_fails(self) -> None:
+        async with living() as (robot, parts):
+            with patch.object(robot.navigator, "tick", side_effect=ZeroDivisionError):
+                await until(lambda: robot.failed)
+            await until(lambda: parts.told[:3] == ["stop", "hold", "hush"])
+            robot.release()
+            assert "its control has failed (ZeroDivisionError" in robot.hazard
+            assert robot.stopped == robot.failed == robot.hazard
+            robot.fail("navigator", OK)
+            said = {reading.device: reading.state for reading in robot.health()}
+            assert said["navigator"] == ERROR
+            with pytest.raises(DeviceError):
+                await soon(robot.perform(text="Hello"))
+
+
+class TestLeftAlone:
+    async def test_it_holds_its_arms_and_is_quiet_after_a_while_and_it_is_no_stop(self) -> None:
+        with patch.object(robots, "HAZARD_SECONDS", 0.2):
+            async with living() as (robot, parts):
+                left: list[str] = []
+                robot.left = left.append
+                doing = asyncio.create_task(robot.perform(text="Hello", posture=POSTURE))
+                await until(lambda: {"say", "pose"} <= set(parts.told))
+                robot.alone = lambda: "nobody is there"
+                await asyncio.sleep(0.1)
+                assert not doing.done() and "hold" not in parts.told  # it may be for a moment
+                with pytest.raises(BrokenOff, match="nobody is there"):
+                    await soon(doing)
+                await until(lambda: "hush" in parts.told)
+                await asyncio.sleep(0.3)
+                assert [parts.told.count(one) for one in ("hold", "hush")] == [1, 1]
+                assert left == ["nobody is there"]
+                robot.alone = str
+                assert robot.stopped == robot.hazard == ""
+                assert (await soon(robot.perform(text="Hello")))["said"]
 
 
 class TestSpin:

@@ -1,0 +1,97 @@
+"""The lines of the robot process: what is answered, and that everything is."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any, cast
+from unittest.mock import patch
+
+import numpy as np
+
+from tangy_hw import robot as robots
+from tangy_hw import robot_child
+from tangy_hw.devices import MachineClock
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.robot import LiveRobot
+from tangy_hw.robot_child import RobotProcess
+from tangy_hw.robot_link import RobotState
+from tangy_hw.wiring import Wired
+from tangy_profiles.robot import load_robot
+from tests.hw.live_bodies import HERE, ToldBody
+from tests.hw.navigated import MAP
+from tests.hw.ros_links import until
+
+
+class Spoken:
+    """A robot process without a process: it is given lines, and `said` is what it says."""
+
+    def __init__(self) -> None:
+        self.parts = ToldBody()
+        navigator = Navigator(MAP, np.random.default_rng(1), HERE)
+        self.robot = LiveRobot(load_robot(), self.parts.body(), navigator, MachineClock())
+        self.said: list[dict[str, Any]] = []
+        wired = Wired(self.robot, cast(Any, None), cast(Any, None))
+        self.process = RobotProcess(wired, self.said.append, stepped=False)
+
+    async def take(self, **line: Any) -> None:
+        await self.process.take(json.dumps(line).encode())
+
+    def state(self) -> RobotState:
+        return RobotState.from_json(json.loads(json.dumps(self.process._state(1))))
+
+
+@asynccontextmanager
+async def spoken() -> AsyncIterator[Spoken]:
+    one = Spoken()
+    await one.robot.start()
+    try:
+        yield one
+    finally:
+        await one.robot.close()
+
+
+async def test_what_is_called_off_later_is_answered_once() -> None:
+    async with spoken() as one:
+        await one.take(id=1, do="wait", seconds=60)
+        await until(lambda: one.robot.passing._waiting)
+        await one.take(id=2, do="cancel", why="something is wrong")
+        await until(lambda: len(one.said) == 2)
+        assert sorted(said["id"] for said in one.said) == [1, 2]
+
+
+async def test_stops_are_let_go_by_those_who_asked_for_them() -> None:
+    async with spoken() as one:
+        await one.take(do="stop", why="staff stopped it")
+        await one.take(do="stop", why="base-runaway", by="fault")
+        await one.take(do="release", by="fault")
+        assert one.state().stopped == "staff stopped it"
+        await one.take(do="stop", why="base-runaway", by="fault")
+        await one.take(do="release")
+        assert one.state().stopped == one.state().hazard == ""
+
+
+async def test_a_program_that_hangs_has_everything_broken_off() -> None:
+    with (
+        patch.object(robots, "HAZARD_SECONDS", 0.1),
+        patch.object(robot_child, "SILENT_SECONDS", 0.3),
+    ):
+        async with spoken() as one:
+            await one.take(id=1, do="perform", text="A long line", posture={"head": [0] * 6})
+            await one.take(id=2, do="wait", seconds=60)
+            await until(lambda: len(one.said) == 2)
+            assert {said["failed"] for said in one.said} == {"the program says nothing"}
+            assert {"hold", "hush"} <= set(one.parts.told)
+            await one.take(beat=1)
+            assert one.state().stopped == one.state().hazard == ""
+
+
+async def test_what_has_failed_of_the_control_is_told_for_good() -> None:
+    async with spoken() as one:
+        assert one.state().failed == ""
+        with patch.object(one.robot.navigator, "tick", side_effect=ZeroDivisionError):
+            await until(lambda: one.robot.failed)
+        await one.take(do="release")
+        state = one.state()
+        assert "ZeroDivisionError" in state.failed and state.hazard == state.failed
