@@ -105,7 +105,7 @@ class RobotProcess:
         elif do in self._deeds:
             task = asyncio.create_task(self._do(asked))
             self._doing[asked["id"]] = task
-            task.add_done_callback(lambda _: self._doing.pop(asked["id"], None))
+            task.add_done_callback(lambda task: self._over(task, asked))
             return
         else:
             self._answer(asked, failed=f"It cannot do {do!r}.")
@@ -131,6 +131,11 @@ class RobotProcess:
             self._answer(asked, failed=f"It went wrong ({error!r}).")
         else:
             self._answer(asked, done=done or {})
+
+    def _over(self, task: asyncio.Task[None], asked: Asked) -> None:
+        self._doing.pop(asked["id"], None)
+        if task.cancelled():  # it was broken off before it had begun, and has not answered
+            self._answer(asked, failed=self._broken or "called off", broken=True)
 
     _broken = ""
 

@@ -52,6 +52,15 @@ async def spoken() -> AsyncIterator[Spoken]:
         await one.robot.close()
 
 
+async def test_what_is_called_off_before_it_has_begun_is_answered() -> None:
+    async with spoken() as one:
+        await one.take(id=1, do="go", to=[1, 1, 0])
+        await one.take(id=2, do="cancel", why="something is wrong")
+        await until(lambda: len(one.said) == 2)
+        answer = next(said for said in one.said if said["id"] == 1)
+        assert (answer["failed"], answer["broken"]) == ("something is wrong", True)
+
+
 async def test_what_is_called_off_later_is_answered_once() -> None:
     async with spoken() as one:
         await one.take(id=1, do="wait", seconds=60)
