@@ -6,12 +6,11 @@ What happens is in the log before it is told.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 from uuid import uuid4
 
-from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Step
@@ -19,6 +18,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED
+from tangy_tui.interaction.not_sure import remedy_for, why_not
 from tangy_tui.interaction.persuasion import Choice, Persuasion
 from tangy_tui.learning.asking import Answers, Lesson
 from tangy_tui.learning.commands import Phrasebook
@@ -118,6 +118,9 @@ class GameEnded:
     stopped: str | None
 
 
+Permits: TypeAlias = Callable[[Decision, str | None], bool]
+"""Says whether what was decided, for whom, may be done."""
+
 GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | DoneOnce | GameEnded
 
 
@@ -153,6 +156,8 @@ class Facilitation:
         """What Tangy asks; nothing happens before it is answered, or the game given up."""
         self.looked_over = False
         """Whether somebody looks the last behaviour over before the game is ended (`finish`)."""
+        self.permits: Permits = lambda decision, target: True
+        """Is asked at each step about the very thing that would be done; on a no nothing is."""
         self._answers = answers
         self._activity = world.activity
         self._store = store
@@ -196,14 +201,15 @@ class Facilitation:
         if self.steps >= MOST_STEPS:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
         if not decision.sure:
-            reason = _why_not(self._activity, state, decision)
-            remedy = _remedy(decision)
+            reason, remedy = why_not(self._activity, state, decision), remedy_for(decision)
             if self._answers is None:
                 return [self._end(f"{reason} {remedy}")]
             self.question = Unsure(state, decision, reason, remedy)
             return [self.question]
         behaviour = self._activity.behaviours[decision.behaviour]
         target = state.attended if behaviour.attends else None
+        if not self.permits(decision, target):
+            return []
         acted = self._act(state, decision, behaviour, target)
         with self._store.transaction():
             ended = self._log(acted, "")
@@ -376,24 +382,3 @@ class Facilitation:
         self.over = True
         self._store.append(ENDED, {"game": self._game, "steps": self.steps, "stopped": reason})
         return GameEnded(self._game, self.steps, reason)
-
-
-def _why_not(activity: Activity, state: ActivityState, decision: Decision) -> str:
-    situation = activity.in_words(state.situation)
-    if decision.contested:
-        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
-        return f"Demonstrations disagree about what to do here: {situation} ({answers})."
-    if not decision.seen:
-        return f"Nobody has shown Tangy what to do here yet: {situation}."
-    return (
-        f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} of the votes for "
-        f"{decision.behaviour})."
-    )
-
-
-def _remedy(decision: Decision) -> str:
-    if decision.contested:
-        return "Say which is right with `tangy demonstrations resolve`, and learn again."
-    if not decision.seen:
-        return "Demonstrate it once."
-    return "Demonstrate it again, or correct the demonstration that differs."

@@ -150,6 +150,26 @@ async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Pro
         await until(pilot, lambda: bool(live(pilot).query(AskingPanel)))
 
 
+async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    link.cards["user2"] = LaidCard(7)
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await pilot.press("i", "i")
+        await asked_about_the_next(pilot)
+        assert "Next: call number?" in screen_text(pilot.app)
+        done = len(link.done)
+        link.sign(2)
+        await pilot.press("y")
+        await until(pilot, lambda: "Next: navigate to user (User 2)?" in screen_text(pilot.app))
+        await pilot.pause()
+        assert link.done[done:] == []
+        await pilot.press("y")
+        await until(pilot, lambda: world.tracker.place == "user2")
+        await asked_about_the_next(pilot)
+
+
 async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)

@@ -68,6 +68,9 @@ class LiveScreen(PlayScreen):
         self._world = world
         self._autonomy = AUTONOMY[0]
         self._taking_over = False
+        self._confirmed: tuple[str, str | None] | None = None
+        """What staff said yes to, for whom: it alone is done next where they are asked first."""
+        supervision.game.permits = self._permits
         self._working = False
         self._turn = asyncio.Lock()
         """Whoever has it has the supervision, and the robot."""
@@ -98,7 +101,10 @@ class LiveScreen(PlayScreen):
         return await self._beside(self._supervision.begin)
 
     async def _step(self) -> list[Event]:
-        return await self._beside(self._supervision.step)
+        try:
+            return await self._beside(self._supervision.step)
+        finally:
+            self._confirmed = None
 
     async def _beside(self, work: object) -> list[Event]:
         """Do something that takes its time, while the screen lives."""
@@ -134,16 +140,24 @@ class LiveScreen(PlayScreen):
             return False
         if not decision.sure or not self._asks_about(decision):
             return True
-        return await self._confirmed(decision, state.attended)
+        return await self._confirm(decision, state.attended)
 
     def _asks_about(self, decision: Decision) -> bool:
         unsure = self._autonomy == UNSURE and decision.share < SURE
         return self._autonomy == EVERY or unsure
 
-    async def _confirmed(self, decision: Decision, attended: str | None) -> bool:
+    def _permits(self, decision: Decision, target: str | None) -> bool:
+        """Say, as a step is done, whether staff said yes to it: they may have to be asked anew.
+
+        People ask for things while a question stands, and what would be done is another then.
+        """
+        return not self._asks_about(decision) or self._confirmed == (decision.behaviour, target)
+
+    async def _confirm(self, decision: Decision, attended: str | None) -> bool:
         """Ask whether the next behaviour is to be done; if not, ask what else."""
         behaviour = self._house.activity.behaviours[decision.behaviour]
-        whom = f" ({self._house.name(attended)})" if behaviour.attends and attended else ""
+        target = attended if behaviour.attends else None
+        whom = f" ({self._house.name(target)})" if target else ""
         dialog = ConfirmDialog(
             f"Next: {behaviour.name}{whom}?",
             f"{decision.share:.0%} of the votes. i turns this off.",
@@ -151,6 +165,7 @@ class LiveScreen(PlayScreen):
             no="say what else",
         )
         does = await self.app.push_screen_wait(dialog)
+        self._confirmed = (behaviour.name, target) if does else None
         if not does and not self._stopped:
             self._taking_over = True
         return does and self._going.is_set()

@@ -1,0 +1,30 @@
+"""Why Tangy is not sure what to do in a situation, and what would help, in words."""
+
+from __future__ import annotations
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.state import ActivityState
+from tangy_tui.learning.policy import Decision
+
+
+def why_not(activity: Activity, state: ActivityState, decision: Decision) -> str:
+    """Say why Tangy does not act by itself here."""
+    situation = activity.in_words(state.situation)
+    if decision.contested:
+        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
+        return f"Demonstrations disagree about what to do here: {situation} ({answers})."
+    if not decision.seen:
+        return f"Nobody has shown Tangy what to do here yet: {situation}."
+    return (
+        f"Tangy is not sure what to do here: {situation} ({decision.share:.0%} of the votes for "
+        f"{decision.behaviour})."
+    )
+
+
+def remedy_for(decision: Decision) -> str:
+    """Say what would help so that it does."""
+    if decision.contested:
+        return "Say which is right with `tangy demonstrations resolve`, and learn again."
+    if not decision.seen:
+        return "Demonstrate it once."
+    return "Demonstrate it again, or correct the demonstration that differs."
