@@ -32,6 +32,10 @@ class World(Protocol):
         """Carry out an action and return what became of it."""
         ...
 
+    def who(self, place: str) -> str:
+        """Return who sits at somebody's place: mostly the one whose place it is."""
+        ...
+
     def scene(self) -> Scene:
         """Return what there is to see, for a screen to draw."""
         ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
@@ -10,6 +11,8 @@ from tangy_hw.devices import DeviceError, Picture
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
 from tangy_profiles.health import Health
+
+BREAK_SECONDS = 20.0  # of real time, after which what was called off is taken to be over
 
 Diagnosed = Callable[[Health], Mapping[str, bool]]
 """Says which faults devices show, by code, and whether each is critical."""
@@ -30,13 +33,15 @@ class Commands:
             DeviceError: it could not be done.
         """
         asked = self.link.ask(do, **what)
-        broken = False
+        broken, until = "", 0.0
         while not self.link.wait(asked):
             if silent := self.link.silent:
                 raise BrokenOff(silent)
-            if not broken and (critical := self._critical()):
-                broken = True
-                self.link.ask("cancel", why=critical)
+            if broken and time.monotonic() > until:
+                raise BrokenOff(broken)
+            if not broken and (broken := self._critical()):
+                until = time.monotonic() + BREAK_SECONDS
+                self.link.ask("cancel", why=broken)
         return asked.result()
 
     def perform(

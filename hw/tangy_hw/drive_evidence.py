@@ -41,7 +41,7 @@ class DriveEvidence:
         if facts["path"] == "replanned":
             worst["path"] = "replanned"
         if float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD:
-            self._lost = {name: facts[name] for name in ("fit", "spread")}
+            self._lost |= {name: facts[name] for name in ("fit", "spread")}
 
     def keep(self) -> None:
         """The drive is over: keep what it has shown for a moment."""
@@ -58,8 +58,11 @@ class DriveEvidence:
         told = {name: facts[name] for name in ("still", "slip")}
         return own._replace(facts={**own.facts, **told, **self._of("still", "slip")})
 
-    def found(self) -> None:
-        """The robot has looked round, and knows its place again."""
+    def looked_round(self, *, found: bool) -> None:
+        """The robot has looked round: it knows its place again, or does not."""
+        if not found:
+            self._lost["found"] = False
+            return
         self._lost = {}
 
     def localisation(self, age: float) -> Reading:

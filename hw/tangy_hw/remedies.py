@@ -49,6 +49,8 @@ class Remedies:
                 world.link.release()
             case "spin":
                 self.go_back(knows_place=False)
+            case "look again":
+                self._look_again(remedy)
             case "restart":
                 commands.do("restart", device=remedy.device)
             case "replan":
@@ -67,14 +69,30 @@ class Remedies:
         """Let the robot be where it should be in the game; it turns first if it is lost.
 
         Raises:
-            DeviceError: it has to stand still.
+            DeviceError: it has to stand still, or does not find its place or its way.
         """
         world = self._world
-        if not knows_place and not world.commands.do("spin").get("found"):
-            return
-        at, pose = world.stand(world.tracker.place), world.link.beat().pose
-        if hypot(pose.x - at.x, pose.y - at.y) > AWAY:
-            world.drive(world.tracker.place)
+        place = world.tracker.place
+        if not knows_place:
+            if not world.commands.do("spin").get("found"):
+                raise DeviceError("The robot does not find its place.")
+            world.link.beat()
+        at, pose = world.stand(place), world.link.state.pose
+        if hypot(pose.x - at.x, pose.y - at.y) > AWAY and not world.drive(place):
+            raise DeviceError("The robot does not get back to where it was.")
+
+    def _look_again(self, remedy: Remedy) -> None:
+        """See whether what halted the robot is gone, now that staff say so."""
+        commands, link = self._world.commands, self._world.link
+        commands.do("replan")
+        if remedy.device == "localisation":  # only looking round can show it
+            link.release()
+            try:
+                self.go_back(knows_place=False)
+            finally:
+                if remedy.fault in commands.diagnosed(link.health()):
+                    link.stop(remedy.fault)
+        link.beat()
 
     def _await_help(self, remedy: Remedy) -> None:
         """Give people time to help, and see whether they have."""

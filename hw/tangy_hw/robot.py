@@ -230,11 +230,13 @@ class LiveRobot:
             BrokenOff: it has to stand still, and why.
         """
         self.navigator.spin()
-        await self._drive(SPIN_SECONDS)
-        estimate = self.navigator.estimate
-        found = estimate is not None and estimate.found
-        if found:
-            self._evidence.found()
+        found = False
+        try:
+            await self._drive(SPIN_SECONDS)
+            estimate = self.navigator.estimate
+            found = estimate is not None and estimate.found
+        finally:
+            self._evidence.looked_round(found=found)
         return found
 
     async def look_at(self, what: str) -> None:

@@ -38,6 +38,7 @@ it took about as long."""
 LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
 PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
 SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
+DRIVES = ("go to user", "go to front")
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
 
@@ -102,7 +103,7 @@ class LiveWorld:
         """Begin a new game and return its first state."""
         self._begin()
         self.over = False
-        with suppress(DeviceError):  # where it cannot, the first behaviour says so
+        with suppress(DeviceError):  # where it cannot, the first behaviour tries again
             self._remedies.go_back(knows_place=not self.lost)
         self.commands.settle()
         return self.observe()
@@ -132,6 +133,8 @@ class LiveWorld:
         succeeded, self.broken = False, ""
         try:
             if self.tracker.allows(behaviour):
+                if behaviour.effect not in DRIVES and not self.lost:
+                    self._remedies.go_back(knows_place=True)  # staff may have driven it
                 found = self._numbers_of(action)
                 if found is not None:
                     numbers = found
@@ -213,8 +216,12 @@ class LiveWorld:
         """Return what whoever sits at somebody's place is called, "" for nobody."""
         if person is None:
             return ""
-        person = self.sitting.get(person, person)
-        return self._names.get(person, person)
+        sitting = self.who(person)
+        return self._names.get(sitting, sitting)
+
+    def who(self, place: str) -> str:
+        """Return who sits at somebody's place, as far as the robot has seen."""
+        return self.sitting.get(place, place)
 
     def _keep_pace(self) -> None:
         wait = self._due - self.link.time
@@ -277,7 +284,7 @@ class LiveWorld:
     def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
         """Watch what the person beside the robot does about it; None: that cannot be seen."""
         place, patience = self.tracker.place, self.activity.patience
-        person = self.sitting.get(place, place)
+        person = self.who(place)
         began = before = self.link.time
         reminded = False
         while True:

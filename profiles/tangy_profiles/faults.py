@@ -63,7 +63,8 @@ class Remedy(NamedTuple):
     """What a world is to do about a fault.
 
     `kind` is one of OWN_REMEDIES, or: `halt` and `resume` moving, `ask` people for help (say the
-    speech, show the image), `call expert`. `fault` is the code that was diagnosed.
+    speech, show the image), `call expert`, or `look again` whether it is gone, when staff say so.
+    `fault` is the code that was diagnosed.
     """
 
     kind: str

@@ -13,7 +13,7 @@ READINGS: Mapping[str, Mapping[str, Fact]] = MappingProxyType(
         "stop_button": {"latched": False},
         "laser": {"near_share": 0.04, "variety": 0.35},
         "base": {"still": 0.0, "slip": 0.02},
-        "localisation": {"fit": 1.0, "spread": 0.08},
+        "localisation": {"fit": 1.0, "spread": 0.08, "found": True},
         "navigator": {"path": "clear"},
         "camera": {"brightness": 0.45, "contrast": 0.22, "unchanged": 0.0},
         "requests": {},

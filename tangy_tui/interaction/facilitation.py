@@ -321,7 +321,7 @@ class Facilitation:
         activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
-            choice = self.persuasion.choose(target)
+            choice = self.persuasion.choose(self.world.who(target))
         action = activity.action(behaviour, target, choice.strategy if choice else None)
         outcome = self.world.execute(action)
         after = self.world.observe()

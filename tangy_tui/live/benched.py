@@ -16,7 +16,7 @@ from random import Random
 from typing import Any
 
 from tangy_hw.devices import DeviceError
-from tangy_hw.world import LiveWorld
+from tangy_hw.world import DRIVES, LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
 from tangy_profiles.state import ActivityState, Outcome
@@ -26,7 +26,6 @@ from tangy_sim.injection import KINDS, Injection, Kind
 from tangy_sim.to_come import ToCome
 from tangy_tui.live.bench import Bench, BenchError
 
-DRIVES = ("go to user", "go to front")
 MARKED = ("clear wrong marks", "set missing marks")
 EXPERT_SECONDS = 60.0  # that an expert takes on the bench
 NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
@@ -70,9 +69,19 @@ class BenchedWorld(LiveWorld):
         self._chance = Random(f"{seed}/faults").random
         self._to_come = ToCome((), self._chance)
         self.cards.looked = self._check
+        self._heard = 0  # of those who said that they would like help
+        self._listens = False
+        self._tablet: Tablet | None = None
+        self._open_tablet()
+        return self
+
+    def _open_tablet(self) -> None:
+        """Open the page of the chest screen, another one after the robot process has begun anew."""
+        if self._tablet is not None:
+            self._tablet.close()
         screen = self.link.screen
         self._tablet = Tablet(screen, self._read) if screen else None
-        return self
+        self._switch_tablet()
 
     def _read(self, text: str) -> None:
         """Let the people at the table read what the tablet shows."""
@@ -90,6 +99,7 @@ class BenchedWorld(LiveWorld):
         self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
         self.came = []
+        self._heard, self._listens = 0, False
         self._to_come = ToCome(self.injections, self._chance)
         self._pass_until(lambda: not self.commands.diagnosed(self.health()))
         return super().begin()
@@ -108,6 +118,15 @@ class BenchedWorld(LiveWorld):
         """Return how things really are."""
         told: dict[str, Any] = self.bench.do("truth")["truth"]
         return told
+
+    def observe(self) -> ActivityState:
+        """Return the joint state; staff at the bench pass on who says that they need help."""
+        if self._listens and not self.over:
+            spoken = self.truth()["spoken"]
+            for person in spoken[self._heard :]:
+                self.requests.ask_for(person)
+            self._heard = len(spoken)
+        return super().observe()
 
     # ------------------------------------------------------------------------ faults
 
@@ -194,7 +213,12 @@ class BenchedWorld(LiveWorld):
             if kind.name not in self.present:
                 self.inject(kind.name)
         if remedy.kind == "call expert":
+            if self.link.silent:
+                super().recover(remedy)
+                self._open_tablet()
             return self._expert_comes(remedy)
+        if remedy.kind == "other requests":
+            self._listens = True
         if remedy.kind == "restart":
             self.bench.do("restart", device=remedy.device)
             self._switch_tablet()

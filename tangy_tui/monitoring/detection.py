@@ -100,7 +100,7 @@ class Detector:
     def _count(self, before: ActivityState, after: ActivityState, outcome: Outcome) -> None:
         """Count requests that a person did not follow, and behaviours that changed nothing."""
         if outcome.response is not None:
-            person = outcome.response.person
+            person = before.attended or outcome.response.person  # whose place it is
             if outcome.response.followed:
                 self._refusals.pop(person, None)
             else:

@@ -241,6 +241,7 @@ class Supervision:
         if fault is None or not fault.acknowledged:
             return []
         told = self.look()
+        self._recovery.remedy(fault, "look again")
         if not self._recovery.solved(fault):
             return told + self._recovery.move(fault, Move("still there", self.seconds, by=by))
         told += self._recovery.move(fault, Move("cleared", self.seconds, by=by))

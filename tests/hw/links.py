@@ -115,10 +115,10 @@ class FakeLink:
     def tell(self, do: str, **_: Any) -> None:
         self.told.append(do)
 
-    def stop(self, why: str) -> None:
+    def stop(self, why: str, by: str = "staff") -> None:
         self.told.append(f"stop: {why}")
 
-    def release(self) -> None:
+    def release(self, by: str = "") -> None:
         self.told.append("release")
 
     def _answer(self, do: str, what: dict[str, Any]) -> dict[str, Any]:
@@ -128,6 +128,8 @@ class FakeLink:
                 self.place = what["name"]
                 self.state = replace(self.state, pose=Pose(*what["to"]))
             return {"arrived": arrived}
+        if do == "spin":
+            return {"found": True}
         if do == "face":
             return {"person": self.faces.get(self.place, self.place)}
         if do == "card":

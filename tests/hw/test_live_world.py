@@ -7,6 +7,7 @@ from typing import Any, cast
 
 import pytest
 
+from tangy_hw.devices import Pose
 from tangy_hw.robot_link import RobotLink
 from tangy_hw.world import PATIENCES, SIGN_SECONDS, LiveWorld
 from tangy_profiles.card_face import called_cells, numbers_of
@@ -365,3 +366,77 @@ def test_a_request_that_is_set_aside_is_over(world: LiveWorld, link: FakeLink) -
     link.sign()
     world.recover(Remedy("set aside", "request-stuck", person="user1"))
     assert world.observe().attended is None
+
+
+def lost(link: FakeLink, **facts: Any) -> None:
+    """Let the robot say how sure it is of its place; without facts it knows it."""
+    health = tuple(
+        r._replace(facts=facts) if r.device == "localisation" else r for r in link.state.health
+    )
+    link.state = replace(link.state, health=health)
+
+
+def drives(link: FakeLink) -> list[str]:
+    return [what["name"] for do, what in link.done if do == "go"]
+
+
+def test_a_robot_that_does_not_know_its_place_looks_round_before_a_game(link: FakeLink) -> None:
+    lost(link, spread=1.4)
+    link.meanwhile = lambda do, _: lost(link) if do == "spin" else None
+    link.state = replace(link.state, pose=Pose(8.0, 2.0, 0.0))
+    world_of(link)
+    asked = [do for do, _ in link.done]
+    assert asked.index("spin") < asked.index("go") and drives(link) == [FRONT]
+
+
+def test_a_robot_that_was_driven_elsewhere_goes_back_before_it_goes_on(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 2, LaidCard(CARD))
+    link.done.clear()
+    link.state = replace(link.state, pose=Pose(9.0, 0.8, 0.0))
+    do(world, "encourage", "user2", "praise")
+    assert drives(link) == ["user2"] and link.done[0][0] == "go"
+    link.done.clear()
+    do(world, "navigate to front")
+    assert drives(link) == [FRONT]
+
+
+def test_nothing_is_done_from_where_the_robot_could_not_get_back_from(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    opened(world)
+    link.state = replace(link.state, pose=Pose(9.0, 0.8, 0.0))
+    link.missed = {FRONT}
+    outcome = do(world, "call number")
+    assert not outcome.completed and world.called == [] and "get back" in world.broken
+
+
+def test_looking_again_plans_anew_and_looks_round_where_only_that_shows_it(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    world.recover(Remedy("look again", "path-blocked", "navigator"))
+    assert "replan" in [do for do, _ in link.done] and "release" not in link.told
+
+    world.commands.diagnosed = lambda health: dict.fromkeys(
+        ["carried-off"] if any(r.facts.get("spread") for r in health) else [], False
+    )
+    lost(link, spread=1.4)
+    world.recover(Remedy("look again", "carried-off", "localisation"))
+    assert "spin" in [do for do, _ in link.done]
+    assert link.told[-2:] == ["release", "stop: carried-off"]  # it is not gone
+
+    link.meanwhile = lambda do, _: lost(link) if do == "spin" else None
+    world.recover(Remedy("look again", "carried-off", "localisation"))
+    assert link.told[-1] == "release"
+
+
+def test_what_was_called_off_and_is_never_answered_is_given_up(
+    world: LiveWorld, link: FakeLink, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tangy_hw.commands.BREAK_SECONDS", 0.0)
+    opened(world)
+    monkeypatch.setattr(link, "wait", lambda *_: False)
+    world.commands.diagnosed = lambda _: {"laser-disconnected": True}
+    assert not do(world, "call number").completed
+    assert world.broken == "laser-disconnected"

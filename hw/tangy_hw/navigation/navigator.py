@@ -14,7 +14,7 @@ from numpy.random import Generator
 
 from tangy_hw.devices import STILL, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.disagreement import Disagreement
-from tangy_hw.navigation.localisation import Estimate, Localisation
+from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.planning import RADIUS, Path, PlanError, check_goal, plan
@@ -214,7 +214,7 @@ class Navigator:
             return self._spin(estimate, odometry, dt)
         if self.goal is None or self.state in ("idle", "arrived", "failed"):
             return STILL
-        if estimate.lost:
+        if estimate.lost or estimate.spread > WIDE:
             self._turned, self._turn_to = 0.0, 2 * pi
             self.state = "spinning"
             self._stop_following()
@@ -230,7 +230,7 @@ class Navigator:
     def _spin(self, estimate: Estimate, odometry: Odometry, dt: float) -> Twist:
         self._turned += abs(odometry.twist.turn) * dt
         if self.goal is not None:  # it turns until it has found itself
-            done = estimate.settled and not estimate.lost and self._turned > pi / 2
+            done = estimate.found and self._turned > pi / 2
             if not done and self._turned >= LOOKS_ROUND * 2 * pi:
                 self.state, self.why = "failed", "It does not find its place."
                 return STILL
