@@ -14,8 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.devices import Arms, DeviceError
+from tangy_hw.drivers import dynamixel
 from tangy_hw.drivers.dynamixel import DynamixelArms, Servo, servos_of
-from tangy_hw.drivers.dynamixel_bus import meaning, speed
+from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning, speed
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.robot import Limb
 from tests.hw.ros_links import Now, soon, until
@@ -28,6 +29,10 @@ LIMBS = {
     "head": Limb("head", ("neck nod", "mouth"), (-35, 0), (30, 25)),
 }
 SERVOS = "arm/shoulder = 1, arm/elbow = -2@90, head/neck nod = 7"
+
+
+def raised(error: Exception) -> None:
+    raise error
 
 
 @asynccontextmanager
@@ -145,6 +150,41 @@ class TestArms:
             await arms.relax()
             await arms.hold()
             assert not any(servo.torque for servo in bus.servos.values() if servo.there)
+
+    async def test_they_hold_as_well_after_one_of_them_was_silent(self) -> None:
+        async with armed() as (bus, arms, _):
+            bus.servos[2].sticks = True
+            posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
+            await until(lambda: bus.servos[2].goal == round(60 * 4096 / 360))
+            bus.servos[2].position = 1500  # on its way
+            bus.servos[7].there = False
+            await until(lambda: arms._unsure)
+            await arms.hold()
+            with pytest.raises(DeviceError, match="hold"):
+                await soon(posing)
+            await until(lambda: bus.servos[2].goal == 1500)
+            assert bus.servos[2].torque
+            bus.servos[7].there, bus.servos[2].sticks = True, False
+            bus.servos[7].write(64, b"\x00")  # it was without power
+            await soon(arms.pose({"head": (5, 0)}, 0.2))
+            assert bus.servos[7].torque
+
+    async def test_what_was_to_hold_while_the_port_was_gone_does_when_it_is_back(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(dynamixel, "AGAIN_SECONDS", 0.3)
+        async with armed() as (bus, arms, _):
+            bus.servos[2].sticks = True
+            posing = asyncio.create_task(arms.pose({"arm": (45, 30)}, 5))
+            await until(lambda: bus.servos[2].goal == round(60 * 4096 / 360))
+            bus.servos[2].position = 1500
+            with monkeypatch.context() as gone:
+                gone.setattr(Bus, "look", lambda *_, **__: raised(BusError("gone")))
+                await until(lambda: arms._bus is None)
+            await arms.hold()
+            with pytest.raises(DeviceError):
+                await soon(posing)
+            await until(lambda: bus.servos[2].goal == 1500)
 
     async def test_a_joint_that_sticks_is_named_in_time(self) -> None:
         async with armed() as (bus, arms, now):

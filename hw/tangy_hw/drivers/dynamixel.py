@@ -105,7 +105,9 @@ class DynamixelArms:
         self._moves = JointMoves(name, math.radians(tolerance), clock)
         self._errors: dict[int, str] = {}
         self._bus: Bus | None = None
-        self._limp = True
+        self._hangs = True  # as it is meant to: it has had no torque yet, or was let go
+        self._unsure = False  # a servo may have lost its torque, which is given again then
+        self._stands = False  # it was told to hold while the port was gone
         self._thread: ThreadPoolExecutor | None = None
         self._task: asyncio.Task[None] | None = None
 
@@ -176,13 +178,14 @@ class DynamixelArms:
                 raise DeviceError(plain(f"{self.name}: {wrong}"))
         if self._bus is None or self._errors:
             raise DeviceError(self.why)
-        limp, self._limp = self._limp, False
+        was, limp = (self._hangs, self._unsure), self._hangs or self._unsure
+        self._hangs = self._unsure = self._stands = False
         arriving = asyncio.create_task(self._moves.arrive(goals, seconds, self._well))
         try:
             await self._do(lambda: self._move(wanted, seconds, limp))
             await arriving
         except BusError as error:
-            self._limp = self._limp or limp
+            self._hangs, self._unsure = self._hangs or was[0], self._unsure or was[1]
             with suppress(BusError):  # a servo with an error is why
                 await self._do(partial(self._look, errors=True))
                 self._take()
@@ -199,14 +202,14 @@ class DynamixelArms:
     async def hold(self) -> None:
         """Stop where it is now, with the torque that it has; never raises."""
         self._moves.end(f"{self.name} was told to hold.")
-        if not self._limp:
+        if not self._hangs:
             with suppress(BusError):
                 await self._do(self._stand)
 
     async def relax(self) -> None:
         """Let all of it hang without torque; never raises."""
         self._moves.end(f"{self.name} was let hang.")
-        self._limp = True
+        self._hangs, self._stands = True, False
         with suppress(BusError):
             await self._do(self._let_go)
 
@@ -228,7 +231,7 @@ class DynamixelArms:
                 await asyncio.sleep(POLL_SECONDS)
             except BusError:
                 await self._do(self._hang_up)
-                self._limp = True
+                self._unsure = True
                 await asyncio.sleep(AGAIN_SECONDS)
 
     def _take(self) -> None:
@@ -247,13 +250,15 @@ class DynamixelArms:
         if len(found) == len(self._by_id):
             self._newest.take(None)
         else:
-            self._limp = True  # one that was without power has forgotten its torque
+            self._unsure = True  # one that was without power has forgotten its torque
 
     # ---------------------------------------------------------------- in the thread of the bus
 
     def _look(self, *, errors: bool) -> None:
         if self._bus is None:
             self._bus = Bus(self._port, self._baud, tuple(self._by_id))
+            if self._stands:
+                self._stand()
         self._bus.look(errors=errors)
 
     def _move(self, wanted: Mapping[int, float], seconds: float, limp: bool) -> None:
@@ -264,8 +269,10 @@ class DynamixelArms:
         self._bus.move(wanted, seconds)
 
     def _stand(self) -> None:
+        self._stands = True
         if self._bus is not None:
             self._bus.stand()
+            self._stands = False
 
     def _let_go(self) -> None:
         if self._bus is not None:
