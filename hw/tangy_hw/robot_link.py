@@ -1,8 +1,9 @@
 """The program's end of the robot process: it is started, asked, heard, and told that we live.
 
-It may be used from any thread. A reader's thread takes what the process says; another one tells it
-twenty times a second that the program lives, so that a program that hangs has the robot stop. That
-thread lives on where only a screen hangs: a screen says itself that it is `alive`.
+It may be used from any thread, and none ever waits to be heard. A reader's thread takes what the
+process says, a writer's tells it what waits; another one says twenty times a second that the
+program lives, so that a program that hangs has the robot stop. That thread lives on where only a
+screen hangs: a screen says itself that it is `alive`.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from tangy_hw.devices import DeviceError, Pose
+from tangy_hw.outbox import Outbox
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.stopping import STAFF
@@ -38,6 +40,7 @@ ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itsel
 END_SECONDS = 3.0
 
 
+ENDED = "the robot process has ended"
 NOWHERE = Pose(0.0, 0.0, 0.0)
 
 
@@ -102,6 +105,7 @@ class RobotLink:
         self._log = log
         self._process: subprocess.Popen[bytes] | None = None
         self._told = _Told()
+        self._outbox: Outbox | None = None
         self._asked: dict[int, Future[dict[str, Any]]] = {}
         self._number = 0
         self._lock = threading.Lock()
@@ -139,11 +143,14 @@ class RobotLink:
                 log.close()
         ready: Future[dict[str, Any]] = Future()
         self._asked[0] = ready
+        assert self._process.stdin is not None  # noqa: S101 - it was asked for
+        outbox = self._outbox = Outbox(self._process.stdin)
+        outbox.put(self.setup.to_json())
         self._threads = [
+            threading.Thread(target=outbox.run, daemon=True),
             threading.Thread(target=self._listen, args=(self._process,), daemon=True),
-            threading.Thread(target=self._beat, args=(self._process,), daemon=True),
+            threading.Thread(target=self._beat, args=(self._process, outbox), daemon=True),
         ]
-        self._write(self.setup.to_json())
         for thread in self._threads:
             thread.start()
         try:
@@ -160,14 +167,13 @@ class RobotLink:
     def close(self) -> None:
         """Let the process stop the robot and end; it is ended where it does not."""
         process, self._process = self._process, None
+        outbox, self._outbox = self._outbox, None
         self._closing.set()
-        if process is None:
+        if process is None or outbox is None:
             return
         if self.silent:  # it would not end by itself, and may not even read
             process.kill()
-        with suppress(OSError):
-            assert process.stdin is not None  # noqa: S101 - it was asked for
-            process.stdin.close()
+        outbox.close()
         try:
             process.wait(END_SECONDS)
         except subprocess.TimeoutExpired:
@@ -217,13 +223,14 @@ class RobotLink:
     def ask(self, do: str, **what: Any) -> Future[dict[str, Any]]:
         """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
         asked: Future[dict[str, Any]] = Future()
-        with self._lock:
+        with self._lock:  # an end of the process is answered either here or by whoever hears of it
             self._number += 1
-            number = self._number
-            self._asked[number] = asked
-        if not self._write(json.dumps({"id": number, "do": do, **what})):
-            self._asked.pop(number, None)
-            asked.set_exception(BrokenOff(self.silent or "the robot process has ended"))
+            line = json.dumps({"id": self._number, "do": do, **what})
+            heard = not self._told.ended and self._write(line)
+            if heard:
+                self._asked[self._number] = asked
+        if not heard:
+            asked.set_exception(BrokenOff(self.silent or ENDED))
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
@@ -274,24 +281,18 @@ class RobotLink:
     # ------------------------------------------------------------------------- the threads
 
     def _write(self, line: str) -> bool:
-        process = self._process
-        if process is None or process.stdin is None:
-            return False
-        with self._lock:
-            try:
-                process.stdin.write(line.encode() + b"\n")
-                process.stdin.flush()
-            except (OSError, ValueError):
-                return False
-        return True
+        """Have a line written, without waiting for it; return whether it may be."""
+        outbox = self._outbox
+        return outbox is not None and outbox.put(line)
 
-    def _beat(self, process: subprocess.Popen[bytes]) -> None:
+    def _beat(self, process: subprocess.Popen[bytes], outbox: Outbox) -> None:
         number = 0
         while not self._closing.wait(BEAT_SECONDS) and process.poll() is None:
             alive = self._alive
-            if alive is None or time.monotonic() - alive < HANGS_SECONDS:
+            hears = not (self._told.heard and self.silent)  # or its pipe would only fill
+            if hears and (alive is None or time.monotonic() - alive < HANGS_SECONDS):
                 number += 1
-                self._write(f'{{"beat":{number}}}')
+                outbox.beat(f'{{"beat":{number}}}')
 
     def _listen(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None  # noqa: S101 - it was asked for
@@ -299,11 +300,12 @@ class RobotLink:
             with suppress(ValueError, KeyError, TypeError):
                 self._take(json.loads(line))
         process.stdout.close()
-        self._told.ended = "the robot process has ended"
-        for asked in list(self._asked.values()):
+        with self._lock:
+            self._told.ended = ENDED
+            unanswered, self._asked = self._asked, {}
+        for asked in unanswered.values():
             if not asked.done():
-                asked.set_exception(BrokenOff(self._told.ended))
-        self._asked.clear()
+                asked.set_exception(BrokenOff(ENDED))
 
     def _take(self, said: dict[str, Any]) -> None:
         self._told.heard = time.monotonic()
@@ -314,7 +316,8 @@ class RobotLink:
             with self._said:
                 self._said.notify_all()
             return
-        asked = self._asked.pop(said.get("id", 0), None)
+        with self._lock:
+            asked = self._asked.pop(said.get("id", 0), None)
         if asked is None or asked.done():
             return
         if "failed" in said:

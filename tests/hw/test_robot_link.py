@@ -1,0 +1,157 @@
+"""The program's end of the robot process, whatever that process does or does not."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, cast
+
+import pytest
+
+from tangy_hw import robot_link
+from tangy_hw.devices import DeviceError
+from tangy_hw.outbox import Outbox
+from tangy_hw.robot import BrokenOff
+from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_setup import RobotSetup
+
+SETUP = RobotSetup("tangy", "bingo", ("user1",))
+PIPE = 1 << 16  # bytes that wait in one
+READY = "import sys, time; sys.stdin.readline(); print('{\"ready\": true}', flush=True); "
+AT_ONCE = 0.5
+
+
+def holds(condition: Callable[[], object], seconds: float = 5.0) -> bool:
+    until = time.monotonic() + seconds
+    while not condition() and time.monotonic() < until:
+        time.sleep(0.005)
+    return bool(condition())
+
+
+def linked(monkeypatch: pytest.MonkeyPatch, does: str) -> RobotLink:
+    monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", READY + does))
+    link = RobotLink(SETUP)
+    link.start()
+    return link
+
+
+class Pipe:
+    """A pipe that nobody reads until `read`, and an outbox that writes to it."""
+
+    def __init__(self) -> None:
+        self.out, into = os.pipe()
+        self.outbox = Outbox(os.fdopen(into, "wb"))
+        self.thread = threading.Thread(target=self.outbox.run, daemon=True)
+        self.thread.start()
+
+    def read(self) -> list[str]:
+        """Read all until its end."""
+        self.outbox.close()
+        with os.fdopen(self.out, "rb") as out:
+            lines = out.read().decode().splitlines()
+        self.thread.join()
+        return lines
+
+
+class TestOutbox:
+    def test_lines_are_written_in_order_and_the_last_before_the_end(self) -> None:
+        pipe = Pipe()
+        lines = [f"line {number}" for number in range(100)]
+        assert all(map(pipe.outbox.put, lines))
+        assert pipe.read() == lines
+        assert not pipe.outbox.put("too late")
+
+    def test_nobody_waits_for_a_reader_and_what_is_worth_nothing_later_is_left_out(self) -> None:
+        pipe = Pipe()
+        pipe.outbox.put("x" * 2 * PIPE)
+        assert holds(lambda: pipe.outbox._writing)
+        began = time.monotonic()
+        for number in range(1000):
+            pipe.outbox.beat(f"beat {number}")
+        assert pipe.outbox.put("stop")
+        assert time.monotonic() - began < AT_ONCE
+        assert pipe.read()[1:] == ["stop"]
+
+    def test_a_beat_is_written_where_nothing_waits(self) -> None:
+        pipe = Pipe()
+        pipe.outbox.beat("beat")
+        assert holds(lambda: not pipe.outbox._lines)
+        assert pipe.read() == ["beat"]
+
+    def test_without_a_reader_it_ends(self) -> None:
+        pipe = Pipe()
+        os.close(pipe.out)
+        pipe.outbox.put("to nobody")
+        assert holds(lambda: not pipe.outbox.put("nor this"))
+        pipe.thread.join(AT_ONCE)
+        assert not pipe.thread.is_alive()
+
+
+class TestHungProcess:
+    def test_whoever_stops_it_never_waits_and_it_is_told_no_beats(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(robot_link, "SILENT_SECONDS", 0.1)
+        monkeypatch.setattr(robot_link, "BEAT_SECONDS", 0.005)
+        link = linked(monkeypatch, "time.sleep(60)")
+        try:
+            outbox = cast(Any, link._outbox)
+            assert holds(lambda: link.silent)
+            beaten: list[str] = []
+            monkeypatch.setattr(outbox, "beat", beaten.append)
+            link.tell("perform", text="x" * 2 * PIPE)  # its pipe is full
+            assert holds(lambda: outbox._writing)
+            began = time.monotonic()
+            link.stop("enough")
+            assert time.monotonic() - began < AT_ONCE
+            assert [json.loads(line)["do"] for line in outbox._lines] == ["stop"]
+            time.sleep(0.1)
+            assert len(beaten) <= 1  # which may have been on its way
+        finally:
+            began = time.monotonic()
+            link.close()
+        assert time.monotonic() - began < AT_ONCE
+        assert not any(thread.is_alive() for thread in link._threads)
+
+
+class TestEnd:
+    def test_what_is_asked_for_while_it_ends_is_answered_once(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        for _ in range(3):
+            link = linked(monkeypatch, "time.sleep(.1)")
+            asked: list[Future[dict[str, Any]]] = []
+            while not link.silent:
+                asked.append(link.ask("spin"))
+            asked.append(link.ask("spin"))
+            for one in asked:
+                with pytest.raises(BrokenOff, match="has ended"):
+                    one.result(5)
+            link.close()
+
+    def test_one_that_nobody_has_heard_to_end_yet_says_so_later(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """An answer that comes at once with the end is not given twice."""
+        link = RobotLink(SETUP)
+
+        def put(line: str) -> bool:  # it ends while it is asked
+            ends.start()
+            time.sleep(0.05)
+            return False
+
+        class Gone:
+            stdout = io.BytesIO()
+
+        ends = threading.Thread(target=link._listen, args=(cast(Any, Gone()),))
+        monkeypatch.setattr(link, "_write", put)
+        with pytest.raises(DeviceError):
+            link.ask("spin").result(5)
+        ends.join()
+        assert link.silent == "the robot process has ended"
