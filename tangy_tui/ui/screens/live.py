@@ -180,7 +180,7 @@ class LiveScreen(PlayScreen):
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
         if self._stopped and self._supervision.halted is None:
-            self._world.link.release()
+            self._world.link.release(by="staff")
         super().action_pause()
 
     def action_autonomy(self) -> None:
