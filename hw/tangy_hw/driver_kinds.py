@@ -13,6 +13,7 @@ from tangy_hw.bench_clock import SteppedClock
 from tangy_hw.devices import Clock, Device, DeviceError, Pose
 from tangy_hw.drivers.ros_status import RosDiagnostics
 from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.health import DRIVES_BY
 from tangy_hw.robot_setup import Setting
 from tangy_profiles.activity import Activity
 from tangy_profiles.reading import nearest, plain
@@ -97,10 +98,13 @@ class Wiring:
     links: dict[str, Rosbridge] = field(default_factory=dict)
     diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
 
-    def link(self, at: str, ros: int) -> Rosbridge:
-        """Return the link to a rosbridge server, one for all who ask for it."""
+    def link(self, at: str, ros: int, device: str) -> Rosbridge:
+        """Return the link to a rosbridge server, one for all devices that ask for it."""
+        drives = device in DRIVES_BY
         if at not in self.links:
             self.links[at] = Rosbridge(at, clock=self.clock.now, ros=ros)
+            self.links[at].drives = drives
+        self.links[at].drives |= drives
         return self.links[at]
 
     def diagnostics(self, at: str) -> RosDiagnostics:
@@ -122,7 +126,7 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
     from tangy_hw.drivers.ros_voice import RosVoice
 
     at = settings.text("at")
-    link = wiring.link(at, int(settings.number("ros", 1)))
+    link = wiring.link(at, int(settings.number("ros", 1)), settings.device)
     diagnostics = wiring.diagnostics(at)
     match settings.device:
         case "base":

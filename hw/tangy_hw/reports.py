@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from tangy_hw.body import Body
+from tangy_hw.devices import Device
 from tangy_hw.drive_evidence import DriveEvidence
 from tangy_hw.health import Report
 from tangy_hw.perception.requests.asking import RequestSource
 from tangy_hw.senses import Senses
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
 from tangy_profiles.robot import Robot
 
 FILMED_PATIENCE = 4.0
@@ -41,7 +42,13 @@ def reports_of(
         stepped: time stands still while nobody waits for it; cameras film in real time.
     """
     base = body.base
-    reports: dict[str, Report] = {device.name: device.reading for device in body.all}
+    named: dict[str, list[Device]] = {}
+    for device in body.all:
+        if getattr(device, "drives", True):  # of other links those tell that are reached by them
+            named.setdefault(device.name, []).append(device)
+    reports: dict[str, Report] = {
+        name: partial(_worst, robot, devices) for name, devices in named.items()
+    }
     reports["base"] = lambda: evidence.base(base.reading())
     reports["localisation"] = lambda: evidence.localisation(ticked())
 
@@ -71,3 +78,12 @@ def reports_of(
         for name in senses.sensors.cameras:
             reports[name] = partial(camera, senses, name)
     return reports
+
+
+def _worst(robot: Robot, devices: Sequence[Device]) -> Reading:
+    """Return the reading of that of several devices of one name that is worst off."""
+
+    def badness(reading: Reading) -> tuple[int, float]:
+        return STATES.index(state_of(robot.devices.get(reading.device), reading)), reading.age
+
+    return max((device.reading() for device in devices), key=badness)

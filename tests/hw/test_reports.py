@@ -1,0 +1,74 @@
+"""What devices report together: of several links to a robot, the one that is worst off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tangy_hw.devices import MachineClock
+from tangy_hw.drive_evidence import DriveEvidence
+from tangy_hw.driver_kinds import Wiring, open_device
+from tangy_hw.health import Watchdogs
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.reports import reports_of
+from tangy_profiles.activity import load_activity
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.robot import load_robot
+from tests.hw.live_bodies import ToldBody, ToldDevice
+from tests.hw.navigated import MAP
+
+ROBOT = load_robot()
+BASE, VOICE = "ws://10.0.0.1:9090", "ws://10.0.0.2:9090"
+
+
+class Link(ToldDevice):
+    """One of several links; the robot may drive by it."""
+
+    def __init__(self, state: str = OK, age: float = 0.0, *, drives: bool = True) -> None:
+        super().__init__("link", [])
+        self.state, self.age, self.drives = state, age, drives
+
+
+def watched(*links: Link) -> Watchdogs:
+    evidence = DriveEvidence(Navigator(MAP, np.random.default_rng(1)), lambda: 0.0)
+    return Watchdogs(ROBOT, reports_of(ROBOT, ToldBody().body(*links), evidence, lambda: 0.0))
+
+
+def told(*links: Link) -> Reading:
+    return next(reading for reading in watched(*links).health() if reading.device == "link")
+
+
+@pytest.mark.parametrize("bad", [Link(STALE), Link(OK, 1.0), Link(ERROR)])
+def test_the_robot_stands_when_any_link_that_it_drives_by_is_lost(bad: Link) -> None:
+    for links in ([bad, Link()], [Link(), bad], [Link(), bad, Link(WARN)]):
+        assert told(*links) == bad.reading()
+        assert watched(*links).hazard().startswith(ROBOT.devices["link"].label)
+    assert watched(Link(), Link()).hazard() == ""
+
+
+def test_of_links_that_are_well_the_older_data_counts() -> None:
+    assert told(Link(OK, 0.1), Link(OK, 0.2), Link(OK, 0.0)).age == 0.2
+
+
+def test_a_link_that_only_the_voice_uses_does_not_hold_the_robot_up() -> None:
+    assert told(Link(), Link(STALE, 9.0, drives=False)) == Link().reading()
+    assert watched(Link(), Link(STALE, 9.0, drives=False)).hazard() == ""
+
+
+@pytest.mark.parametrize(
+    ("devices", "drives"),
+    [
+        ({"voice": VOICE}, {VOICE: False}),
+        ({"base": BASE, "voice": VOICE, "arms": VOICE}, {BASE: True, VOICE: False}),
+        ({"voice": BASE, "base": BASE}, {BASE: True}),
+        ({"base": BASE, "arms": BASE}, {BASE: True}),
+        ({"stop_button": BASE, "laser": VOICE}, {BASE: True, VOICE: True}),
+    ],
+)
+async def test_a_link_is_driven_by_when_a_device_is_that_the_robot_drives_by(
+    devices: dict[str, str], drives: dict[str, bool]
+) -> None:
+    wiring = Wiring(ROBOT, load_activity("bingo"), MachineClock())
+    for device, at in devices.items():
+        open_device(wiring, device, {"kind": "rosbridge", "at": at})
+    assert {at: link.drives for at, link in wiring.links.items()} == drives
