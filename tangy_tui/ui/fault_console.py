@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import gc
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from textual.screen import Screen
 
+from tangy_hw.world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.faulty import FaultyWorld
 from tangy_sim.injection import KINDS
@@ -61,6 +62,10 @@ NO_GAME = "No game is going on: press g to play one first."
 Tell = Callable[[list[Event], bool], None]
 """Shows events; the second is whether it is known already why a game was stopped."""
 
+Work = Callable[[], list[Event]]
+Beside = Callable[[Work], Awaitable[list[Event]]]
+"""Does something beside the screen, which lives meanwhile, and returns what it tells."""
+
 _TAKES_TIME = ("asked", "remedied")
 """The moves of which it takes time to see what comes."""
 
@@ -90,6 +95,8 @@ class FaultConsole:
         """How often the timer has looked."""
         self.busy = False
         """Whether something else has the supervision at this moment: a teacher is learnt from."""
+        self.beside: Beside | None = None
+        """Does what takes its time: the world is there, and not worked out at once."""
         self._screen = screen
         self._house = house
         self._who = who
@@ -283,13 +290,28 @@ class FaultConsole:
         """Say that a fault (default: the one that halts the robot) was seen."""
         self._tell(self.supervision.acknowledge(self._who, fault), False)
 
-    def call_expert(self) -> None:
-        """Call the expert about the fault that halts the robot."""
-        self._tell(self.supervision.call_expert(self._who), False)
+    @property
+    def takes_time(self) -> bool:
+        """Whether it takes its time to call the expert and to clear."""
+        return self.beside is not None
 
-    def clear(self) -> None:
+    @property
+    def restarts(self) -> bool:
+        """Whether the expert is called because nothing is heard from the robot process."""
+        world = self.supervision.world
+        return isinstance(world, LiveWorld) and bool(world.link.silent)
+
+    async def call_expert(self) -> None:
+        """Call the expert about the fault that halts the robot."""
+        await self._do(lambda: self.supervision.call_expert(self._who))
+
+    async def clear(self) -> None:
         """Let the robot go on, if the fault was seen and is gone."""
-        self._tell(self.supervision.clear(self._who), False)
+        await self._do(lambda: self.supervision.clear(self._who))
+
+    async def _do(self, work: Work) -> None:
+        events = work() if self.beside is None else await self.beside(work)
+        self._tell(events, False)
 
     def give_up(self) -> None:
         """End the game that is halted."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import replace
 from time import sleep
 from typing import TYPE_CHECKING, Any, cast
 
 from tangy_hw.robot_link import RobotLink
 from tangy_hw.world import LiveWorld
+from tangy_profiles.health import OK, Fact, Reading
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
@@ -42,10 +44,29 @@ class HeldLink(FakeLink):
         sleep(0.005)  # or a game would be over before anybody has pressed a key
         return free or any(told.startswith("stop") for told in self.told)
 
+    def ail(self, device: str, state: str = OK, **facts: Fact) -> None:
+        """Let a device report this from now on."""
+        ill = Reading(device, 0.0, state, facts)
+        health = tuple(ill if r.device == device else r for r in self.state.health)
+        self.state = replace(self.state, health=health)
 
-def live_world(house: House, link: HeldLink) -> LiveWorld:
+    def be_let(self) -> None:
+        """Wait to be let, but not for ever: a screen that is held up as well could not let it."""
+        for _ in range(1000):
+            if self.free:
+                break
+            sleep(0.005)
+
+    def restart(self) -> None:
+        """Become another robot process that is well, when it is let."""
+        self.be_let()
+        self.silent = ""
+        self.state = replace(self.state, health=FakeLink(PEOPLE).state.health)
+
+
+def live_world(house: House, link: HeldLink, kind: type[LiveWorld] = LiveWorld) -> LiveWorld:
     """Make the world of a robot."""
-    return LiveWorld(
+    return kind(
         house.activity,
         PEOPLE,
         cast(RobotLink, link),

@@ -40,6 +40,9 @@ ALREADY_CALLED = "The expert was called already. Press c when all is well."
 CALLED = "The expert was called. Press c when all is well."
 STILL_THERE = "It is still there. Tangy stands still. Press e to call the expert (again)."
 STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
+RESTARTING = "The robot process is started again ..."
+CALLING = "The expert is called ..."
+LOOKING = "Looking whether it is gone ..."
 KEYS = ("a", "e", "c", "g", "escape")
 
 
@@ -48,13 +51,21 @@ class Desk(Protocol):
 
     supervision: Supervision
 
+    @property
+    def takes_time(self) -> bool:
+        """Whether it takes its time to call the expert and to clear."""
+
+    @property
+    def restarts(self) -> bool:
+        """Whether calling the expert starts the robot process again."""
+
     def acknowledge(self) -> None:
         """Say that it was seen."""
 
-    def call_expert(self) -> None:
+    async def call_expert(self) -> None:
         """Call the expert."""
 
-    def clear(self) -> None:
+    async def clear(self) -> None:
         """Let the robot go on, if the fault is gone."""
 
     def give_up(self) -> None:
@@ -98,6 +109,9 @@ class CriticalDialog(Dialog[None]):
         self._keys = FreshKeys()
         self._status = Status()
         self._now = ""
+        self._doing = ""
+        """What is being done, which takes its time; keys wait for it."""
+        self._done = False
 
     @property
     def fault(self) -> Fault:
@@ -135,11 +149,16 @@ class CriticalDialog(Dialog[None]):
         self.look()
         for page in self.query(Page):
             page.show(self._write, None)
+        self._show_keys()
+
+    def _show_keys(self) -> None:
         for keys in self.query(KeyLine):
             keys.show(*self._key_words())
 
     def look(self) -> None:
         """Say whether the fault is still there, if that is not what is said already."""
+        if self._doing:  # it is being looked at, by another thread
+            return
         before = self._now
         words = self._is_there()
         if words != before:
@@ -165,16 +184,41 @@ class CriticalDialog(Dialog[None]):
         message.prevent_default()  # to a dialog of another kind STOP is a no
         self.say(STOPPED)
 
-    def on_key(self, event: events.Key) -> None:
+    def on_screen_resume(self, event: events.ScreenResume) -> None:
+        """Close where it was cleared while something lay over it."""
+        if self._done:
+            self.answer(None)
+
+    async def on_key(self, event: events.Key) -> None:
         """Do what a key says, if the fault was on the screen by then."""
         if event.key not in KEYS or not self._keys.take(event):
             return
+        if self._doing:
+            self.say(f"Wait. {self._doing}")
+        elif self._desk.takes_time and (doing := self._takes(event.key)):
+            self._doing = doing
+            self.say(doing)
+            self._show_keys()
+            self.run_worker(self._tried(event.key), group="doing")
+        else:
+            await self._tried(event.key)
+
+    def _takes(self, key: str) -> str:
+        """Say what a key has done that takes its time, "" if it has nothing done."""
+        if key == "e" and not self._called:
+            return RESTARTING if self._desk.restarts else CALLING
+        return LOOKING if key == "c" and self._fault.acknowledged else ""
+
+    async def _tried(self, key: str) -> None:
         try:
-            self._do(event.key)
+            await self._do(key)
         except TangyError as error:
             self.say(f"{error} Nothing was changed: try again.")
+        finally:
+            self._doing = ""
+            self._show_keys()
 
-    def _do(self, key: str) -> None:
+    async def _do(self, key: str) -> None:
         fault, desk = self._fault, self._desk
         match key:
             case "a":
@@ -183,15 +227,16 @@ class CriticalDialog(Dialog[None]):
             case "e" if self._called:
                 self.say(ALREADY_CALLED)
             case "e":
-                desk.call_expert()
+                await desk.call_expert()
                 self.say(CALLED)
             case "c" if not fault.acknowledged:
                 self.say(SEEN_FIRST)
             case "c":
-                desk.clear()
+                await desk.clear()
                 if desk.supervision.halted is fault:
                     self.say(STILL_THERE)
                 else:
+                    self._done = True
                     self.answer(None)
             case _:
                 self.run_worker(self._confirm(), group="give up", exclusive=True)
@@ -224,6 +269,8 @@ class CriticalDialog(Dialog[None]):
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
 
     def _key_words(self) -> tuple[tuple[str, str], ...]:
+        if self._doing:
+            return (("^x", "STOP"), ("?", "help"))
         seen = () if self._fault.acknowledged else (("a", "seen"),)
         return (*seen, ("e", "call expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
 

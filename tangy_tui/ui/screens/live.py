@@ -29,6 +29,7 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
+from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys
@@ -44,6 +45,7 @@ SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
 ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
 LOOKS_ROUND = "Tangy does not know where it stands: it turns on the spot, then drives to the front."
+STOPPED = "staff stopped it"
 TOOK_OVER = "You say what Tangy does next."
 
 
@@ -71,6 +73,7 @@ class LiveScreen(PlayScreen):
         self._confirmed: tuple[str, str | None] | None = None
         """What staff said yes to, for whom: it alone is done next where they are asked first."""
         supervision.game.permits = self._permits
+        self._faults.beside = self._attend_beside
         self._working = False
         self._turn = asyncio.Lock()
         """Whoever has it has the supervision, and the robot."""
@@ -106,17 +109,24 @@ class LiveScreen(PlayScreen):
         finally:
             self._confirmed = None
 
-    async def _beside(self, work: object) -> list[Event]:
+    async def _beside(self, work: Work) -> list[Event]:
         """Do something that takes its time, while the screen lives."""
         async with self._turn:
             self._working = self._faults.busy = True
             self._show_status()
             try:
-                events: list[Event] = await asyncio.to_thread(work)  # type: ignore[arg-type]
-                return events
+                return await asyncio.to_thread(work)
             finally:
                 self._working = False
                 self._faults.busy = self._learning
+
+    async def _attend_beside(self, work: Work) -> list[Event]:
+        """Do something about what halts the robot, which may end in another robot process."""
+        try:
+            return await self._beside(work)
+        finally:
+            if self._stopped:  # that one was not told
+                self._world.link.stop(STOPPED)
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
@@ -174,7 +184,7 @@ class LiveScreen(PlayScreen):
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot itself, before anything is drawn."""
-        self._world.link.stop("staff stopped it")
+        self._world.link.stop(STOPPED)
         super().on_stop(message)
 
     def action_pause(self) -> None:
@@ -257,11 +267,11 @@ class LiveScreen(PlayScreen):
             self._faults.note(f"staff asked for help for {person}")
             self._tell_now(f"{name} asks for help.", "dim")
 
-    async def _tried(self, work: object) -> None:
+    async def _tried(self, work: Callable[[], object]) -> None:
         async with self._turn:
             self._working = self._faults.busy = True
             try:
-                await asyncio.to_thread(work)  # type: ignore[arg-type]
+                await asyncio.to_thread(work)
             except TangyError as error:
                 self._tell_now(str(error), "warn")
             finally:

@@ -1,0 +1,125 @@
+"""While a robot among people stands still because of a fault: what takes its time, and STOP."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import pytest
+
+from tangy_hw.world import LiveWorld
+from tangy_profiles.faults import Remedy
+from tangy_profiles.health import STALE
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.critical import CriticalDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.help import HelpScreen
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+
+class HeldWorld(LiveWorld):
+    """A world in which nothing is done about a fault before the robot is let."""
+
+    def recover(self, remedy: Remedy) -> float:
+        if remedy.kind != "halt":
+            cast(HeldLink, self.link).be_let()
+        return super().recover(remedy)
+
+
+@pytest.fixture
+def link() -> HeldLink:
+    return HeldLink()
+
+
+@pytest.fixture
+def program(house: House, link: HeldLink, policy: Policy) -> Program:
+    return live_program(house, live_world(house, link, HeldWorld), policy)
+
+
+def seen(pilot: TangyPilot) -> str:
+    """Return what can be read, on one line."""
+    return " ".join(pilot.text().split())
+
+
+async def halting(pilot: TangyPilot, link: HeldLink, device: str, state: str = "OK") -> None:
+    """Pause the game, let a device fail, and wait until the dialog takes keys."""
+    await paused_after(pilot, link, 2)
+    if device == "link":
+        link.silent = "the robot process has ended"
+    link.ail(device, state, latched=True)
+    await until(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
+    dialog = pilot.app.screen
+    assert isinstance(dialog, CriticalDialog)
+    await until(pilot, lambda: dialog._keys.seen)
+    await pilot.pause()
+
+
+async def lives(pilot: TangyPilot, link: HeldLink) -> None:
+    """Wait until the screen has said again that it lives."""
+    stamps = link.stamps
+    await until(pilot, lambda: link.stamps > stamps + 1)
+
+
+async def test_the_screen_lives_while_the_robot_process_is_started_again(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halting(pilot, link, "link", STALE)
+        link.free = False
+        try:
+            await pilot.press("e")
+            assert "! The robot process is started again ..." in seen(pilot)
+            await lives(pilot, link)
+            await pilot.press("c")
+            assert "! Wait. The robot process is started again ..." in seen(pilot)
+            assert "^x STOP" in pilot.text() and "e call expert" not in pilot.text()
+            await pilot.press("ctrl+x")
+            assert link.told[-1] == "stop: staff stopped it" and "STOPPED" in pilot.lines()[0]
+            link.told.append("another process")
+        finally:
+            link.free = True
+        await until(pilot, lambda: "The expert was called. Press c" in seen(pilot))
+        assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
+        assert "e call expert" in pilot.text()
+
+
+async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halting(pilot, link, "stop_button")
+        link.ail("stop_button")
+        link.free = False
+        try:
+            await pilot.press("a", "c")
+            assert "! Looking whether it is gone ..." in seen(pilot)
+            await lives(pilot, link)
+            await pilot.press("g")
+            assert "! Wait. Looking whether it is gone ..." in seen(pilot)
+            await pilot.press("ctrl+x")
+            assert "stop: staff stopped it" in link.told
+        finally:
+            link.free = True
+        await until(pilot, lambda: pilot.app.screen is live(pilot))
+        assert live(pilot)._supervision.halted is None
+
+
+async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program) as pilot:
+        await halting(pilot, link, "stop_button")
+        link.ail("stop_button")
+        link.free = False
+        try:
+            await pilot.press("a", "c", "question_mark")
+            await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+        finally:
+            link.free = True
+        await until(pilot, lambda: live(pilot)._supervision.halted is None)
+        await pilot.pause()
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is live(pilot))
