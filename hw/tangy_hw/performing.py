@@ -77,7 +77,9 @@ class Performer:
         """Turn the eyes to a card or a face."""
         angles = self._gazes.get(what)
         if angles and self._body.arms is not None and self._gaze != what:
-            await self.perform(posture=angles, gazes=True)
+            done = await self.perform(posture=angles, gazes=True)
+            if not done.get("posed"):  # a broken arm is told at once, and the head turns all the same
+                await self._passing.sleep(POSE_SECONDS)
             self._gaze = what
 
     async def be_still(self) -> None:

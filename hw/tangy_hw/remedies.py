@@ -47,6 +47,8 @@ class Remedies:
                 self._await_help(remedy)
             case "resume":
                 world.link.release()
+                if world.lost:  # it slipped, or was pushed, while it was seen to
+                    self.go_back(knows_place=False)
             case "spin":
                 self.go_back(knows_place=False)
             case "look again":
@@ -59,11 +61,12 @@ class Remedies:
                 commands.do("relax")
             case "set aside" if person is not None and person in tracker.queue:
                 tracker.queue.remove(person)
-                world.requests.over(person)
+                world.requests.set_aside(person)
                 commands.do("answered", seat=world.people.index(person) + 1)
                 if person == tracker.place:
                     tracker.seen = None
         commands.settle()
+        world.link.beat()  # what was done shows in what the robot says of itself now
 
     def go_back(self, *, knows_place: bool) -> None:
         """Let the robot be where it should be in the game; it turns first if it is lost.

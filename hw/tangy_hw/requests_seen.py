@@ -18,6 +18,7 @@ class SeenRequests:
         self._link = link
         self._by_word: dict[str, float] = {}
         self._without_sign: dict[str, float] = {}
+        self._aside: set[str] = set()
 
     @property
     def signs(self) -> dict[str, float]:
@@ -27,8 +28,10 @@ class SeenRequests:
 
     @property
     def all(self) -> dict[str, float]:
-        """Who asks, by a sign or by word, and since when."""
-        return self.signs | self._by_word
+        """Who asks, by a sign that was not set aside or by word, and since when."""
+        signs = self.signs
+        self._aside &= signs.keys()  # who has turned the sign down may put it up again
+        return {p: since for p, since in signs.items() if p not in self._aside} | self._by_word
 
     def ask_for(self, person: str) -> None:
         """Ask on behalf of somebody who has no sign."""
@@ -37,6 +40,11 @@ class SeenRequests:
     def over(self, person: str) -> None:
         """What somebody asked for by word is over."""
         self._by_word.pop(person, None)
+
+    def set_aside(self, person: str) -> None:
+        """Leave somebody's request at that, also while the sign stays up."""
+        self.over(person)
+        self._aside.add(person)
 
     def tell(self, tracker: Tracker) -> None:
         """Tell a game who asks, and who waits and does not ask any more."""

@@ -19,6 +19,7 @@ from tangy_hw.devices import DeviceError
 from tangy_hw.world import DRIVES, LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
+from tangy_profiles.health import OK
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim import injection
 from tangy_sim.bench.tablet import Tablet
@@ -98,6 +99,8 @@ class BenchedWorld(LiveWorld):
         self.bench.do("begin")
         self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
+        if any(r.device == "voice" and r.state != OK for r in self.health()):
+            self.link.do("restart", device="voice")  # it is thought dead until it has spoken
         self.came = []
         self._heard, self._listens = 0, False
         self._to_come = ToCome(self.injections, self._chance)

@@ -11,7 +11,7 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Remedy
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_sim.injection import KINDS
+from tangy_sim.injection import KINDS, WAITING
 from tangy_tui.experiments.classroom import GUIDED, Course
 from tangy_tui.experiments.induced import Inducer, Planned
 from tangy_tui.experiments.recovering import plan_of, play_games
@@ -36,6 +36,7 @@ class InducingBench(BenchedWorld):
     def begin(self) -> ActivityState:
         """Begin the next game of the plan."""
         self.inducer.begin()
+        self.link.release()  # nobody is there to say that all is well
         return super().begin()
 
     def execute(self, action: Action) -> Outcome:
@@ -60,10 +61,11 @@ class InducingBench(BenchedWorld):
         return seconds
 
     def _note_lifted(self) -> None:
-        there = self.present
+        there, step = self.present, self.tracker.step
         for fault in self.inducer.induced:
             if fault.kind.name not in there:
-                self.inducer.lifted(fault.kind.name, self.tracker.step)
+                late = fault.kind.shows == WAITING  # who asks no more is missed a moment later
+                self.inducer.lifted(fault.kind.name, step + late)
 
 
 def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:

@@ -363,9 +363,12 @@ def test_people_are_asked_aloud_and_given_time(world: LiveWorld, link: FakeLink)
 
 def test_a_request_that_is_set_aside_is_over(world: LiveWorld, link: FakeLink) -> None:
     beside(world, link, 1, LaidCard(CARD))
-    link.sign()
     world.recover(Remedy("set aside", "request-stuck", person="user1"))
+    assert world.observe().attended is None  # the sign is up all the same
+    link.sign()
     assert world.observe().attended is None
+    link.sign(1)
+    assert world.observe().attended == "user1"
 
 
 def lost(link: FakeLink, **facts: Any) -> None:

@@ -342,3 +342,22 @@ def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House)
         assert ended(events).stopped is None or "halted" in str(ended(events).stopped)
     assert faults >= 60
     check_log(house.store)
+
+
+def closing_step(supervise: Supervise) -> tuple[int, int]:
+    """Return a seed, and a step of its game that settles a request that was open for nothing."""
+    for seed in range(20):
+        for done in acts(play(supervise(seed=seed))):
+            if done.action.behaviour.name == "encourage":
+                return seed, done.number
+    raise AssertionError("Nobody was encouraged.")
+
+
+@pytest.mark.parametrize("kind", [kind.name for kind in KINDS.values() if kind.stops])
+def test_what_breaks_a_behaviour_off_explains_that_nothing_has_come_of_it(
+    supervise: Supervise, kind: str
+) -> None:
+    seed, step = closing_step(supervise)
+    told = play(supervise(f"{kind}@{step}", seed=seed))
+    assert codes(told) == [KINDS[kind].code]
+    assert ended(told).stopped is None
