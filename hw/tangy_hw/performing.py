@@ -78,7 +78,7 @@ class Performer:
         angles = self._gazes.get(what)
         if angles and self._body.arms is not None and self._gaze != what:
             done = await self.perform(posture=angles, gazes=True)
-            if not done.get("posed"):  # a broken arm is told at once, and the head turns all the same
+            if not done.get("posed"):  # the head turns though an arm is broken
                 await self._passing.sleep(POSE_SECONDS)
             self._gaze = what
 
