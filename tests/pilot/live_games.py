@@ -9,6 +9,7 @@ from time import sleep
 from typing import TYPE_CHECKING, Any, cast
 
 from tangy_hw.robot_link import RobotLink
+from tangy_hw.stopping import STAFF
 from tangy_hw.world import LiveWorld
 from tangy_profiles.health import OK, Fact, Reading
 from tangy_tui.house import House
@@ -35,6 +36,8 @@ class HeldLink(FakeLink):
         """How often the screen has said that it lives."""
         self.most = 10_000
         """So many lines it says, and then does nothing to its end."""
+        self.held_by: set[str] = set()
+        """Who has stopped it and not let it go since."""
 
     def alive(self) -> None:
         self.stamps += 1
@@ -43,6 +46,14 @@ class HeldLink(FakeLink):
         free = self.free and len(self.said) <= self.most
         sleep(0.005)  # or a game would be over before anybody has pressed a key
         return free or any(told.startswith("stop") for told in self.told)
+
+    def stop(self, why: str, by: str = STAFF) -> None:
+        super().stop(why, by)
+        self.held_by.add(by)
+
+    def release(self, by: str = "") -> None:
+        super().release(by)
+        self.held_by -= {by} if by else self.held_by
 
     def ail(self, device: str, state: str = OK, **facts: Fact) -> None:
         """Let a device report this from now on."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
+from tangy_hw.stopping import STAFF
 from tangy_hw.world import LiveWorld
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import STALE
@@ -105,6 +106,24 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
             link.free = True
         await until(pilot, lambda: pilot.app.screen is live(pilot))
         assert live(pilot)._supervision.halted is None
+
+
+async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halting(pilot, link, "stop_button")
+        await pilot.press("ctrl+x")
+        link.ail("stop_button")
+        await pilot.press("a", "c")
+        await until(pilot, lambda: pilot.app.screen is live(pilot))
+        assert live(pilot)._supervision.halted is None
+        done = len(link.done)
+        await lives(pilot, link)
+        assert STAFF in link.held_by and "STOPPED" in pilot.lines()[0]
+        assert link.done[done:] == []
+        await pilot.press("p")
+        assert not link.held_by
 
 
 async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(

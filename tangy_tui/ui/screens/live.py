@@ -16,6 +16,7 @@ from typing import ClassVar
 from textual.binding import BindingType
 from textual.screen import Screen
 
+from tangy_hw.stopping import STAFF
 from tangy_hw.world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_profiles.room import Point
@@ -126,7 +127,7 @@ class LiveScreen(PlayScreen):
             return await self._beside(work)
         finally:
             if self._stopped:  # that one was not told
-                self._world.link.stop(STOPPED)
+                self._world.link.stop(STOPPED, by=STAFF)
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
@@ -184,13 +185,13 @@ class LiveScreen(PlayScreen):
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot itself, before anything is drawn."""
-        self._world.link.stop(STOPPED)
+        self._world.link.stop(STOPPED, by=STAFF)
         super().on_stop(message)
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
         if self._stopped and self._supervision.halted is None:
-            self._world.link.release(by="staff")
+            self._world.link.release(by=STAFF)
         super().action_pause()
 
     def action_autonomy(self) -> None:
@@ -324,7 +325,7 @@ class LiveScreen(PlayScreen):
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
-        self._world.link.stop("staff ended the game")
+        self._world.link.stop("staff ended the game", by=STAFF)
         with suppress(TimeoutError):
             async with asyncio.timeout(REST_SECONDS), self._turn:
                 pass
