@@ -10,6 +10,7 @@ from tangy_hw.world import LiveWorld
 from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.seats import Seats
 from tangy_tui.monitoring.fault import fault_documents
 from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -31,6 +32,7 @@ class LiveGames:
         self.took = 0.0
         self._house = house
         self._supervision = supervision
+        self._seats = Seats(house.name)
 
     def play(
         self,
@@ -71,6 +73,13 @@ class LiveGames:
             for kind in world.still_to_come:
                 self.absent[kind] = self.absent.get(kind, 0) + 1
 
+    def lines(self, events: list[Event]) -> list[str]:
+        """Say what happened, for whoever waits, and who was seen where somebody else sits."""
+        world = self._supervision.world
+        sitting = world.sitting if isinstance(world, LiveWorld) else {}
+        lines = (_told(self._house, event) for event in events)
+        return [*filter(None, lines), *self._seats.news(events, sitting)]
+
     def document(self) -> dict[str, Any]:
         """Return what `tangy live --json` prints."""
         world = self._supervision.world
@@ -84,7 +93,7 @@ class LiveGames:
         return found
 
 
-def told(house: House, event: Event) -> str:
+def _told(house: House, event: Event) -> str:
     """Say in one line what happened, for whoever waits; "" of what needs no line."""
     match event:
         case Acted(number=number, action=action, outcome=outcome, speech=speech):

@@ -179,15 +179,14 @@ def _corners(text: str) -> tuple[tuple[float, float], ...]:
 def _play(
     house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
 ) -> None:
-    from tangy_tui.live.playing import LiveGames, told
+    from tangy_tui.live.playing import LiveGames
     from tangy_tui.ui import reports
 
     played = LiveGames(house, supervision)
 
     def tell(events: list[Event]) -> None:
-        for event in events:
-            if not as_json and (line := told(house, event)):
-                print(plain(line), flush=True)
+        for line in [] if as_json else played.lines(events):
+            print(plain(line), flush=True)
 
     bar = reports.progress(range(games), "Playing", quiet=as_json or games < 2)
     played.play(bar, expert=expert, tell=tell)

@@ -21,6 +21,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.widgets.log_view import LogView
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import screen_text
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
@@ -135,6 +136,27 @@ async def test_staff_can_ask_for_help_for_somebody(
         assert "user2" in world.requests.all
         live(pilot)._going.set()
         await until(pilot, lambda: world.tracker.place == "user2")
+
+
+async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that_is_over(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    world._knows_faces = True
+    link.cards["user2"] = LaidCard(7)
+    link.faces["user2"] = "user4"
+    other = "User 4 sits at User 2's place: Tangy speaks to User 4."
+    own = "User 2 sits at User 2's place again."
+    async with run(app=program) as pilot:
+        log = live(pilot).query_one(LogView)
+        link.sign(2)
+        await until(pilot, lambda: other in log.sentences)
+        assert own not in log.sentences
+        link.faces.clear()
+        link.state = replace(link.state, asks=())
+        await until(pilot, lambda: world.tracker.place == "front")
+        link.sign(2)
+        await until(pilot, lambda: own in log.sentences)
+        assert log.sentences.count(other) == log.sentences.count(own) == 1
 
 
 async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:

@@ -25,6 +25,7 @@ from tangy_tui.house import House
 from tangy_tui.learning.policy import Decision
 from tangy_tui.learning.verifying import Verified
 from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.seats import Seats
 from tangy_tui.live.sensing import LinkedSensors
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
@@ -36,6 +37,7 @@ from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import Mark, RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -79,6 +81,7 @@ class LiveScreen(PlayScreen):
         self._turn = asyncio.Lock()
         """Whoever has it has the supervision, and the robot."""
         self._seen_doing = ""
+        self._seats = Seats(house.name)
 
     def on_mount(self) -> None:
         """Show what is known, begin, and follow the robot."""
@@ -304,6 +307,13 @@ class LiveScreen(PlayScreen):
             live=True,
             where="on the bench" if benched else "",
         )
+
+    def _tell(self, events: list[Event], known: bool = False) -> None:
+        """Show events, and who was seen where somebody else usually sits."""
+        super()._tell(events, known)
+        if self.query(LogView):
+            for line in self._seats.news(events, self._world.sitting):
+                self._write(line, "warn")
 
     def _track(self) -> None:
         """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
