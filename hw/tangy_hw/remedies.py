@@ -7,6 +7,7 @@ from math import hypot
 from typing import TYPE_CHECKING
 
 from tangy_hw.devices import DeviceError, Picture
+from tangy_hw.stopping import FAULT
 from tangy_profiles.faults import Remedy
 
 if TYPE_CHECKING:
@@ -26,12 +27,12 @@ class Remedies:
         """Do something about a fault; return the s it took, of the robot's time."""
         link = self._world.link
         began = link.time
-        if remedy.kind == "call expert" and link.silent:
+        if remedy.kind == "call expert" and (link.silent or link.state.failed):
             with suppress(DeviceError):  # another robot process, which stands still as well
                 link.restart()
-                link.stop(remedy.fault)
+                link.stop(remedy.fault, by=FAULT)
         if remedy.kind == "halt":  # before and beside anything else
-            link.stop(remedy.fault)
+            link.stop(remedy.fault, by=FAULT)
             return 0.0
         with suppress(DeviceError):  # what has not helped is seen by what the devices report
             self._do(remedy)
@@ -46,7 +47,7 @@ class Remedies:
             case "ask":
                 self._await_help(remedy)
             case "resume":
-                world.link.release()
+                world.link.release(by=FAULT)
                 if world.lost:  # it slipped, or was pushed, while it was seen to
                     self.go_back(knows_place=False)
             case "spin":
@@ -89,12 +90,12 @@ class Remedies:
         commands, link = self._world.commands, self._world.link
         commands.do("replan")
         if remedy.device == "localisation":  # only looking round can show it
-            link.release()
+            link.release(by=FAULT)
             try:
                 self.go_back(knows_place=False)
             finally:
                 if remedy.fault in commands.diagnosed(link.health()):
-                    link.stop(remedy.fault)
+                    link.stop(remedy.fault, by=FAULT)
         link.beat()
 
     def _await_help(self, remedy: Remedy) -> None:

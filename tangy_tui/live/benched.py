@@ -216,7 +216,7 @@ class BenchedWorld(LiveWorld):
             if kind.name not in self.present:
                 self.inject(kind.name)
         if remedy.kind == "call expert":
-            if self.link.silent:
+            if self.link.silent or self.link.state.failed:
                 super().recover(remedy)
                 self._open_tablet()
             return self._expert_comes(remedy)
