@@ -82,7 +82,8 @@ class Told:
     """What is told of a device: its state, for how long (s, None: that is not known), and why.
 
     `code` is the state as the device has it, "" where nothing is known of it; `age` is of its
-    newest data, in s; `facts` are what it measures, in words.
+    newest data, in s, and `rate` how often a second that comes (None: nobody counts); `facts` are
+    what it measures, in words.
     """
 
     device: Device
@@ -95,6 +96,7 @@ class Told:
     facts: tuple[str, ...] = ()
     live: bool = False
     """Whether it is a real device."""
+    rate: float | None = None
 
     @property
     def well(self) -> bool:
@@ -175,6 +177,7 @@ class Teller:
             self._sensors.source(device.name) if self._live and self._sensors else "",
             _facts(device, dict(reading.facts)),
             self._live,
+            reading.rate,
         )
 
 
@@ -193,6 +196,7 @@ def _camera(device: Device, sight: Sight, source: str) -> Told:
         source,
         told,
         live=True,
+        rate=None if sight.state in ("DISCONNECTED", "ENDED") else sight.rate,
     )
 
 
@@ -222,6 +226,18 @@ def age_words(seconds: float | None) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.0f} h"
 
 
+def rate_words(told: Told) -> str:
+    """Say how often a second a device's data comes, "" where nobody counts."""
+    if told.rate is None:
+        return ""
+    return f"{told.rate:.0f} Hz" if told.rate >= 9.5 else f"{told.rate:.1f} Hz"
+
+
+def remark(told: Told) -> str:
+    """Say in a line what there is to say beside the age: the rate, and what is wrong."""
+    return "  ".join(filter(None, (rate_words(told), told.why)))
+
+
 def card_words(cards: CardSight) -> tuple[str, str]:
     """Say which card was read and when, and why none is read now ("" where one is)."""
     now = time.monotonic()
@@ -243,7 +259,7 @@ def sensor_line(told: Told, width: int) -> str:
     if not told.code:
         return f"{told.device.label:<{width}}  {told.state}"
     state = told.state if told.live else f"{told.state} ({SIMULATED})"
-    line = f"{told.device.label:<{width}}  {state:<14}  {age_words(told.age):>6}  {told.why}"
+    line = f"{told.device.label:<{width}}  {state:<14}  {age_words(told.age):>6}  {remark(told)}"
     return line.rstrip()
 
 
@@ -257,6 +273,7 @@ def sensor_document(told: Told) -> dict[str, Any]:
         "state": told.code or None,
         "why": told.why,
         "age": None if told.age is None else round(told.age, 3),
+        "rate": None if told.rate is None else round(told.rate, 1),
         "seconds": None if told.seconds is None else round(told.seconds, 3),
         "works": told.well if told.live else None,
         "facts": list(told.facts),

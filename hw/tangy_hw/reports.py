@@ -23,6 +23,7 @@ def reports_of(
     body: Body,
     evidence: DriveEvidence,
     ticked: Callable[[], float],
+    rate: Callable[[], float | None] = lambda: None,
     *,
     failed: Callable[[], str] = str,
     senses: Senses | None = None,
@@ -36,6 +37,7 @@ def reports_of(
         body: the devices that move, measure and speak.
         evidence: what drives have shown.
         ticked: how long ago the robot has looked and decided last, in s.
+        rate: how often a second it does.
         failed: what of its control has failed, "" if nothing has.
         senses: what reads pictures, if anything does.
         requests: who asks for help, if anybody can.
@@ -50,10 +52,14 @@ def reports_of(
         name: partial(_worst, robot, devices) for name, devices in named.items()
     }
     reports["base"] = lambda: evidence.base(base.reading())
-    reports["localisation"] = lambda: evidence.localisation(ticked())
+
+    def of_ticks(reading: Reading) -> Reading:
+        return reading._replace(rate=rate()) if reading.rate is None else reading
+
+    reports["localisation"] = lambda: of_ticks(evidence.localisation(ticked()))
 
     def navigator() -> Reading:
-        reading = evidence.navigator(ticked())
+        reading = of_ticks(evidence.navigator(ticked()))
         return reading._replace(state=ERROR) if failed() else reading
 
     reports["navigator"] = navigator

@@ -12,6 +12,7 @@ import asyncio
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.body import Body
 from tangy_hw.devices import STILL, Clock, Picture, Pose, Twist
 from tangy_hw.drive_evidence import DriveEvidence
@@ -87,12 +88,13 @@ class LiveRobot:
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended
         self._evidence = DriveEvidence(navigator, clock.now)
-        self._ticked = clock.now()
+        self._ticked, self._ticks = clock.now(), Arrivals()
         reports = reports_of(
             robot,
             body,
             self._evidence,
             lambda: clock.now() - self._ticked,
+            lambda: self._ticks.rate(clock.now()),
             failed=lambda: self.failed,
             senses=senses,
             requests=requests,
@@ -329,6 +331,7 @@ class LiveRobot:
         base, laser = self._body.base, self._body.laser
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
+        self._ticks.count(now)
         odometry, scan = base.odometry, laser.scan
         command = STILL
         if odometry is not None:

@@ -292,7 +292,10 @@ def _aged(seen: tuple[CardSeen, float] | None) -> Answer | None:
 
 
 def _health(health: Health) -> list[list[Any]]:
-    return [[r.device, min(r.age, 1e6), r.state, dict(r.facts)] for r in health]
+    def rounded(rate: float | None) -> float | None:
+        return None if rate is None else round(rate, 2)
+
+    return [[r.device, min(r.age, 1e6), r.state, dict(r.facts), rounded(r.rate)] for r in health]
 
 
 def _thinned(particles: Any) -> list[list[float]]:

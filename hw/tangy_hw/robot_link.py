@@ -71,7 +71,7 @@ class RobotState:
         return cls(
             body["number"],
             body["time"],
-            tuple(Reading(name, age, state, facts) for name, age, state, facts in body["health"]),
+            tuple(Reading(*reading) for reading in body["health"]),
             Pose(*body["pose"]),
             body["going"],
             tuple((x, y) for x, y in body["path"]),
@@ -216,7 +216,7 @@ class RobotLink:
         if not self.silent:
             return health
         quiet = time.monotonic() - self._told.heard
-        return tuple(r._replace(age=r.age + quiet, state=STALE) for r in health)
+        return tuple(r._replace(age=r.age + quiet, state=STALE, rate=None) for r in health)
 
     # ------------------------------------------------------------------------- what it is told
 

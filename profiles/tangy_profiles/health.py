@@ -26,13 +26,15 @@ class Reading(NamedTuple):
     """What is known of one device.
 
     `age` is how long ago, in s, its newest data came; `state` is what the device says of itself;
-    `facts` are what it measures (which ones there are, the robot's profile says).
+    `facts` are what it measures (which ones there are, the robot's profile says). `rate` is how
+    often a second data comes; None where nobody counts, or not for long enough.
     """
 
     device: str
     age: float = 0.0
     state: str = OK
     facts: Mapping[str, Fact] = MappingProxyType({})
+    rate: float | None = None
 
 
 Health = tuple[Reading, ...]

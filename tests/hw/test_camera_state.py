@@ -159,6 +159,15 @@ class TestReadings:
         assert set(reading.facts) == set(measures)
         assert not any(measures[fact].wrong(value) for fact, value in reading.facts.items())
 
+    def test_pictures_are_counted_by_their_numbers_and_those_of_a_folder_are_not(self) -> None:
+        watch, folder = Watch(0.0), Watch(0.0, each=True)
+        for number in range(16):  # every third is looked at, of 15 in a second
+            for one in (watch, folder):
+                one.saw(FINE._replace(seq=3 * number, stamp=number / 5))
+        assert watch.at(3.0).reading("camera").rate == pytest.approx(15)
+        assert folder.at(3.0).rate is None
+        assert watch.at(9.0).rate == 0
+
     @pytest.mark.parametrize("state", ILL)
     def test_what_shows_in_its_facts_is_a_warning(self, state: State) -> None:
         film = Film()

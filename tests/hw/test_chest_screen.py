@@ -159,6 +159,11 @@ class TestReading:
         await screen.start()
         (page,) = await opened(screen, "one")
         assert (screen.reading().state, screen.why) == ("OK", "")
+        answered = screen._arrivals._number
+        now += 1
+        await screen.show(CALL)
+        assert screen._arrivals._number > answered
+        assert screen.reading().rate is not None
         page.go()
         now += 1.5
         reading = screen.reading()

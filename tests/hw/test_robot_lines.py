@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -12,8 +13,10 @@ import numpy as np
 
 from tangy_hw import robot as robots
 from tangy_hw import robot_child
+from tangy_hw.arrivals import FIRST
 from tangy_hw.devices import MachineClock
 from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.passing_time import TICK
 from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_child import RobotProcess
 from tangy_hw.robot_link import RobotState
@@ -94,6 +97,16 @@ async def test_a_program_that_hangs_has_everything_broken_off() -> None:
             assert {"hold", "hush"} <= set(one.parts.told)
             await one.take(beat=1)
             assert one.state().stopped == one.state().hazard == ""
+
+
+async def test_how_often_data_comes_is_told_as_far_as_somebody_counts() -> None:
+    async with spoken() as one:
+        assert {reading.rate for reading in one.state().health} == {None}
+        await asyncio.sleep(FIRST + 0.1)
+        rates = {reading.device: reading.rate for reading in one.state().health}
+        assert rates["navigator"] == rates["localisation"]
+        assert rates["navigator"] is not None and 5 < rates["navigator"] <= 1 / TICK + 1
+        assert rates["voice"] is None
 
 
 async def test_what_has_failed_of_the_control_is_told_for_good() -> None:

@@ -60,7 +60,7 @@ class TestBase:
             assert base.odometry.value.twist == (0.2, 0.1)
             assert base.odometry.stamp == now.time
             now.time += 0.3
-            assert base.reading() == ("base", pytest.approx(0.3), OK, {})
+            assert base.reading() == ("base", pytest.approx(0.3), OK, {}, None)
             await base.close()
 
     async def test_a_command_is_repeated_until_it_is_too_old_and_then_is_zero(self) -> None:
@@ -167,7 +167,7 @@ class TestBase:
             await base.close()
             now.time += 1
             await base.start()
-            assert base.reading() == ("base", 0.0, STALE, {})
+            assert base.reading() == ("base", 0.0, STALE, {}, None)
             await soon(server.subscribed("/odom"))
             server.publish("/odom", "", odometry(1))
             await until(lambda: base.reading().state == OK)
@@ -192,7 +192,9 @@ class TestLaser:
                     assert "variety" not in laser.reading().facts
                 if number == 11:
                     assert laser.reading().facts == {"near_share": 0, "variety": 1}
-            assert laser.reading() == ("laser", 0.0, OK, {"near_share": 1, "variety": 0})
+            facts = {"near_share": 1, "variety": 0}
+            assert laser.reading()[:4] == ("laser", 0.0, OK, facts)
+            assert laser.reading().rate == pytest.approx(10, abs=0.5)
             assert laser.scan is not None
             assert math.isinf(laser.scan.value.ranges[0])
             await laser.close()
@@ -205,7 +207,7 @@ class TestStopButton:
             satisfied: StopButton = button
             await satisfied.start()
             await soon(server.subscribed("/stop_button"))
-            assert button.reading() == ("stop_button", 0.0, STALE, {"latched": False})
+            assert button.reading() == ("stop_button", 0.0, STALE, {"latched": False}, None)
             server.publish("/stop_button", "std_msgs/Bool", {"data": True})
             await until(lambda: button.latched)
             server.publish("/stop_button", "std_msgs/Bool", {"data": False})

@@ -39,10 +39,16 @@ class TestLink:
         async with linked() as (server, bridge, now):
             bridge.subscribe("/odom", "nav_msgs/Odometry", lambda _: None)
             await soon(server.subscribed("/odom"))
-            assert bridge.reading() == ("link", 0.0, STALE, {})
+            assert bridge.reading() == ("link", 0.0, STALE, {}, None)
             server.publish("/odom", "", {})
             await until(lambda: bridge.heard is not None)
-            assert bridge.reading() == ("link", 0.0, OK, {})
+            assert bridge.reading() == ("link", 0.0, OK, {}, None)
+            for _ in range(6):
+                now.time += 0.2
+                before = bridge.heard
+                server.publish("/odom", "", {})
+                await until(lambda before=before: bridge.heard != before)  # type: ignore[misc]
+            assert bridge.reading().rate == pytest.approx(5)
             server.pause()
             server.publish("/odom", "", {})
             now.time += 0.3

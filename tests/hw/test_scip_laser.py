@@ -166,6 +166,18 @@ class TestFacts:
         assert bench.laser.reading().facts["variety"] == 0
 
 
+class TestRate:
+    async def test_scans_are_counted(self, bench: Bench) -> None:
+        await bench.attach()
+        for turn in range(25):
+            await bench.turn(ROOM)
+            if turn in (8, 12):
+                assert (bench.laser.reading().rate is None) == (turn == 8)
+        assert bench.laser.reading().rate == pytest.approx(10, abs=0.5)
+        bench.now += 1.0
+        assert bench.laser.reading().rate == pytest.approx(5, abs=0.5)
+
+
 class TestFaults:
     async def test_a_scan_grows_old(self, bench: Bench) -> None:
         await bench.attach()

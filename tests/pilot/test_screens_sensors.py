@@ -22,7 +22,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
-from tangy_tui.ui.screens.sensors import SensorsScreen
+from tangy_tui.ui.screens.sensors import SensorsScreen, device_row
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.block_picture import BLOCK, BlockPicture
 from tests.pilot.conftest import StillClock
@@ -179,6 +179,27 @@ async def test_what_is_simulated_is_said_to_be(
         await pilot.pause()
         assert "share of beams that end within a" in pilot.text() and "0.90" in pilot.text()
         assert STALE not in pilot.text()  # words for staff, none of the code's
+
+
+async def test_how_often_data_comes_stands_beside_how_old_it_is(
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors
+) -> None:
+    sensors.now = replace(WELL, rate=14.6)
+    readings = [Reading("laser", 0.05, OK, {}, 10.02), Reading("base", 9.0, OK, {}, 0.0)]
+    screen = make(health=lambda: tuple(readings), live=True)
+    async with run(screen) as pilot:
+        await later(pilot)
+        pilot.type("home", "down", "down")
+        await pilot.pause()
+        assert "new data at 10 Hz" in pilot.text()
+        rows = {
+            name: "".join(part for part, _ in device_row(told, 80))
+            for name, told in screen._told.items()
+        }
+        assert "0.1 s  10 Hz" in rows["laser"]
+        assert "9.0 s  0.0 Hz  Its data" in rows["base"]
+        assert "0.1 s  15 Hz" in rows["camera"]
+        assert "Hz" not in rows["voice"]
 
 
 async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(

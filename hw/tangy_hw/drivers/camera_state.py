@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.drivers.camera_look import Look
 from tangy_profiles.health import OK as WELL
 from tangy_profiles.health import STALE, WARN, Fact, Reading
@@ -45,7 +46,8 @@ class Sight:
     """The state of a camera and the evidence for it; `why` is a sentence, "" when all is well.
 
     `age` is of the newest picture and `unchanged` since it first came, in s; `seconds` is for how
-    long the state has lasted. The measures are None before there was a picture.
+    long the state has lasted. The measures are None before there was a picture. `rate` is how
+    many pictures come in a second, None where that cannot be told.
     """
 
     state: State
@@ -56,6 +58,7 @@ class Sight:
     brightness: float | None
     contrast: float | None
     sharpness: float | None
+    rate: float | None = None
 
     def evidence(self) -> dict[str, float | None]:
         """Return the evidence, rounded, as it is written down."""
@@ -76,9 +79,8 @@ class Sight:
             facts["contrast"] = self.contrast
             facts["unchanged"] = min(self.unchanged, LONGEST)
         said = STALE if self.state in ("OPENING", "DISCONNECTED", "ENDED") else WARN
-        return Reading(
-            device, self.age, WELL if self.state == "OK" else said, MappingProxyType(facts)
-        )
+        state = WELL if self.state == "OK" else said
+        return Reading(device, self.age, state, MappingProxyType(facts), self.rate)
 
 
 class Watch:
@@ -100,6 +102,7 @@ class Watch:
         self._gone = max(limits.gone, 2.5 * interval)
         self._began = now
         self._look: Look | None = None
+        self._arrivals = Arrivals()
         self._first_alike = now
         self._picture: State = "OK"  # what the pictures alone say
         self._other_since: float | None = None  # since when they have said something else
@@ -116,6 +119,8 @@ class Watch:
     def saw(self, look: Look) -> None:
         """Take a picture's measures."""
         last = self._look
+        # Not every picture is looked at, but each has its number.
+        self._arrivals.count(look.stamp, 1 if last is None else max(1, look.seq - last.seq))
         other = last is None or last.fingerprint != look.fingerprint or self._each
         if other or self._lost or (last is not None and look.stamp - last.stamp > self._gone):
             self._first_alike = look.stamp  # while it was away it was not frozen
@@ -155,6 +160,7 @@ class Watch:
             look and look.brightness,
             look and look.contrast,
             look and look.sharpness,
+            None if self._each else self._arrivals.rate(now),
         )
 
     def _hold(self, found: State) -> float:

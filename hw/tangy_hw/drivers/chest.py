@@ -17,6 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.devices import DeviceError, Picture
 from tangy_hw.drivers.chest_http import (
     LONGEST_HEAD,
@@ -92,6 +93,7 @@ class WebChestScreen:
         self._number = 0
         self._shown = event("show", _drawn(0, Picture("")))
         self._heard = -math.inf
+        self._arrivals = Arrivals()
         self._taken = asyncio.Event()
         self._error = ""
 
@@ -159,12 +161,13 @@ class WebChestScreen:
 
         WARN: no page was ever open; STALE: none answers any more; ERROR: its port is in use.
         """
-        age = min(max(0.0, self._clock() - self._heard), NEVER)
+        now = self._clock()
+        age, rate = min(max(0.0, now - self._heard), NEVER), self._arrivals.rate(now)
         if self._error:
             return Reading(self.name, age, ERROR)
         if self._heard == -math.inf:
             return Reading(self.name, age, WARN)
-        return Reading(self.name, age, OK if age <= self._stale_after else STALE)
+        return Reading(self.name, age, OK if age <= self._stale_after else STALE, rate=rate)
 
     async def _listen(self) -> bool:
         try:
@@ -228,6 +231,7 @@ class WebChestScreen:
         if page is None or not (number.isdecimal() and len(number) < 10):
             return False
         page.heard = self._heard = self._clock()
+        self._arrivals.count(self._heard)
         page.seen = max(page.seen, min(int(number), self._number))
         self._taken.set()
         return True

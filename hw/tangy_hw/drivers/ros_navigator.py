@@ -138,7 +138,8 @@ class RosNavigator:
         age = self._newest.age
         if self._bridge.ros == 2:
             age = min(age, self._bridge.reading().age) if self.state != "driving" else age
-            return Reading(self.name, age, self._bridge.reading().state, {"path": self._path})
+            state, facts = self._bridge.reading().state, {"path": self._path}
+            return Reading(self.name, age, state, facts, self._newest.rate)
         return self._newest.reading(self.name, OK, {"path": self._path})
 
     def localisation(self) -> Reading:
@@ -151,7 +152,8 @@ class RosNavigator:
         age = min(age, self._bridge.clock() - self._since if self.state == "driving" else link)
         fit = 0.0 if self._spread > WIDE else 1.0
         state = STALE if self.pose is None else OK
-        return Reading("localisation", age, state, {"fit": fit, "spread": self._spread})
+        facts = {"fit": fit, "spread": self._spread}
+        return Reading("localisation", age, state, facts, self._pose.rate)
 
     def place(self, pose: Pose) -> None:
         """Tell the robot that it is there, within some 50 cm.

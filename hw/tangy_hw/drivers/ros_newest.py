@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.devices import Stamped
 from tangy_profiles.health import OK, STALE, Fact, Reading
 
@@ -23,16 +24,19 @@ class Newest(Generic[Value]):
         self.stamped: Stamped[Value] | None = None
         """The newest value; None: there was none yet."""
         self._clock = clock
+        self._arrivals = Arrivals()
         self._since = clock()
 
     def take(self, value: Value) -> None:
         """Take a new one."""
         number = 1 if self.stamped is None else self.stamped.seq + 1
         self.stamped = Stamped(value, self._clock(), number)
+        self._arrivals.count(self.stamped.stamp)
 
     def restart(self) -> None:
         """Forget what came, so that only new data counts."""
         self.stamped, self._since = None, self._clock()
+        self._arrivals.restart()
 
     @property
     def age(self) -> float:
@@ -40,9 +44,15 @@ class Newest(Generic[Value]):
         since = self._since if self.stamped is None else self.stamped.stamp
         return max(self._clock() - since, 0.0)
 
+    @property
+    def rate(self) -> float | None:
+        """How often a second one comes; None: that cannot be told yet."""
+        return self._arrivals.rate(self._clock())
+
     def reading(self, device: str, state: str = OK, facts: Mapping[str, Fact] = NOTHING) -> Reading:
         """Return what the diagnosis is told: stale before anything came, else the given state."""
-        return Reading(device, self.age, STALE if self.stamped is None else state, facts)
+        said = STALE if self.stamped is None else state
+        return Reading(device, self.age, said, facts, self.rate)
 
 
 async def awaited(

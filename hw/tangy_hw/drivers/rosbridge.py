@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.devices import DeviceError
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
@@ -79,6 +80,7 @@ class Rosbridge:
         self._task: asyncio.Task[None] | None = None
         self._connected = asyncio.Event()
         self._heard: float | None = None
+        self._arrivals = Arrivals()
         self._began = clock()
         self._hears: dict[str, list[Hears]] = {}
         self._hello: dict[str, str] = {}
@@ -125,7 +127,8 @@ class Rosbridge:
         """Return the age of the newest message of any kind: the last that says the robot lives."""
         since = self._began if self._heard is None else self._heard
         state = OK if self.connected and self._heard is not None else STALE
-        return Reading(self.name, max(self.clock() - since, 0.0), state)
+        now = self.clock()
+        return Reading(self.name, max(now - since, 0.0), state, rate=self._arrivals.rate(now))
 
     def on_connect(self, does: Callable[[], None]) -> None:
         """Have something done at each new connection, before anything else is said."""
@@ -333,6 +336,7 @@ class Rosbridge:
             self.tell_once(f"{self.url} sends what is no rosbridge message: {error}")
             return
         self._heard = self.clock()
+        self._arrivals.count(self._heard)
         if whole is not None:
             self._hear(whole)
             return

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from tangy_hw.arrivals import Arrivals
 from tangy_hw.devices import DeviceError, Scan, Stamped
 from tangy_hw.drivers.scip_codec import (
     Optics,
@@ -96,6 +97,7 @@ class ScipLaser:
         self._replies: deque[bytes] = deque()
         self._scan: Stamped[Scan] | None = None
         self._seen: deque[tuple[float, NDArray[np.int64]]] = deque()
+        self._arrivals = Arrivals()
         self._facts: tuple[int, Mapping[str, Fact]] = (0, MappingProxyType({}))
         self._arrived = asyncio.Event()
         self._ticks: int | None = None
@@ -145,9 +147,11 @@ class ScipLaser:
         age = NEVER if self._scan is None else min(max(0.0, now - self._scan.stamp), NEVER)
         if self._refused:
             return Reading(self.name, age, ERROR)
+        rate = self._arrivals.rate(now)
         if self._scan is None or age > self._stale_after:
-            return Reading(self.name, age, STALE)
-        return Reading(self.name, age, WARN if now - self._warned < WINDOW else OK, self._told())
+            return Reading(self.name, age, STALE, rate=rate)
+        state = WARN if now - self._warned < WINDOW else OK
+        return Reading(self.name, age, state, self._told(), rate)
 
     def _told(self) -> Mapping[str, Fact]:
         assert self._scan is not None  # noqa: S101
@@ -298,6 +302,7 @@ class ScipLaser:
         scan = Scan(first + self._turned, self.optics.step, ranges, self.optics.farthest)
         self._count(ticks)
         stamp = self._clock()
+        self._arrivals.count(stamp)
         self._seen.append((stamp, measured))
         while self._seen[0][0] < stamp - WINDOW:
             self._seen.popleft()

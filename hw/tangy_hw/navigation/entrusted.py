@@ -112,7 +112,7 @@ class Entrusted:
         place, way = self._navigation.localisation(), self._navigation.reading()
         return (
             place._replace(device="localisation", age=max(place.age, age)),
-            Reading("navigator", max(way.age, age), way.state, {"path": self._way()}),
+            Reading("navigator", max(way.age, age), way.state, {"path": self._way()}, way.rate),
         )
 
     def _sure(self) -> tuple[float, float]:

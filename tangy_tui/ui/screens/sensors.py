@@ -14,7 +14,7 @@ from textual.widget import Widget
 
 from tangy_profiles.health import Health
 from tangy_tui.house import House
-from tangy_tui.sensor_lines import Sensing, Teller, Told, age_words, card_words
+from tangy_tui.sensor_lines import Sensing, Teller, Told, age_words, card_words, rate_words, remark
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -292,7 +292,7 @@ def device_row(told: Told, width: int) -> Row:
         (fit(clean(told.device.label), label), "text" if told.code else "dim"),
         (f" {fit(told.state, 14)}", ink),
         (f"{age_words(told.age):>6}", "dim"),
-        (f"  {shorten(clean(told.why), left)}" if left > 12 else "", "dim"),
+        (f"  {shorten(clean(remark(told)), left)}" if left > 12 else "", "dim"),
     )
 
 
@@ -313,6 +313,8 @@ def about_lines(told: Told, width: int) -> list[PageLine]:
     if told.age is not None:
         wanted = f" (at most {told.device.stale_after:g} s)"
         lines.append(PageLine(((f"newest data {age_words(told.age)} old{wanted}", "dim"),)))
+        if rate := rate_words(told):
+            lines.append(PageLine(((f"new data at {rate}", "dim"),)))
     for fact in told.facts:
         lines += paragraph(clean(fact), width, "dim")
     if told.source:

@@ -141,7 +141,7 @@ class Signs(RequestSource):
     def reading(self) -> Reading:
         """Return what the diagnosis is told: how old the newest picture is."""
         sight = self.camera.sight
-        return Reading(DEVICE, sight.age, OK if sight.state == "OK" else STALE)
+        return Reading(DEVICE, sight.age, OK if sight.state == "OK" else STALE, rate=sight.rate)
 
     async def start(self) -> None:
         self.camera.changed = lambda sight: self.tell(sight.why) if sight.why else None

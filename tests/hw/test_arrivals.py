@@ -1,0 +1,46 @@
+"""How often a second data comes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_hw.arrivals import FIRST, WINDOW, Arrivals
+
+
+@pytest.mark.parametrize("hertz", [1, 2.5, 10, 40])
+@pytest.mark.parametrize("seconds", [1.5, 2.0, 7.3])
+def test_it_is_told_by_what_came_of_late(hertz: float, seconds: float) -> None:
+    arrivals = Arrivals()
+    for number in range(round(seconds * hertz) + 1):
+        arrivals.count(50 + number / hertz)
+    now = 50 + round(seconds * hertz) / hertz
+    assert arrivals.rate(now) == pytest.approx(hertz, rel=0.35 if hertz < 2 else 0.1)
+
+
+def test_nothing_is_told_of_what_has_not_come_for_long_enough() -> None:
+    arrivals = Arrivals()
+    assert arrivals.rate(100) is None
+    arrivals.count(100)
+    arrivals.count(100.1)
+    assert arrivals.rate(100 + FIRST - 0.1) is None
+    assert arrivals.rate(100 + FIRST) is not None
+
+
+def test_what_comes_no_more_has_no_rate_left_and_what_comes_again_has_its_own() -> None:
+    arrivals = Arrivals()
+    for number in range(31):
+        arrivals.count(number / 10)
+    assert arrivals.rate(3 + WINDOW / 2) == pytest.approx(5)
+    assert arrivals.rate(3 + WINDOW) == 0
+    for number in range(40):
+        arrivals.count(10 + number / 20)
+    assert arrivals.rate(10 + 39 / 20) == pytest.approx(20)
+    arrivals.restart()
+    assert arrivals.rate(12) is None
+
+
+def test_several_that_come_at_once_are_all_counted() -> None:
+    arrivals = Arrivals()
+    for number in range(21):
+        arrivals.count(number / 5, 4)
+    assert arrivals.rate(4) == pytest.approx(20)
