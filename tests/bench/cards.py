@@ -25,7 +25,7 @@ from tangy_profiles.cards import judge, judge_partly
 from tangy_sim.card_frames import CardCamera, Frame, some_view
 from tangy_sim.card_things import background
 
-QUOTED = 110_000  # seed; nothing was chosen on its frames
+QUOTED = 130_000  # seed; nothing was chosen on its frames
 Picture: TypeAlias = NDArray[Any]
 Read = Callable[[Picture], CardReading]
 
@@ -67,10 +67,10 @@ HEAD = (
 class Bench:
     """Counts over frames of an activity's cards."""
 
-    def __init__(self, activity: Activity) -> None:
+    def __init__(self, activity: Activity, camera: CardCamera | None = None) -> None:
         self.activity = activity
         self.deck = activity.deck
-        self.camera = CardCamera(activity.deck, title=activity.title)
+        self.camera = camera or CardCamera(activity.deck, title=activity.title)
 
     def called(self, frame: Frame, random: np.random.Generator) -> set[int]:
         """Draw what was called so that every user state comes up."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.perception.cards import synthesis
+from tangy_hw.perception.cards import reaching, synthesis
 from tangy_hw.perception.cards.rectifying import RIM, SIDE, Flat
 from tangy_profiles.card_face import Face
 from tangy_profiles.card_picture import draw_number
@@ -40,7 +40,7 @@ NAMES = (
     "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
     "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
-    "black", *synthesis.NAMES,
+    "black", *reaching.NAMES, *synthesis.NAMES,
 )  # fmt: skip
 """What the first features are called, in their order."""
 SEEN = ("colour", "lighter", "unlike")
@@ -144,7 +144,7 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
         np.full(len(cell), np.log(min(flat.scale, LARGEST))),
         np.full(len(cell), np.median(flat.crossings)),
         np.full(len(cell), flat.matched / len(flat.crossings)), read[:, 3], sides.max(1),
-        *_ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx),
+        *reaching.ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx, HALF),
         np.maximum(np.abs(dx), np.abs(dy)) / HALF, wide.max((1, 2)) - strength,
         np.abs(dy) / HALF, np.abs(dx) / HALF,
     ]  # fmt: skip
@@ -157,6 +157,7 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
     black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
     black /= max(float(np.percentile(black, INKED)), 0.02)
     row.append(black)
+    row += reaching.same_ways(_dot(maps[..., 2:5].copy()), y + dy, x + dx, at[:, 2:5], HALF)
     named = np.hstack([np.stack(row, 1), synthesis.compared(flat, expected)]).astype(np.float32)
     spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
     bare = expected > 0.9
@@ -366,23 +367,6 @@ def _corners(dots: Real, rows: int, columns: int) -> Real:
     far = HALF - 1 - inset
     places = [(inset, inset), (inset, far), (far, inset), (far, far)]
     return np.stack([dots[y + a, x + b] for a, b in places], 1)
-
-
-def _ways_out(covered: Real, y: Real, x: Real) -> tuple[Real, Real]:
-    """Follow straight ways out of a cell; return how well the most and the least hidden are.
-
-    From a chip every way leads over paper; a finger is hidden all along the way that it came.
-    """
-    import numpy as np
-
-    angles = np.arange(16) * (2 * np.pi / 16)
-    far = np.array([0.5, 0.62, 0.74, 0.86]) * HALF
-    down = np.rint(np.sin(angles)[:, None] * far).astype(int)
-    right = np.rint(np.cos(angles)[:, None] * far).astype(int)
-    rows = np.clip(y[:, None, None] + down, 0, covered.shape[0] - 1)
-    columns = np.clip(x[:, None, None] + right, 0, covered.shape[1] - 1)
-    ways = covered[rows, columns].min(2)
-    return ways.max(1), ways.min(1)
 
 
 def _sides(dots: Real, rows: int, columns: int) -> Real:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import comb
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
@@ -23,16 +24,13 @@ WIDEST = 1920  # pixels: a larger picture is made smaller first
 TRIES = 4  # sightings that are looked at, the surest first
 LEGIBLE = 0.6  # correlation from which a number is taken to be read
 AGREE, FEWEST_AGREE = 0.6, 4  # the share of the legible numbers that must be the card's, and many
+BY_CHANCE = 1e-6  # or so many of them that another deck's would hardly ever be the same
 NO_TAGS = "no card in sight"
 TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
 HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
 FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
-BARE, QUARTER, ALIKE = (0.88, 1.5), 0.8, 0.93
-"""Of that in its middle and each quarter, and correlation with its print: it seems to lie bare."""
-BARE_ODDS = 5.2  # how much likelier paper is then: what is .75 sure counts as .94
-REACHED, REACHED_SURE = 0.5, 0.999  # of the paper beside an edge cell: a fingertip may be there
 
 
 @dataclass(frozen=True)
@@ -54,22 +52,13 @@ class CardReading:
 
 
 def _reconsidered(parts: Real, measured: Measured) -> Real:
-    """Weigh what nets say of cells with what their numbers and the paper beside them look like."""
-    import numpy as np
+    """Doubt cells that nets take for paper, but whose numbers are pale.
 
+    What lies on a number takes from its contrast, however clear or pale; light does not.
+    """
     parts = parts.copy()
-    middle = measured.compared("middle of usual")
     unmarked = parts[:, UNMARKED] >= parts[:, MARKED]
-    bare = unmarked & (middle >= BARE[0]) & (middle <= BARE[1])
-    bare &= (measured.compared("alike") >= ALIKE) & (measured.compared("least of usual") >= QUARTER)
-    seen = parts[:, UNMARKED] + parts[:, MARKED]
-    odds = BARE_ODDS * parts[:, UNMARKED]
-    more = seen * odds / np.maximum(odds + parts[:, MARKED], 1e-9)
-    parts[bare, UNMARKED], parts[bare, MARKED] = more[bare], (seen - more)[bare]
-    # What lies on a number takes from its contrast, however clear or pale; light does not.
-    parts[unmarked & (middle < FADED)] = UNCERTAIN
-    reached = (measured.beside > REACHED) & (parts[:, MARKED] < REACHED_SURE)
-    parts[~unmarked & reached] = UNCERTAIN
+    parts[unmarked & (measured.compared("middle of usual") < FADED)] = UNCERTAIN
     return parts
 
 
@@ -134,10 +123,11 @@ class CardReader:
         read = measured.read
         legible = read[:, :2].max(1) >= LEGIBLE
         own = int((legible & (read[:, 0] >= read[:, 1])).sum())
-        if own < FEWEST_AGREE or own < AGREE * int(legible.sum()):
+        if not self._agree(own, int(legible.sum())):
             few = int(legible.sum()) < FEWEST_AGREE
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
-        parts = load_classifier().probabilities(measured.rows)
+        across = len(self.deck.columns)
+        parts = load_classifier().probabilities(measured.rows, measured.beside, across)
         parts = _reconsidered(parts, measured)
         grid = self.face.grid
         ends = [
@@ -148,6 +138,19 @@ class CardReader:
         ]
         corners = project(flat.plane, np.array(ends))
         return self.told(seen.card, parts, tuple((float(x), float(y)) for x, y in corners))
+
+    def _agree(self, own: int, legible: int) -> bool:
+        """Say whether so many of the legible numbers make it this deck's card."""
+        if own < FEWEST_AGREE:
+            return False
+        if own >= AGREE * legible:  # chips may look like other numbers
+            return True
+        chance = max(1 / (column.high - column.low + 1) for column in self.deck.columns)
+        by_chance = sum(
+            comb(legible, same) * chance**same * (1 - chance) ** (legible - same)
+            for same in range(own, legible + 1)
+        )
+        return by_chance < BY_CHANCE
 
     def told(
         self, card: int, parts: Real, corners: tuple[tuple[float, float], ...] = ()

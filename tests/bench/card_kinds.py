@@ -1,0 +1,138 @@
+"""Frames that the classifier of card cells is trained on: as rooms have them, and of what is hard.
+
+Their seeds are their own: the bench of cards quotes its figures on others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import count, islice
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tangy_profiles.activity import load_activity
+from tangy_sim.card_chips import Chip
+from tangy_sim.card_frames import HANDS, CardCamera, Frame, some_view
+from tangy_sim.card_odd_chips import odd_chip, sheer_chip
+from tests.bench.cards import Bench
+
+Real: TypeAlias = NDArray[Any]
+
+TIPS = ("finger", "finger", "finger", "bar", "thumb", "blob", "flat")
+TIP, MOST_TIP = 0.12, 3  # of a cell that a tip covers, of so many cells at most
+SMALL = (660, 540)
+
+
+def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames as rooms have them, and more of what is hard: steep, dark, behind hands."""
+    yield from camera.frames(seed, frames * 6 // 10, size=SMALL)
+    hard: list[dict[str, Any]] = [
+        *({"tilt": tilt} for tilt in (52.0, 56.0, 60.0, 64.0)),
+        *({"light": light} for light in (0.25, 0.35)),
+        *({"hand": hand} for hand in (*HANDS, "finger", "finger")),
+        *({"glare": glare} for glare in (0.3, 0.6)),
+    ]
+    for number, given in enumerate(hard):
+        yield from camera.frames(
+            seed + 1 + number, frames * 4 // 10 // len(hard), size=SMALL, **given
+        )
+    yield from camera.frames(seed + 50, frames // 10, size=SMALL, hand="thing")
+
+
+def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames of chips that are hard to see, half of them in glare."""
+    hard: list[dict[str, Any]] = [
+        {}, {}, {}, *({"glare": glare} for glare in (0.25, 0.45, 0.7, 1.0)), {"hand": "finger"},
+    ]  # fmt: skip
+    for number, given in enumerate(hard):
+        yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
+
+
+def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames of things that lie on cards in the place of chips."""
+    hard: list[dict[str, Any]] = [
+        {}, {}, {}, {}, {"glare": 0.35}, {"glare": 0.7}, {"hand": "finger"}, {"hand": "blob"},
+    ]  # fmt: skip
+    for number, given in enumerate(hard):
+        yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
+
+
+def room_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames as rooms have them, those of the bench."""
+    yield from camera.frames(seed, frames)
+
+
+def scene_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames of the bench's scenes, five of each."""
+    for scene in Bench(load_activity("bingo"), camera).scenes(seed, frames // 5, 5):
+        yield from scene
+
+
+def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames in which just the tip of a hand is on the grid: it looks like a chip."""
+
+    def tried() -> Iterator[Frame]:
+        for number in count():
+            random = np.random.default_rng([seed, number])
+            view = some_view(random, hand=TIPS[number % len(TIPS)], size=SMALL)
+            try:
+                yield camera.some_frame(random, view)
+            except NoTip:
+                continue
+
+    yield from islice(tried(), frames)
+
+
+class NoTip(Exception):
+    """What lies on a card is no tip."""
+
+
+class TipCamera(CardCamera):
+    """Takes frames only of hands that cover a cell or few."""
+
+    def _covered(self, mask: Real, scale: float) -> Real:
+        covered = super()._covered(mask, scale)
+        if not 1 <= (covered > TIP).sum() <= MOST_TIP:
+            raise NoTip
+        return covered
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Frames of one kind: how they are made, and how many from which seeds."""
+
+    frames: Callable[[CardCamera, int, int], Iterator[Frame]]
+    straddling: float
+    faint: float
+    odd: float
+    learnt: dict[int, int]
+    chosen: dict[int, int] = field(default_factory=dict)
+    oddity: Callable[[np.random.Generator], Chip] = odd_chip
+    taken: type[CardCamera] = CardCamera
+
+    def camera(self) -> CardCamera:
+        """Return what takes them."""
+        deck = load_activity("bingo").deck
+        return self.taken(
+            deck,
+            title="Bingo",
+            straddling=self.straddling,
+            faint=self.faint,
+            odd=self.odd,
+            oddity=self.oddity,
+        )
+
+
+KINDS = (
+    Kind(some_frames, 0.2, 0.0, 0.0, {1000: 2000}),
+    Kind(tip_frames, 0.2, 0.0, 0.0, {4000: 1000, 4500: 400}, taken=TipCamera),
+    Kind(faint_frames, 0.1, 0.85, 0.0, {5000: 800}),
+    Kind(odd_frames, 0.1, 0.15, 0.85, {8000: 640}),
+    Kind(odd_frames, 0.1, 0.0, 0.9, {8500: 400}, oddity=sheer_chip),
+    Kind(room_frames, 0.06, 0.0, 0.0, {101_000: 1000, 102_000: 1000}),
+    Kind(scene_frames, 0.06, 0.0, 0.0, {}, {101_002: 500}),
+)
+"""What is learnt from, and what the temperature is chosen on."""
