@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 
 from tangy_sim.faulty import FaultyWorld
@@ -47,9 +48,10 @@ def game_of(pilot: TangyPilot) -> tuple[PlayScreen, Supervision, FaultyWorld]:
 
 
 async def until(pilot: TangyPilot, so: Callable[[], object]) -> None:
-    """Wait until something is so."""
-    while not so():
-        await pilot.pause(0.02)
+    """Wait until something is so; what never comes fails, and holds up no other test."""
+    async with asyncio.timeout(60):
+        while not so():
+            await pilot.pause(0.02)
     await pilot.pause()
 
 

@@ -36,7 +36,7 @@ from tests.pilot.faults import (
 async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
     run: Run, house: House, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy, speed=1000), size=size) as pilot:
+    async with run(app=playing(house, policy), size=size) as pilot:
         screen, game, _ = game_of(pilot)
         dialog = await halting(pilot)
         fault = dialog.fault
@@ -170,7 +170,7 @@ async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
 async def test_stop_works_inside_and_leaves_the_dialog(
     run: Run, house: House, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, speed=1000)) as pilot:
+    async with run(app=playing(house, policy)) as pilot:
         screen, _, world = game_of(pilot)
         world.inject("emergency-stop")
         dialog = await halted(pilot)
