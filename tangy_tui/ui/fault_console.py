@@ -297,9 +297,10 @@ class FaultConsole:
 
     @property
     def restarts(self) -> bool:
-        """Whether the expert is called because nothing is heard from the robot process."""
+        """Whether calling the expert starts the robot process again."""
         world = self.supervision.world
-        return isinstance(world, LiveWorld) and bool(world.link.silent)
+        link = world.link if isinstance(world, LiveWorld) else None
+        return link is not None and bool(link.silent or link.state.failed)
 
     async def call_expert(self) -> None:
         """Call the expert about the fault that halts the robot."""

@@ -38,6 +38,8 @@ class HeldLink(FakeLink):
         """So many lines it says, and then does nothing to its end."""
         self.held_by: set[str] = set()
         """Who has stopped it and not let it go since."""
+        self.released: list[str] = []
+        """Who has let it go each time, "" for all."""
 
     def alive(self) -> None:
         self.stamps += 1
@@ -53,6 +55,7 @@ class HeldLink(FakeLink):
 
     def release(self, by: str = "") -> None:
         super().release(by)
+        self.released.append(by)
         self.held_by -= {by} if by else self.held_by
 
     def ail(self, device: str, state: str = OK, **facts: Fact) -> None:
@@ -72,7 +75,7 @@ class HeldLink(FakeLink):
         """Become another robot process that is well, when it is let."""
         self.be_let()
         self.silent = ""
-        self.state = replace(self.state, health=FakeLink(PEOPLE).state.health)
+        self.state = replace(self.state, health=FakeLink(PEOPLE).state.health, failed="")
 
 
 def live_world(house: House, link: HeldLink, kind: type[LiveWorld] = LiveWorld) -> LiveWorld:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from tangy_hw.stopping import STAFF
+from tangy_hw.stopping import FAULT, STAFF
 from tangy_hw.world import LiveWorld
 from tangy_profiles.faults import Remedy
-from tangy_profiles.health import STALE
+from tangy_profiles.health import ERROR, STALE
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.critical import CriticalDialog
@@ -50,6 +51,8 @@ async def halting(pilot: TangyPilot, link: HeldLink, device: str, state: str = "
     await paused_after(pilot, link, 2)
     if device == "link":
         link.silent = "the robot process has ended"
+    if device == "navigator":
+        link.state = replace(link.state, failed="its control has failed")
     link.ail(device, state, latched=True)
     await until(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
     dialog = pilot.app.screen
@@ -64,11 +67,12 @@ async def lives(pilot: TangyPilot, link: HeldLink) -> None:
     await until(pilot, lambda: link.stamps > stamps + 1)
 
 
+@pytest.mark.parametrize(("device", "state"), [("link", STALE), ("navigator", ERROR)])
 async def test_the_screen_lives_while_the_robot_process_is_started_again(
-    run: Run, program: Program, link: HeldLink
+    run: Run, program: Program, link: HeldLink, device: str, state: str
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
-        await halting(pilot, link, "link", STALE)
+        await halting(pilot, link, device, state)
         link.free = False
         try:
             await pilot.press("e")
@@ -114,6 +118,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
     async with run(app=program, size=(120, 40)) as pilot:
         await halting(pilot, link, "stop_button")
         await pilot.press("ctrl+x")
+        released = len(link.released)
         link.ail("stop_button")
         await pilot.press("a", "c")
         await until(pilot, lambda: pilot.app.screen is live(pilot))
@@ -121,7 +126,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         done = len(link.done)
         await lives(pilot, link)
         assert STAFF in link.held_by and "STOPPED" in pilot.lines()[0]
-        assert link.done[done:] == []
+        assert link.done[done:] == [] and link.released[released:] == [FAULT]
         await pilot.press("p")
         assert not link.held_by
 
