@@ -11,7 +11,7 @@ from collections.abc import Callable
 from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_profiles.health import Fact, Reading
 
-LOST_FIT, LOST_SPREAD = 0.85, 0.5  # as the rules for faults have it
+LOST_FIT, LOST_SPREAD, SLIPS = 0.85, 0.5, 0.3  # as the rules for faults have it
 KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong with it
 
 
@@ -27,6 +27,7 @@ class DriveEvidence:
         self._kept: dict[str, Fact] = {}
         self._until = 0.0
         self._lost: dict[str, Fact] = {}
+        self._slipped = 0.0
 
     def begin(self) -> None:
         """Begin a drive: what was wrong with the last one is forgotten."""
@@ -42,6 +43,8 @@ class DriveEvidence:
             worst["path"] = "replanned"
         if float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD:
             self._lost |= {name: facts[name] for name in ("fit", "spread")}
+            if float(worst["slip"]) > SLIPS:  # that is why it is lost
+                self._slipped = max(self._slipped, float(worst["slip"]))
 
     def keep(self) -> None:
         """The drive is over: keep what it has shown for a moment."""
@@ -55,15 +58,16 @@ class DriveEvidence:
     def base(self, own: Reading) -> Reading:
         """Return the reading of the base with what the navigator knows of it."""
         facts = self._navigator.facts()
-        told = {name: facts[name] for name in ("still", "slip")}
-        return own._replace(facts={**own.facts, **told, **self._of("still", "slip")})
+        told = {name: facts[name] for name in ("still", "slip")} | self._of("still", "slip")
+        told["slip"] = max(float(told["slip"]), self._slipped)
+        return own._replace(facts={**own.facts, **told})
 
     def looked_round(self, *, found: bool) -> None:
         """The robot has looked round: it knows its place again, or does not."""
         if not found:
             self._lost["found"] = False
             return
-        self._lost = {}
+        self._lost, self._slipped = {}, 0.0
 
     def localisation(self, age: float) -> Reading:
         """Return the reading of the sense of place, that last worked so many s ago."""

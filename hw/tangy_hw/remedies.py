@@ -89,11 +89,12 @@ class Remedies:
         """See whether what halted the robot is gone, now that staff say so."""
         commands, link = self._world.commands, self._world.link
         commands.do("replan")
-        if remedy.device == "localisation":  # only looking round can show it
+        if self._world.lost:  # only looking round can show whether it knows its place
             link.release(by=FAULT)
             try:
                 self.go_back(knows_place=False)
             finally:
+                link.beat()
                 if remedy.fault in commands.diagnosed(link.health()):
                     link.stop(remedy.fault, by=FAULT)
         link.beat()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
@@ -23,6 +23,9 @@ OWED_BY_PEOPLE = ("what was asked about", "request")
 no fault of the robot's."""
 
 
+OTHERS, FEWER = "others' requests", "fewer"
+
+
 class Detector:
     """Turns observations into evidence. One per run of games; `begin` each game."""
 
@@ -32,6 +35,7 @@ class Detector:
         self._robot = robot
         self._refusals: Counter[str] = Counter()
         self._fruitless = 0
+        self._last: ActivityState | None = None
         self._health: Health | None = None
         self._devices: dict[str, Fact] = {}
 
@@ -39,6 +43,7 @@ class Detector:
         """Forget what the last game had."""
         self._refusals.clear()
         self._fruitless = 0
+        self._last = None
 
     def forgive(self, person: str | None) -> None:
         """Begin anew to count what a person does not do."""
@@ -83,6 +88,8 @@ class Detector:
                 )
                 if followed or mismatch.variable not in OWED_BY_PEOPLE
             ]
+            found += self._between(behaviour.name, acted.state, found)
+        self._last = acted.after
         evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
         self._count(acted.state, acted.after, outcome)
         person = acted.state.attended
@@ -96,6 +103,20 @@ class Detector:
             evidence["behaviour.completed"] = outcome.completed
             evidence["behaviour.response"] = _response(outcome)
         return evidence, found
+
+    def _between(
+        self, behaviour: str, now: ActivityState, found: Sequence[Mismatch]
+    ) -> list[Mismatch]:
+        """Return what changed before a behaviour began, since the last one: who asks no more."""
+        last, expected = self._last, self.effects.values[behaviour].get(OTHERS, frozenset())
+        if last is None or FEWER in expected or any(one.variable == OTHERS for one in found):
+            return []
+        gone = any(
+            user.request == "AR" and now.user(user.id).request == "ANR"
+            for user in last.users
+            if user.id not in (last.attended, now.attended)
+        )
+        return [Mismatch(behaviour, OTHERS, tuple(sorted(expected)), FEWER)] if gone else []
 
     def _count(self, before: ActivityState, after: ActivityState, outcome: Outcome) -> None:
         """Count requests that a person did not follow, and behaviours that changed nothing."""

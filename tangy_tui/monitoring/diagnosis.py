@@ -54,11 +54,11 @@ def diagnose(
         keys = {condition.key for condition in conditions}
         if (keys & rule.symptoms) - explained:
             take(rule, keys, conditions)
-    if evidence.get("behaviour.completed") is False and any(d.rule.critical for d in found):
-        # What critically went wrong broke the behaviour off: nothing was to be expected of it. What
-        # others did meanwhile is another matter.
-        broken_off = {key for key in evidence if key.startswith("mismatch.")}
-        explained.update(broken_off - {"mismatch.others' requests"})
+            if rule.critical and evidence.get("behaviour.completed") is False:
+                # What critically went wrong broke the behaviour off: nothing was to be expected of
+                # it. What others did meanwhile is another matter.
+                broken_off = {key for key in evidence if key.startswith("mismatch.")}
+                explained.update(broken_off - {"mismatch.others' requests"})
     if left := symptoms(evidence) - explained:
         take(book.fallback, left)
     return sorted(found, key=lambda diagnosis: diagnosis.rule.urgency)

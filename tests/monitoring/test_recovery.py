@@ -361,3 +361,17 @@ def test_what_breaks_a_behaviour_off_explains_that_nothing_has_come_of_it(
     told = play(supervise(f"{kind}@{step}", seed=seed))
     assert codes(told) == [KINDS[kind].code]
     assert ended(told).stopped is None
+
+
+def test_who_asks_no_more_before_the_next_behaviour_begins_is_missed(supervise: Supervise) -> None:
+    for seed in range(30):
+        game = supervise(seed=seed)
+        game.begin()
+        while not game.over and len(world_of(game).tracker.queue) < 2:
+            game.step()
+        if not game.over:
+            break
+    world_of(game).tracker.queue.pop()
+    told = game.step()
+    assert codes(told) == ["unexplained"]
+    assert "asks no more" in game.faults[-1].why
