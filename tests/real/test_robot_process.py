@@ -28,7 +28,7 @@ BASE_STOPS = 1.0  # s in which a base stands by itself: half of it its time-out,
 ZERO = 0.35  # s from the last data to a command to stand, for 95 of 100
 BRAKES = 0.4  # s that the bench's wheels take to stand from .5 m/s, and a tick of the bench
 TRIALS = 20
-SCANS, FIRST_SCAN = 0.1, 0.05  # s of the bench's time
+SCANS, FIRST_SCAN, TICK = 0.1, 0.05, 0.05  # s of the bench's time
 SAID = 0.35  # s after which it is known that the robot process has ended
 PATIENCE = 30.0
 
@@ -169,7 +169,8 @@ def seconds_to_zero(bench: Bench) -> float:
     """How long after the last scan the base is told to stand, when the scanner falls silent now."""
     began = time.monotonic()
     bench.do("inject", kind="laser-disconnected")
-    since_scan = float(bench.do("truth")["truth"]["time"] - FIRST_SCAN) % SCANS
+    ticks = round((bench.do("truth")["truth"]["time"] - FIRST_SCAN) / TICK)
+    since_scan = ticks % round(SCANS / TICK) * TICK
     while any(bench.do("truth")["truth"]["commanded"]):
         assert time.monotonic() < began + PATIENCE
         time.sleep(0.003)
