@@ -169,7 +169,7 @@ def seconds_to_zero(bench: Bench) -> float:
     """How long after the last scan the base is told to stand, when the scanner falls silent now."""
     began = time.monotonic()
     bench.do("inject", kind="laser-disconnected")
-    ticks = round((bench.do("truth")["truth"]["time"] - FIRST_SCAN) / TICK)
+    ticks: int = round((bench.do("truth")["truth"]["time"] - FIRST_SCAN) / TICK)
     since_scan = ticks % round(SCANS / TICK) * TICK
     while any(bench.do("truth")["truth"]["commanded"]):
         assert time.monotonic() < began + PATIENCE
