@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from tangy_hw.devices import DeviceError, Picture
@@ -24,6 +24,7 @@ class Commands:
     def __init__(self, link: RobotLink) -> None:
         self.link = link
         self.diagnosed: Diagnosed = _nothing
+        self._heedless: frozenset[str] = frozenset()
 
     def do(self, do: str, **what: Any) -> dict[str, Any]:
         """Let the robot do something; it is broken off where devices report what is critical.
@@ -43,6 +44,15 @@ class Commands:
                 until = time.monotonic() + BREAK_SECONDS
                 self.link.ask("cancel", why=broken)
         return asked.result()
+
+    @contextmanager
+    def heedless(self, *codes: str) -> Iterator[None]:
+        """Break nothing off for faults of these codes, as long as somebody is in it."""
+        before, self._heedless = self._heedless, self._heedless | set(codes)
+        try:
+            yield
+        finally:
+            self._heedless = before
 
     def perform(
         self, text: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
@@ -64,7 +74,10 @@ class Commands:
     def _critical(self) -> str:
         """Name a critical fault that the devices show, "" if they show none."""
         found = self.diagnosed(self.link.health())
-        return next((code for code, critical in found.items() if critical), "")
+        return next(
+            (code for code, critical in found.items() if critical and code not in self._heedless),
+            "",
+        )
 
 
 def _nothing(_: Health) -> Mapping[str, bool]:

@@ -13,6 +13,7 @@ from tangy_profiles.faults import Remedy
 if TYPE_CHECKING:
     from tangy_hw.world import LiveWorld
 
+SLIPPED = "wheels-slip"  # the fault for which a robot that knows its place no more is stopped
 AWAY = 0.5  # metres from where it should be at which the robot drives there
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
 
@@ -78,7 +79,9 @@ class Remedies:
         world = self._world
         place = world.tracker.place
         if not knows_place:
-            if not world.commands.do("spin").get("found"):
+            with world.commands.heedless(SLIPPED):  # what it is known by is over when it is found
+                found = world.commands.do("spin").get("found")
+            if not found:
                 raise DeviceError("The robot does not find its place.")
             world.link.beat()
         at, pose = world.stand(place), world.link.state.pose
