@@ -46,11 +46,13 @@ class Induced:
     step: int
     seconds: float
     lifted: int | None = None
+    hidden: bool = False
+    """Whether the game was over before there was anything to be noticed of it."""
 
     @property
     def could_show(self) -> bool:
         """Whether there was something to be noticed of it."""
-        return self.kind.shows != WAITING or self.lifted is not None
+        return not self.hidden and (self.kind.shows != WAITING or self.lifted is not None)
 
 
 def recovery_of(kind: Kind, book: FaultBook) -> str:

@@ -51,7 +51,23 @@ class InducingBench(BenchedWorld):
             if name:
                 self.inducer.came(name, step, self.link.time)
                 self.inject(name)
-        return super().execute(action)
+        outcome = super().execute(action)
+        if self.over:
+            self._note_hidden()
+        return outcome
+
+    def _note_hidden(self) -> None:
+        """Note, at a game's end, of which faults nothing could be seen any more.
+
+        A chair that found no room before the robot stands nowhere; and that somebody asks no more
+        is seen with the next behaviour.
+        """
+        self._note_lifted()
+        placed = {fault["kind"]: fault["shown"] for fault in self.truth()["faults"]}
+        for fault in self.inducer.induced:
+            nowhere = placed.get(fault.kind.name) is False and fault.kind.name == "path-detour"
+            late = fault.lifted is not None and fault.lifted > self.tracker.step
+            fault.hidden = nowhere or (late and fault.kind.shows == WAITING)
 
     def recover(self, remedy: Remedy) -> float:
         """Note that something is done about a fault, and do it."""
