@@ -23,7 +23,12 @@ Real: TypeAlias = NDArray[Any]
 
 TIPS = ("finger", "finger", "finger", "bar", "thumb", "blob", "flat")
 TIP, MOST_TIP = 0.12, 3  # of a cell that a tip covers, of so many cells at most
+LYING = ("blob", "bar", "blob", "thing", "blob", "bar", "flat", "thumb")
+MOST_LYING = 9  # cells
+STEEP = (44.0, 64.0)  # degrees, of one frame in so many:
+ONE_STEEP = 3
 SMALL = (660, 540)
+ROOMS = (101_000, 102_000, 103_000, 104_000)
 
 
 def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
@@ -86,6 +91,32 @@ def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
     yield from islice(tried(), frames)
 
 
+def line_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames of chips that lie near lines, some of them in glare or beside hands."""
+    hard: list[dict[str, Any]] = [
+        {}, {}, {}, {"hand": ""}, {"glare": 0.6}, {"glare": 0.9, "hand": ""},
+        {"tilt": 48.0}, {"tilt": 60.0, "hand": ""},
+    ]  # fmt: skip
+    for number, given in enumerate(hard):
+        yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
+
+
+def lying_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+    """Yield frames on which something ends that is larger than a chip: fists, arms and things."""
+
+    def tried() -> Iterator[Frame]:
+        for number in count():
+            random = np.random.default_rng([seed, number])
+            steep = {"tilt": float(random.uniform(*STEEP))} if number % ONE_STEEP == 0 else {}
+            view = some_view(random, hand=LYING[number % len(LYING)], size=SMALL, **steep)
+            try:
+                yield camera.some_frame(random, view)
+            except NoTip:
+                continue
+
+    yield from islice(tried(), frames)
+
+
 class NoTip(Exception):
     """What lies on a card is no tip."""
 
@@ -93,11 +124,19 @@ class NoTip(Exception):
 class TipCamera(CardCamera):
     """Takes frames only of hands that cover a cell or few."""
 
+    most = MOST_TIP
+
     def _covered(self, mask: Real, scale: float) -> Real:
         covered = super()._covered(mask, scale)
-        if not 1 <= (covered > TIP).sum() <= MOST_TIP:
+        if not 1 <= (covered > TIP).sum() <= self.most:
             raise NoTip
         return covered
+
+
+class LyingCamera(TipCamera):
+    """Takes frames only of things that leave most of the card in sight."""
+
+    most = MOST_LYING
 
 
 @dataclass(frozen=True)
@@ -129,10 +168,12 @@ class Kind:
 KINDS = (
     Kind(some_frames, 0.2, 0.0, 0.0, {1000: 2000}),
     Kind(tip_frames, 0.2, 0.0, 0.0, {4000: 1000, 4500: 400}, taken=TipCamera),
+    Kind(lying_frames, 0.2, 0.0, 0.0, {9000: 400, 9001: 400}, taken=LyingCamera),
+    Kind(line_frames, 0.6, 0.15, 0.0, {12_000: 800}),
     Kind(faint_frames, 0.1, 0.85, 0.0, {5000: 800}),
     Kind(odd_frames, 0.1, 0.15, 0.85, {8000: 640}),
     Kind(odd_frames, 0.1, 0.0, 0.9, {8500: 400}, oddity=sheer_chip),
-    Kind(room_frames, 0.06, 0.0, 0.0, {101_000: 1000, 102_000: 1000}),
+    Kind(room_frames, 0.06, 0.0, 0.0, dict.fromkeys(ROOMS, 1000)),
     Kind(scene_frames, 0.06, 0.0, 0.0, {}, {101_002: 500}),
 )
 """What is learnt from, and what the temperature is chosen on."""

@@ -30,6 +30,9 @@ TOO_LITTLE = "too little of the card in sight"
 OTHER_NUMBERS = "not a card of this deck"
 UNCERTAIN = 1 / 3
 HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
+MAYBE_HAND = 0.1  # how probably hidden a cell is from which a hand may be on the card
+CERTAIN_UNMARKED = 0.99  # how sure a cell is on which a state may rest, supposed it is in sight
+CERTAIN_MARKED = 0.98, 0.998  # and how sure a marked one: without a hand, and where one may be
 FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
 
 
@@ -205,13 +208,30 @@ class CardReader:
         return self.told(cards.pop(), fused, readings[-1].corners)
 
     def state(self, reading: CardReading, states: Sequence[CardState], called: set[int]) -> str:
-        """Name the user activity state of a card that was read; the unread one if not certain."""
+        """Name the user activity state of a card that was read; the unread one if not certain.
+
+        A cell that is told may still be too unsure for a state to rest on it: one cell that is
+        wrong makes a wrong state.
+        """
         unread = next(state.name for state in states if state.checker == "unread")
         if reading.card is None:
             return unread
         numbers = numbers_of(self.deck, reading.card, self.deck_seed)
         cells = called_cells(self.deck, numbers, called)
-        return judge_partly(states, self.deck, reading.marked, reading.hidden, cells)
+        unknown = reading.hidden | self._doubted(reading)
+        return judge_partly(states, self.deck, reading.marked, unknown, cells)
+
+    def _doubted(self, reading: CardReading) -> int:
+        """Return the cells, as a mask, that are less sure than a state must be."""
+        hand = any(part[HIDDEN] >= MAYBE_HAND for part in reading.parts)
+        doubted = 0
+        for cell, (unmarked, marked, _) in enumerate(reading.parts):
+            if marked > unmarked:
+                unsure = marked < CERTAIN_MARKED[hand]
+            else:
+                unsure = unmarked < CERTAIN_UNMARKED * (unmarked + marked)
+            doubted |= int(unsure) << cell
+        return doubted & ~self.deck.free
 
     def document(self, reading: CardReading) -> dict[str, Any]:
         """Write a reading as JSON has it."""
