@@ -223,9 +223,13 @@ class LiveWorld:
         """Return who sits at somebody's place, as far as the robot has seen."""
         return self.sitting.get(place, place)
 
+    @property
+    def calls_in(self) -> float:
+        """The s until the next number may be called."""
+        return max(0.0, self._due - self.link.time)
+
     def _keep_pace(self) -> None:
-        wait = self._due - self.link.time
-        if wait > 0:
+        if wait := self.calls_in:
             self.commands.wait(wait)
 
     def _go(self, place: str) -> bool:

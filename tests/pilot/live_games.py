@@ -88,6 +88,7 @@ def live_world(house: House, link: HeldLink, kind: type[LiveWorld] = LiveWorld) 
         house.room,
         seed=1,
         names=house.names,
+        pace=0.0,  # its time stands still while nothing is done
     )
 
 

@@ -159,6 +159,23 @@ async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that
         assert log.sentences.count(other) == log.sentences.count(own) == 1
 
 
+async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    world._pace = 30.0
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: len(world.called) == 1)
+        await until(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
+        said = list(link.said)
+        await pilot.press("c")
+        await until(pilot, lambda: len(link.said) == len(said) + 1)
+        assert link.said[-1] == world.activity.deck.label(world.called[0])
+        link.cards["user2"] = LaidCard(7)
+        link.sign(2)
+        await until(pilot, lambda: world.tracker.place == "user2")
+        assert len(world.called) == 1
+
+
 async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
@@ -240,7 +257,8 @@ async def test_a_call_is_said_again_and_taken_back(
         await pilot.press("x")
         assert len(world.called) == count - 1
         noted = [event.body["what"] for event in house.store.events(STAFF)]
-        assert noted == [f"staff took a call back: {label}"]
+        again = "staff had the last number called again"
+        assert noted == [again, f"staff took a call back: {label}"]
 
 
 async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(

@@ -17,8 +17,8 @@ from tangy_tui.ui.base import Dialog
 FORWARD, TURN = 0.3, 0.6  # m/s and rad/s: slower than it drives by itself
 
 TEXT = (
-    "↑ and ↓ drive, ← and → turn, as long as a key is held. Tangy still stops before what it sees "
-    "in its way when it goes by itself only: look where it goes. Space stands still; esc ends."
+    "↑ and ↓ drive, ← and → turn, as long as a key is held. While you drive, Tangy stops for "
+    "nobody and nothing in its way: look where it goes. Space stands still; esc ends."
 )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import suppress
-from math import pi
+from math import ceil, pi
 from typing import ClassVar
 
 from textual.binding import BindingType
@@ -152,9 +152,25 @@ class LiveScreen(PlayScreen):
                     supervision.game.withdraw()
                     self._tell_now("Tangy goes on by itself.", "dim")
             return False
+        if decision.sure and await self._rests(decision):
+            return False
         if not decision.sure or not self._asks_about(decision):
             return True
         return await self._confirm(decision, state.attended)
+
+    async def _rests(self, decision: Decision) -> bool:
+        """Let a moment pass where it is too early for the next call: staff may step in meanwhile.
+
+        Whoever asks for help in the meantime does not wait for it.
+        """
+        draws = self._house.activity.behaviours[decision.behaviour].effect == "draw"
+        if not draws or not self._world.calls_in:
+            return False
+        self._show_status()
+        self._nudge.clear()
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._nudge.wait(), TRACK_SECONDS)
+        return True
 
     def _asks_about(self, decision: Decision) -> bool:
         unsure = self._autonomy == UNSURE and decision.share < SURE
@@ -203,6 +219,14 @@ class LiveScreen(PlayScreen):
         self._tell_now(f"Tangy {_acts(self._autonomy)}.", "dim")
         self._show_status()
 
+    def action_leave(self) -> None:
+        """Take back that staff want to say what is done next, or leave."""
+        if self._taking_over:
+            self._taking_over = False
+            self._tell_now("Tangy goes on by itself.", "dim")
+        else:
+            super().action_leave()
+
     def action_take_over(self) -> None:
         """Let staff say what is done next, as soon as what is done now is over."""
         if self._refused() or self._supervision.over:
@@ -243,6 +267,8 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._call_again(), name="call", group="call")
 
     async def _call_again(self) -> None:
+        self._faults.note("staff had the last number called again")
+        self._tell_now("Tangy calls the last number again.", "dim")
         await self._tried(self._world.call_again)
 
     def action_void_call(self) -> None:
@@ -351,7 +377,8 @@ class LiveScreen(PlayScreen):
         """Say what the robot is doing, or what the keys would do next."""
         if self._stopped or self._learning or self._at_rest or not self._going.is_set():
             return super()._note()
-        return self._doing() or (self._autonomy if self._autonomy != AUTONOMY[0] else "")
+        autonomy = self._autonomy if self._autonomy != AUTONOMY[0] else ""
+        return self._doing() or self._until_call() or autonomy
 
     def _doing(self) -> str:
         """Say what keeps the robot busy on its wheels, "" if nothing does."""
@@ -361,6 +388,10 @@ class LiveScreen(PlayScreen):
         if not going:
             return ""
         return f"drives to {'the front' if going == FRONT else self._house.name(going)}"
+
+    def _until_call(self) -> str:
+        left = 0.0 if self._working else self._world.calls_in
+        return f"next call in {ceil(left)} s" if left else ""
 
 
 def _acts(autonomy: str) -> str:
