@@ -14,6 +14,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import json
+import os
 import sys
 import time
 from collections.abc import Awaitable, Callable
@@ -37,6 +38,7 @@ SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
 MOST_PARTICLES = 60  # that are told, of those by which it finds its place
 LONGEST_LINE = 1 << 22
+END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
 MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 
@@ -303,11 +305,18 @@ def _thinned(particles: Any) -> list[list[float]]:
     return [[round(float(x), 2), round(float(y), 2)] for x, y, *_ in particles[::apart]]
 
 
+class _Ended(asyncio.StreamReaderProtocol):
+    """Lines of the program; once it has ended, this process does, whatever it waits for."""
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Let what is under way come to its end, but not for ever."""
+        super().connection_lost(exc)
+        asyncio.get_running_loop().call_later(END_SECONDS, os._exit, 1)
+
+
 async def _lines() -> asyncio.StreamReader:
     reader = asyncio.StreamReader(limit=LONGEST_LINE)
-    await asyncio.get_running_loop().connect_read_pipe(
-        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
-    )
+    await asyncio.get_running_loop().connect_read_pipe(lambda: _Ended(reader), sys.stdin)
     return reader
 
 

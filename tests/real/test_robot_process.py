@@ -18,7 +18,8 @@ import pytest
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot import HAZARD_SECONDS, BrokenOff
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_child import END_SECONDS
+from tangy_hw.robot_link import CHILD, RobotLink
 from tangy_tui.live.bench import Bench
 from tests.real.bench_setup import setup_on
 
@@ -141,6 +142,24 @@ def test_a_program_that_lives_again_does_not_drive_on_by_itself(
         if select.select([program.terminal], [], [], 0.1)[0]:
             said += os.read(program.terminal, 1000)
     assert b"the program says nothing" in said
+
+
+def test_a_robot_process_whose_program_ends_while_devices_are_waited_for_ends_as_well(
+    bench: Bench,
+) -> None:
+    setup = setup_on(bench, stepped=True).to_json()  # there is nothing by which time would pass
+    child = subprocess.Popen(  # noqa: S603 - our own program
+        CHILD, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+    )
+    assert child.stdin is not None
+    child.stdin.write(setup.encode() + b"\n")
+    child.stdin.flush()
+    time.sleep(2.0)
+    child.stdin.close()
+    try:
+        assert child.wait(END_SECONDS + PATIENCE) is not None
+    finally:
+        child.kill()
 
 
 @pytest.fixture
