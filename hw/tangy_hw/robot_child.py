@@ -1,4 +1,4 @@
-"""The robot process: `python -P -m tangy_hw.robot_child`, spoken to by JSON lines over its pipes.
+"""The robot process: `python -P -m tangy_hw.robot_child PID`, spoken to by JSON lines on its pipes.
 
 The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "do": "go", ...} is
 answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
@@ -38,6 +38,7 @@ SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
 MOST_PARTICLES = 60  # that are told, of those by which it finds its place
 LONGEST_LINE = 1 << 22
+LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
 END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
 MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
@@ -305,19 +306,20 @@ def _thinned(particles: Any) -> list[list[float]]:
     return [[round(float(x), 2), round(float(y), 2)] for x, y, *_ in particles[::apart]]
 
 
-class _Ended(asyncio.StreamReaderProtocol):
-    """Lines of the program; once it has ended, this process does, whatever it waits for."""
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Let what is under way come to its end, but not for ever."""
-        super().connection_lost(exc)
-        asyncio.get_running_loop().call_later(END_SECONDS, os._exit, 1)
-
-
 async def _lines() -> asyncio.StreamReader:
     reader = asyncio.StreamReader(limit=LONGEST_LINE)
-    await asyncio.get_running_loop().connect_read_pipe(lambda: _Ended(reader), sys.stdin)
+    await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
+    )
     return reader
+
+
+async def _end_with(program: int, lines: asyncio.StreamReader) -> None:
+    """End once the program has ended, whatever is waited for; first let what it does be stopped."""
+    while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - nobody tells
+        await asyncio.sleep(LOOK_SECONDS)
+    await asyncio.sleep(END_SECONDS)
+    os._exit(1)
 
 
 class _Lines(asyncio.Protocol):
@@ -343,6 +345,15 @@ class _Lines(asyncio.Protocol):
 async def run() -> int:
     """Be the robot process until the program ends."""
     lines = await _lines()
+    program = int(sys.argv[1]) if sys.argv[1:] else os.getppid()
+    ending = asyncio.create_task(_end_with(program, lines))
+    try:
+        return await _serve(lines)
+    finally:
+        ending.cancel()
+
+
+async def _serve(lines: asyncio.StreamReader) -> int:
     _, out = await asyncio.get_running_loop().connect_write_pipe(_Lines, sys.stdout)
     try:
         setup = RobotSetup.from_json(await lines.readline())

@@ -9,6 +9,7 @@ screen hangs: a screen says itself that it is `alive`.
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -130,7 +131,7 @@ class RobotLink:
                 log = open_log(self._log)
         try:
             self._process = subprocess.Popen(  # noqa: S603 - it is our own program
-                CHILD,
+                [*CHILD, str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,

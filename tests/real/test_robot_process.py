@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pty
 import select
+import shlex
 import signal
 import subprocess
 import sys
@@ -18,7 +19,6 @@ import pytest
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot import HAZARD_SECONDS, BrokenOff
-from tangy_hw.robot_child import END_SECONDS
 from tangy_hw.robot_link import CHILD, RobotLink
 from tangy_tui.live.bench import Bench
 from tests.real.bench_setup import setup_on
@@ -144,22 +144,25 @@ def test_a_program_that_lives_again_does_not_drive_on_by_itself(
     assert b"the program says nothing" in said
 
 
-def test_a_robot_process_whose_program_ends_while_devices_are_waited_for_ends_as_well(
-    bench: Bench,
-) -> None:
-    setup = setup_on(bench, stepped=True).to_json()  # there is nothing by which time would pass
-    child = subprocess.Popen(  # noqa: S603 - our own program
-        CHILD, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
-    )
-    assert child.stdin is not None
-    child.stdin.write(setup.encode() + b"\n")
-    child.stdin.flush()
-    time.sleep(2.0)
-    child.stdin.close()
+def is_there(process: int) -> bool:
+    """Say whether a process runs; one that has ended may lie about until somebody looks."""
     try:
-        assert child.wait(END_SECONDS + PATIENCE) is not None
-    finally:
-        child.kill()
+        stat = Path(f"/proc/{process}/stat").read_text()
+    except OSError:
+        return False
+    return stat.rpartition(")")[2].split()[0] != "Z"
+
+
+def test_a_robot_process_ends_with_its_program_also_where_its_pipe_stays_open() -> None:
+    command = f"exec 3<&0; {shlex.join(CHILD)} $$ <&3 & echo $!; sleep 1"
+    with subprocess.Popen(  # noqa: S602 - our own program
+        command, shell=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as program:
+        assert program.stdout is not None
+        robot = int(program.stdout.readline())
+        assert is_there(robot)
+        wait_until(lambda: program.poll() is not None, "the program ends")
+        wait_until(lambda: not is_there(robot), "the robot process ends")
 
 
 @pytest.fixture
