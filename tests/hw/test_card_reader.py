@@ -187,15 +187,16 @@ def test_a_hidden_cell_matters_only_where_it_could_change_the_state(
 
 def test_a_state_rests_only_on_cells_that_are_sure(reader: CardReader, activity: Activity) -> None:
     numbers = numbers_of(activity.deck, 3)
-    seen, unsure, covered = (0.0005, 0.999, 0.0005), (0.025, 0.975, 0.0), (0.2, 0.0, 0.8)
+    seen, covered = (0.0005, 0.999, 0.0005), (0.2, 0.0, 0.8)
     states, called = activity.user_states, set(numbers[:5])
     row = dict.fromkeys(range(5), seen)
     assert reader.state(reading_of(reader, 3, row), states, called) == "bingo"
-    reading = reading_of(reader, 3, {**row, 2: unsure})
-    assert (reading.marked & 4, reading.hidden) == (4, 0)
-    assert reader.state(reading, states, called) == "occluded"
-    reading = reading_of(reader, 3, {**row, 20: unsure})  # changes nothing
-    assert reader.state(reading, states, called) == "bingo"
+    called |= set(numbers[5:10])
+    bare = reading_of(reader, 3, {**row, 7: (0.98, 0.02, 0.0)})  # told, and not to be rested on
+    assert (bare.marked & 1 << 7, bare.hidden) == (0, 0)
+    assert reader.state(bare, states, called) == "bingo"  # it changes nothing
+    bare = reading_of(reader, 3, {7: (0.98, 0.02, 0.0)})
+    assert reader.state(bare, states, {numbers[7]}) == "occluded"
     less = (0.012, 0.987, 0.001)
     assert reader.state(reading_of(reader, 3, {**row, 2: less}), states, called) == "bingo"
     reading = reading_of(reader, 3, {**row, 2: less, 20: covered})  # a hand is there

@@ -32,7 +32,7 @@ UNCERTAIN = 1 / 3
 HAND = 0.5  # how probably hidden a cell is from which a hand is taken to be on the card
 MAYBE_HAND = 0.1  # how probably hidden a cell is from which a hand may be on the card
 CERTAIN_UNMARKED = 0.99  # how sure a cell is on which a state may rest, supposed it is in sight
-CERTAIN_MARKED = 0.98, 0.998  # and how sure a marked one: without a hand, and where one may be
+CERTAIN_MARKED = 0.965, 0.996  # and how sure a marked one: without a hand, and where one may be
 FADED = 0.6  # of its card's usual contrast: a number with less of it does not lie bare
 
 
