@@ -191,7 +191,8 @@ async def test_how_it_looks(
     picture: Callable[[App[Any]], None],
 ) -> None:
     why = "Nothing can be seen in the picture."
-    link.sight = replace(WELL, state="COVERED", why=why, seconds=800.0, age=200.0)
+    # in the middle of what is rounded to a minute, however slowly this goes on
+    link.sight = replace(WELL, state="COVERED", why=why, seconds=785.0, age=185.0)
     link.looked = link.read = {**READ, "age": -9.0}
     async with run(make(), size) as pilot:
         pilot.type("v")
