@@ -34,6 +34,7 @@ from typing import Any, ClassVar
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.css.query import NoMatches
+from textual.notifications import SeverityLevel
 from textual.screen import Screen
 
 from tangy_tui.ui.clean_output import CleanOutput, clean
@@ -215,12 +216,13 @@ class TangyApp(App[None]):
                 driver._mouse = False
         self.mouse = on
 
-    def say(self, sentence: str, *, bad: bool = False) -> None:
-        """Show a sentence for a few seconds, unless the screen has a better place for it."""
+    def say(self, sentence: str, *, bad: bool = False, seconds: float | None = None) -> None:
+        """Show a sentence for a few (or so many) s, unless the screen has a better place for it."""
         take = getattr(self.screen, "take_sentence", None)
         if take is not None and take(sentence):
             return
-        self.notify(clean(sentence), severity="error" if bad else "information", markup=False)
+        severity: SeverityLevel = "error" if bad else "information"
+        self.notify(clean(sentence), severity=severity, timeout=seconds, markup=False)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List what the command palette offers: the keys of the screen, and the program's own."""

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+LONGEST_WORK = 600.0  # s for which a sentence about slow work may stand; it goes when that is done
+
 STORY_TEACHING = (2.0, 6.0, 12.0)
 """Steps a second of the demo's three demonstrations: slow enough to read at first."""
 
@@ -341,7 +343,7 @@ class Program(SoundingApp):
         if self._busy:
             return None
         self._busy = True
-        self.say(what)
+        self.say(what, seconds=LONGEST_WORK)
         try:
             worker: Worker[T] = self.run_worker(
                 work, thread=True, exit_on_error=False, group="thread"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import suppress
-from math import ceil, pi
+from math import ceil
 from typing import ClassVar
 
 from textual.binding import BindingType
@@ -19,7 +19,6 @@ from textual.screen import Screen
 from tangy_hw.stopping import STAFF
 from tangy_hw.world import LiveWorld
 from tangy_profiles.errors import TangyError
-from tangy_profiles.room import Point
 from tangy_profiles.state import FRONT
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Decision
@@ -36,9 +35,10 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
+from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.log_view import LogView
-from tangy_tui.ui.widgets.room_view import Mark, RoomView
+from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 TRACK_SECONDS = 0.2
@@ -46,7 +46,6 @@ TRACK_SECONDS = 0.2
 REST_SECONDS = 5.0  # in which what it does is broken off
 SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
-ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
 LOOKS_ROUND = "Tangy does not know where it stands: it turns on the spot, then drives to the front."
 STOPPED = "staff stopped it"
 TOOK_OVER = "You say what Tangy does next."
@@ -190,7 +189,7 @@ class LiveScreen(PlayScreen):
         whom = f" ({self._house.name(target)})" if target else ""
         dialog = ConfirmDialog(
             f"Next: {behaviour.name}{whom}?",
-            f"{decision.share:.0%} of the votes. i turns this off.",
+            f"{decision.share:.0%} of the votes. After this, i turns the questions off.",
             yes="do it",
             no="say what else",
         )
@@ -216,7 +215,7 @@ class LiveScreen(PlayScreen):
     def action_autonomy(self) -> None:
         """Turn the dial of how much Tangy does of itself."""
         self._autonomy = AUTONOMY[(AUTONOMY.index(self._autonomy) + 1) % len(AUTONOMY)]
-        self._tell_now(f"Tangy {_acts(self._autonomy)}.", "dim")
+        self._tell_now(f"Tangy {live_keys.acts(self._autonomy)}.", "dim")
         self._show_status()
 
     def action_leave(self) -> None:
@@ -275,13 +274,26 @@ class LiveScreen(PlayScreen):
         """Take the last call back."""
         if self._working:
             self._tell_now("Not now: Tangy is busy.", "dim")
-        elif (number := self._world.void_call()) is None:
+        elif not self._world.called:
             self._tell_now("No number was called yet.", "dim")
         else:
-            label = self._house.activity.deck.label(number)
-            self._faults.note(f"staff took a call back: {label}")
-            self._tell_now(f"{label} counts as not called; say so to the group.", "warn")
-            self.query_one(RoomView).show(self._world.scene())
+            self.run_worker(self._void_call(), name="void", group="call", exclusive=True)
+
+    async def _void_call(self) -> None:
+        last = self._world.called[-1]
+        label = self._house.activity.deck.label(last)
+        text = "It counts as not called then, and comes again later."
+        dialog = ConfirmDialog(f"Take {label} back?", text, yes="take it back", no="leave it")
+        if not await self.app.push_screen_wait(dialog):
+            return
+        async with self._turn:  # what Tangy began meanwhile comes first
+            if self._world.called[-1:] != [last]:
+                self._tell_now(f"{label} is not the last any more.", "warn")
+                return
+            self._world.void_call()
+        self._faults.note(f"staff took a call back: {label}")
+        self._tell_now(f"{label} counts as not called; say so to the group.", "warn")
+        self.query_one(RoomView).show(self._world.scene())
 
     def action_ask_for(self) -> None:
         """Ask for help for somebody."""
@@ -351,13 +363,7 @@ class LiveScreen(PlayScreen):
         if (doing := self._doing()) != self._seen_doing:
             self._seen_doing = doing
             self._show_status()
-        marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
-        marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
-        marks += [(Point(x, y), "*", "warn") for x, y in state.obstacles]
-        heading = state.pose.heading
-        arrow = ARROWS[round(heading / (pi / 2)) % 4]
-        at = Point(state.pose.x, state.pose.y)
-        room.track(at, arrow if state.going else "", marks)
+        track(room, state)
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
@@ -392,9 +398,3 @@ class LiveScreen(PlayScreen):
     def _until_call(self) -> str:
         left = 0.0 if self._working else self._world.calls_in
         return f"next call in {ceil(left)} s" if left else ""
-
-
-def _acts(autonomy: str) -> str:
-    return {EVERY: "asks before everything it does", UNSURE: "asks where it is less sure"}.get(
-        autonomy, "does all of it by itself"
-    )

@@ -47,3 +47,10 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
         ("o", "take over"), ("d", "drive"), ("c", "call again"), ("h", "help for"), ("w", "why"),
         ("1-7", "show"), ("esc", "end"), ("?", "help"),
     )  # fmt: skip
+
+
+def acts(autonomy: str) -> str:
+    """Say what Tangy does of itself, as the dial stands."""
+    return {EVERY: "asks before everything it does", UNSURE: "asks where it is less sure"}.get(
+        autonomy, "does all of it by itself"
+    )

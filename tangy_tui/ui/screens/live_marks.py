@@ -1,0 +1,20 @@
+"""What a robot says of itself, as it is drawn over the room: its place, its way, what it sees."""
+
+from __future__ import annotations
+
+from math import pi
+
+from tangy_hw.robot_link import RobotState
+from tangy_profiles.room import Point
+from tangy_tui.ui.widgets.room_view import Mark, RoomView
+
+ARROWS = "▸▾◂▴"  # by quarters of a turn; the people, whom it faces at one, are drawn below
+
+
+def track(room: RoomView, state: RobotState) -> None:
+    """Draw where the robot is, and what it knows of the floor."""
+    marks: list[Mark] = [(Point(x, y), "∴", "dim") for x, y in state.particles]
+    marks += [(Point(x, y), "·", "robot") for x, y in state.path if state.going]
+    marks += [(Point(x, y), "*", "warn") for x, y in state.obstacles]
+    arrow = ARROWS[round(state.pose.heading / (pi / 2)) % 4]
+    room.track(Point(state.pose.x, state.pose.y), arrow if state.going else "", marks)
