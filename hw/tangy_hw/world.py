@@ -204,7 +204,9 @@ class LiveWorld:
         written = picture._replace(text=speech)
         if speech and not self._has_voice:
             self.commands.perform(speech, written, posture)
-        elif self.commands.perform(speech, picture, posture).get("said") is False:
+            return
+        done = self.commands.perform(speech, picture, posture)
+        if speech and not done.get("said"):  # it failed just now, or the robot has no voice
             self.commands.perform("", written)
 
     @property

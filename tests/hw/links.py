@@ -51,6 +51,8 @@ class FakeLink:
         self.place = "front"
         self.breaks: dict[str, str] = {}
         """Why what is asked for next is broken off, by what it is."""
+        self.speaks = True
+        """Whether it has a voice that works."""
         self.missed: set[str] = set()
         """Places that it does not arrive at."""
         self.slow: dict[str, int] = {}
@@ -128,6 +130,8 @@ class FakeLink:
                 self.place = what["name"]
                 self.state = replace(self.state, pose=Pose(*what["to"]))
             return {"arrived": arrived}
+        if do == "perform":
+            return {"said": self.speaks and bool(what["text"]), "shown": True}
         if do == "spin":
             return {"found": True}
         if do == "face":

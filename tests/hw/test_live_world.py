@@ -78,6 +78,15 @@ def test_a_number_is_said_shown_and_called(world: LiveWorld, link: FakeLink) -> 
     assert shown["number"] == label and list(shown["before"]) == []
 
 
+def test_where_nothing_was_said_the_screen_shows_every_word(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    link.speaks = False
+    do(world, "greeting")
+    texts = [what["picture"]["text"] for did, what in link.done if did == "perform"]
+    assert link.said[-1] in texts
+
+
 def test_no_number_comes_twice_and_another_seed_has_another_order(link: FakeLink) -> None:
     world = opened(world_of(link))
     numbers = [do(world, "call number").numbers[0] for _ in range(75)]
