@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.faults import Evidence
-from tangy_profiles.health import ERROR, OK, STALE, STATES, Fact, Health, Reading, state_of
+from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted
@@ -23,6 +23,7 @@ OWED_BY_PEOPLE = ("what was asked about", "request")
 no fault of the robot's."""
 
 
+LINK, AWAITS_SECONDS = "link", 0.1  # s, as long as a scanner's data may be older than the link's
 OTHERS, FEWER = "others' requests", "fewer"
 
 
@@ -138,15 +139,31 @@ def device_evidence(robot: Robot, health: Health) -> dict[str, Fact]:
     robot's that is not even mentioned is as silent as any.
     """
     found: dict[str, Fact] = {f"{name}.state": STALE for name in robot.devices}
+    awaited = _link_is_awaited(robot, health)
     for reading in health:
-        state = state_of(robot.devices.get(reading.device), reading)
-        found[f"{reading.device}.state"] = state
+        device = robot.devices.get(reading.device)
+        state = state_of(device, reading)
+        just = device is not None and reading.age <= device.stale_after + AWAITS_SECONDS
+        found[f"{reading.device}.state"] = WARN if awaited and just and state == STALE else state
         if math.isfinite(reading.age):
             found[f"{reading.device}.age"] = reading.age
         if state != STALE:
             facts = reading.facts.items()
             found |= {f"{reading.device}.{fact}": value for fact, value in facts if value == value}
     return found
+
+
+def _link_is_awaited(robot: Robot, health: Health) -> bool:
+    """Say whether the link has been quiet for a while and is not silent yet.
+
+    What is reached by a lost link may count as silent a moment before the link does itself; then
+    that moment is waited for, so that staff are not sent to the wrong cable.
+    """
+    device = robot.devices.get(LINK)
+    reading = next((one for one in health if one.device == LINK), None)
+    if device is None or reading is None or state_of(device, reading) == STALE:
+        return False
+    return reading.age > device.stale_after / 2
 
 
 def symptoms(evidence: Evidence) -> set[str]:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.health import Reading
+from tangy_profiles.faults import Evidence
+from tangy_profiles.health import STALE, Reading
 from tangy_profiles.robot import load_robot
 from tangy_sim.body import READINGS, WELL
 from tangy_sim.faulty import FaultyWorld
@@ -16,7 +17,7 @@ from tangy_sim.world import SimulatedWorld
 from tangy_tui.house import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.detection import Detector, symptoms
+from tangy_tui.monitoring.detection import Detector, device_evidence, symptoms
 from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until, world_of
 
 
@@ -181,3 +182,18 @@ def test_a_game_that_goes_round_in_circles_asks_the_teacher(supervise: Supervise
 
 def test_the_name_of_a_kind_may_be_written_in_capitals() -> None:
     assert read_injection("Base-Stuck@3").kind is KINDS["base-stuck"]
+
+
+def test_what_falls_silent_just_before_the_link_does_is_not_blamed() -> None:
+    robot = load_robot()
+
+    def of(link: float, laser: float) -> Evidence:
+        ages = {"link": link, "laser": laser}
+        health = tuple(Reading(name, ages.get(name, 0.01)) for name in robot.devices)
+        return device_evidence(robot, health)
+
+    assert of(0.03, 0.3)["laser.state"] == STALE  # the link is well: it is the scanner
+    assert of(0.2, 0.3)["laser.state"] != STALE  # that will be known in a moment
+    assert of(0.2, 0.4)["laser.state"] == STALE  # that has been long enough
+    both = of(0.26, 0.34)
+    assert both["link.state"] == both["laser.state"] == STALE
