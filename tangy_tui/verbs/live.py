@@ -87,6 +87,8 @@ def live(
     who = who_answers(teacher, expert)
     if inject and not bench:
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
+    if bench and (camera or requests or table):
+        raise TangyError("--camera, --requests, --table: the bench brings its own; leave them out.")
     faults = tuple(_listed(inject or []))
     screen = not (headless or as_json) and common.full_screen()
     with common.open_house(data, activity, users, robot=robot) as house:
