@@ -20,6 +20,10 @@ from time import monotonic
 import pyte
 import pytest
 
+from tangy_hw.robot_link import RobotLink
+from tangy_tui.live.bench import Bench
+from tests.real.bench_setup import setup_on
+
 PATIENCE = 30.0
 """Seconds after which something that should be on a screen is missed."""
 
@@ -235,3 +239,36 @@ def open_tmux(tmp_path: Path) -> Iterator[Callable[[int, int], Tmux]]:
     yield open_one
     for tmux in opened:
         tmux.end()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data folder in which one guided game was shown and learnt from."""
+    folder = tmp_path_factory.mktemp("live")
+    teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
+    for command in (teach, ["learn"]):
+        subprocess.run(  # noqa: S603
+            [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
+        )
+    return folder
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench(
+        seed=1,
+        people={"user1": "Ann", "user2": "Ben"},
+        stepped=False,
+        activity="bingo",
+        robot="tangy",
+    )
+    yield bench
+    bench.close()
+
+
+@pytest.fixture
+def link(bench: Bench) -> Iterator[RobotLink]:
+    link = RobotLink(setup_on(bench))
+    link.start()
+    yield link
+    link.close()

@@ -24,18 +24,6 @@ from tests.real.conftest import TANGY, Terminal
 pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder in which one guided game was shown and learnt from."""
-    folder = tmp_path_factory.mktemp("live")
-    teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
-    for command in (teach, ["learn"]):
-        subprocess.run(  # noqa: S603
-            [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
-        )
-    return folder
-
-
 @pytest.fixture
 def house(folder: Path) -> Iterator[House]:
     house = House(folder)

@@ -6,7 +6,6 @@ The robot is a bench that runs beside the program and not under it, as a robot d
 from __future__ import annotations
 
 import signal
-import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,18 +21,6 @@ PROFILE = ROOT / "profiles/tangy_profiles/robots/tangy.toml"
 PEOPLE = {f"user{number}": f"User {number}" for number in range(1, 5)}
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder in which one guided game was shown and learnt from."""
-    folder = tmp_path_factory.mktemp("robot")
-    teach = ["teach", "--guided", "--teacher", "scripted", "--plain"]
-    for command in (teach, ["learn"]):
-        subprocess.run(  # noqa: S603
-            [TANGY, *command, "--data", str(folder)], check=True, capture_output=True
-        )
-    return folder
 
 
 @pytest.fixture

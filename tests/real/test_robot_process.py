@@ -36,19 +36,6 @@ PATIENCE = 30.0
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
-@pytest.fixture
-def bench() -> Iterator[Bench]:
-    bench = Bench(
-        seed=1,
-        people={"user1": "Ann", "user2": "Ben"},
-        stepped=False,
-        activity="bingo",
-        robot="tangy",
-    )
-    yield bench
-    bench.close()
-
-
 class Program:
     """A program on a terminal of its own that drives the robot up and down."""
 
@@ -163,14 +150,6 @@ def test_a_robot_process_ends_with_its_program_also_where_its_pipe_stays_open() 
         assert is_there(robot)
         wait_until(lambda: program.poll() is not None, "the program ends")
         wait_until(lambda: not is_there(robot), "the robot process ends")
-
-
-@pytest.fixture
-def link(bench: Bench) -> Iterator[RobotLink]:
-    link = RobotLink(setup_on(bench))
-    link.start()
-    yield link
-    link.close()
 
 
 def test_a_stop_overtakes_a_drive_and_latches(bench: Bench, link: RobotLink) -> None:

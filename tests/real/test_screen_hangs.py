@@ -3,34 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
 from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import HANGS_SECONDS, RobotLink
 from tangy_tui.live.bench import Bench
-from tests.real.bench_setup import setup_on
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FAR = [9.0, 1.2, 1.57]  # some ten seconds away
 STOPS = 0.6  # s
-
-
-@pytest.fixture
-def bench() -> Iterator[Bench]:
-    people = {"user1": "Ann", "user2": "Ben"}
-    bench = Bench(seed=1, people=people, stepped=False, activity="bingo", robot="tangy")
-    yield bench
-    bench.close()
-
-
-@pytest.fixture
-def link(bench: Bench) -> Iterator[RobotLink]:
-    link = RobotLink(setup_on(bench))
-    link.start()
-    yield link
-    link.close()
 
 
 def until(holds: Callable[[], bool]) -> None:
