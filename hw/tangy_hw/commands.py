@@ -8,8 +8,8 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from tangy_hw.devices import DeviceError, Picture
-from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
+from tangy_hw.stopping import BrokenOff
 from tangy_profiles.health import Health
 
 BREAK_SECONDS = 20.0  # of real time, after which what was called off is taken to be over

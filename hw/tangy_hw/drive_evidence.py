@@ -7,9 +7,12 @@ in the meantime, but it is not where it was in the game any more.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_profiles.health import Fact, Reading
+
+if TYPE_CHECKING:
+    from tangy_hw.navigation.wayfinding import Wayfinder
 
 LOST_FIT, LOST_SPREAD, SLIPS = 0.85, 0.5, 0.3  # as the rules for faults have it
 KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong with it

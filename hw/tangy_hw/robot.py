@@ -23,8 +23,7 @@ from tangy_hw.perception.requests.asking import Ask, RequestSource
 from tangy_hw.performing import Performer
 from tangy_hw.reports import reports_of
 from tangy_hw.senses import Senses
-from tangy_hw.stopping import STAFF, Stops
-from tangy_hw.stopping import BrokenOff as BrokenOff
+from tangy_hw.stopping import STAFF, BrokenOff, Stops
 from tangy_hw.wheels import Wheels
 from tangy_profiles.health import Health, Reading
 from tangy_profiles.robot import Robot

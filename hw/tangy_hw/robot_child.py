@@ -22,10 +22,10 @@ from dataclasses import astuple
 from typing import Any
 
 from tangy_hw.devices import DeviceError, Picture, Pose, Twist
-from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.senses import CardSeen, Senses
-from tangy_hw.stopping import STAFF
+from tangy_hw.stopping import STAFF, BrokenOff
 from tangy_hw.wiring import Wired, wire
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import Health

@@ -23,9 +23,8 @@ from typing import IO, Any
 
 from tangy_hw.devices import DeviceError, Pose
 from tangy_hw.outbox import Outbox
-from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.stopping import STAFF
+from tangy_hw.stopping import STAFF, BrokenOff
 from tangy_profiles.health import STALE, Health, Reading
 from tangy_profiles.worker_log import open_log
 

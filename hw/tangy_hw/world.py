@@ -20,8 +20,8 @@ from tangy_hw.devices import DeviceError, Picture, Pose
 from tangy_hw.drive_evidence import LOST_SPREAD
 from tangy_hw.remedies import Remedies
 from tangy_hw.requests_seen import SeenRequests
-from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
+from tangy_hw.stopping import BrokenOff
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tangy_hw.devices import Pose
-from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotState
 from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.stopping import BrokenOff
 from tangy_profiles.activity import load_activity
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.cards import judge

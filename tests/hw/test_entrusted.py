@@ -25,8 +25,9 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.navigation import entrusted
 from tangy_hw.navigation.entrusted import Entrusted
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.stopping import BrokenOff
 from tangy_hw.trial import try_robot
 from tangy_hw.wiring import wire
 from tangy_profiles.activity import load_activity

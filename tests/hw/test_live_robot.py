@@ -16,7 +16,8 @@ from tangy_hw import robot as robots
 from tangy_hw.devices import STILL, DeviceError, MachineClock, Twist
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot import BrokenOff, LiveRobot
+from tangy_hw.robot import LiveRobot
+from tangy_hw.stopping import BrokenOff
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody

@@ -17,9 +17,9 @@ import pytest
 from tangy_hw import robot_link
 from tangy_hw.devices import DeviceError
 from tangy_hw.outbox import Outbox
-from tangy_hw.robot import BrokenOff
 from tangy_hw.robot_link import RobotLink
 from tangy_hw.robot_setup import RobotSetup
+from tangy_hw.stopping import BrokenOff
 
 SETUP = RobotSetup("tangy", "bingo", ("user1",))
 PIPE = 1 << 16  # bytes that wait in one

@@ -18,8 +18,9 @@ from statistics import median, quantiles
 import pytest
 
 from tangy_hw.devices import DeviceError
-from tangy_hw.robot import HAZARD_SECONDS, BrokenOff
+from tangy_hw.robot import HAZARD_SECONDS
 from tangy_hw.robot_link import CHILD, RobotLink
+from tangy_hw.stopping import BrokenOff
 from tangy_tui.live.bench import Bench
 from tests.real.bench_setup import setup_on
 
