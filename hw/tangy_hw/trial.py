@@ -24,7 +24,8 @@ TICK_SECONDS = 0.05
 class Trial:
     """What was found of one device: whether it works, and a sentence about it.
 
-    `absent`: nothing says what drives it, so nothing was tried.
+    `absent`: something is wanting, and not broken: nothing says what drives it, or nobody looks at
+    the screen yet.
     """
 
     device: str
@@ -96,8 +97,9 @@ def _tried(
     if isinstance(device, Camera):
         return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
     why = str(getattr(device, "why", ""))
-    if why:
-        return Trial(name, False, why.removeprefix(f"{name}: "))  # whose it is stands before it
+    if why:  # whose it is stands before it; a screen that waits for a tablet is not broken
+        said = why.removeprefix(f"{name}: ")
+        return Trial(name, False, said, absent=reading.state == WARN)
     link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))
     if link is not None and not link.connected:
         return Trial(name, False, f"nobody answers at {link.url}.")

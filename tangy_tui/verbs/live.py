@@ -117,6 +117,8 @@ def live(
                     ascii_only=ascii_only,
                 )
             )
+        if not as_json:
+            print("Switching the robot on ...", file=sys.stderr)
         with opening(bench) as world:
             asks = who == SCRIPTED
             supervision = house.supervision(learnt, number, asks=asks, world=world)
