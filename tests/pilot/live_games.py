@@ -112,6 +112,15 @@ async def until(pilot: TangyPilot, holds: Callable[[], bool]) -> None:
             await pilot.pause(0.01)
 
 
+async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
+    """Wait until what is drawn stays as it is for five looks."""
+    looks: list[str] = []
+    async with asyncio.timeout(20):
+        while len(looks) < 5 or len(set(looks[-5:])) > 1:
+            await pilot.pause(0.05)
+            looks.append(drawn())
+
+
 async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
     """Let it do some steps, and pause."""
     await until(pilot, lambda: live(pilot)._supervision.steps >= steps)

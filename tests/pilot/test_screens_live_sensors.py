@@ -20,8 +20,16 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.live.sensing import LinkedSensors
 from tangy_tui.ui.screens.sensors import SensorsScreen
 from tangy_tui.ui.widgets.block_picture import BLOCK
-from tests.pilot.conftest import screen_text
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+from tests.pilot.conftest import SMALL, screen_text
+from tests.pilot.live_games import (
+    HeldLink,
+    live,
+    live_program,
+    live_world,
+    paused_after,
+    settled,
+    until,
+)
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -182,12 +190,13 @@ async def test_whoever_leaves_waits_for_no_answer(sensors: LinkedSensors, link: 
         await asyncio.sleep(0.05)
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["small", "large"])
+@pytest.mark.parametrize("size", [SMALL, (120, 40)], ids=["small", "large"])
 async def test_how_it_looks(
     size: tuple[int, int],
     run: Run,
     make: Callable[[], SensorsScreen],
     link: SeeingLink,
+    draw: Callable[[App[Any]], str],
     picture: Callable[[App[Any]], None],
 ) -> None:
     why = "Nothing can be seen in the picture."
@@ -200,4 +209,5 @@ async def test_how_it_looks(
         await shown(pilot, BLOCK)
         await shown(pilot, "covered for 13 min")
         await shown(pilot, "covered, 3 min old")
+        await settled(pilot, lambda: draw(pilot.app))  # a bar comes a moment after long words
         picture(pilot.app)

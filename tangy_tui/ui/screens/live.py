@@ -37,9 +37,8 @@ from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
-from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
-from tangy_tui.ui.widgets.status_line import Status, StatusLine
+from tangy_tui.ui.widgets.status_line import Status
 
 TRACK_SECONDS = 0.2
 """Between two pictures of where the robot is."""
@@ -349,7 +348,7 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        if self.query(LogView):
+        if self._shown:
             for line in self._seats.news(events, self._world.sitting):
                 self._write(line, "warn")
 
@@ -373,9 +372,9 @@ class LiveScreen(PlayScreen):
                 pass
 
     def _show_status(self) -> None:
-        if not all(self.query(kind) for kind in (RoomView, StatusLine, KeyLine)):
-            return  # the screen is going
         super()._show_status()
+        if not self._shown:
+            return
         going = self._going.is_set()
         self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self._at_rest))
 

@@ -43,8 +43,8 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
     if over:
         return play_keys.keys(going=going, over=True)
     return (
-        ("p", "pause" if going else "go on"), ("^x", "STOP"), ("i", "autonomy"),
-        ("o", "take over"), ("d", "drive"), ("c", "call again"), ("h", "help for"), ("w", "why"),
+        ("p", "pause" if going else "go on"), ("^x", "STOP"), ("c", "call again"),
+        ("h", "ask for"), ("o", "take over"), ("d", "drive"), ("i", "autonomy"), ("w", "why"),
         ("1-7", "show"), ("esc", "end"), ("?", "help"),
     )  # fmt: skip
 

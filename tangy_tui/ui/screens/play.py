@@ -29,7 +29,6 @@ from tangy_tui.ui.screens.play_keys import (
     keys,
 )
 from tangy_tui.ui.widgets.fault_list import FaultList
-from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 
@@ -267,7 +266,7 @@ class PlayScreen(PlayAsking):
                 await self._ask(supervision.question)
             owed = max(owed, supervision.seconds - before)
             if supervision.halted is not None:
-                self._left = owed if self.query_one(RoomView).going is not None else 0.0
+                self._left = owed if self._drives else 0.0
                 owed = 0.0
             if self._skipping or self._faults.urgent(events):
                 await asyncio.sleep(0)  # let the screen and the keys live
@@ -316,14 +315,18 @@ class PlayScreen(PlayAsking):
         with suppress(TimeoutError):
             await asyncio.wait_for(self._nudge.wait(), seconds / speed)
         held = self._stopped or self._supervision.halted is not None
-        caught = held and self.query_one(RoomView).going is not None
+        caught = held and self._drives
         self._left = max(0.0, until - clock()) * speed if caught else 0.0
+
+    @property
+    def _drives(self) -> bool:
+        return any(room.going is not None for room in self.query(RoomView))
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
-        if not self.query(LogView):
-            return  # the screen is going, and its panels go before its game does
+        if not self._shown:
+            return
         if self._faults.urgent(events):
             self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
@@ -352,6 +355,8 @@ class PlayScreen(PlayAsking):
             super().action_inject()
 
     def _show_status(self) -> None:
+        if not self._shown:
+            return
         asking = self._asking
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()
