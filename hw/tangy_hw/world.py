@@ -37,7 +37,6 @@ PACE_SECONDS = 30.0
 it took about as long."""
 LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
 PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
-SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
 DRIVES = ("go to user", "go to front")
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
@@ -94,7 +93,9 @@ class LiveWorld:
         self.called: list[int] = []
         self._numbers = self.activity.deck.shuffled(self._order.random)
         self.cards.view = None
-        self.requests = SeenRequests(self.people, self.link)
+        self.requests = SeenRequests(
+            self.people, self.commands, self._robot.devices.get("requests")
+        )
         self.sitting: dict[str, str] = {}
         """Who was seen at whose place in this game, where it is not who sits there usually."""
         self._due = 0.0  # when the next number may be called
@@ -143,6 +144,8 @@ class LiveWorld:
             self.broken, numbers = str(error), ()
         self._executed(behaviour, succeeded)
         self.commands.settle()
+        if not self.broken and not self.over:
+            self.requests.look_twice(self.tracker)
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
@@ -333,17 +336,11 @@ class LiveWorld:
         closed = tracker.closed
         if closed is None or self.over:
             return
-        self.requests.over(closed)
-        seat, began = self.people.index(closed) + 1, self.link.time
         try:
-            self.commands.do("answered", seat=seat)
-            self.commands.settle()
-            while closed in self.requests.all and self.link.time - began < SIGN_SECONDS:
-                self.commands.wait(LOOK_SECONDS)
-                self.commands.settle()
+            is_down = self.requests.answered(closed)
         except DeviceError:
             return
-        if closed in self.requests.all:  # it still asks: nothing that was done has ended that
+        if not is_down:  # it still asks: nothing that was done has ended that
             tracker.queue.insert(0, closed)
             tracker.closed, tracker.seen = None, seen
 

@@ -8,11 +8,12 @@ from typing import Any, cast
 import pytest
 
 from tangy_hw.devices import Pose
+from tangy_hw.requests_seen import SIGN_SECONDS
 from tangy_hw.robot_link import RobotLink
-from tangy_hw.world import PATIENCES, SIGN_SECONDS, LiveWorld
+from tangy_hw.world import PATIENCES, LiveWorld
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.faults import Remedy
-from tangy_profiles.health import Health
+from tangy_profiles.health import Health, Reading
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import FRONT, Outcome
@@ -228,6 +229,48 @@ def test_a_sign_that_stays_up_keeps_the_request_open(world: LiveWorld, link: Fak
     assert outcome.completed and outcome.response is None
     assert link.time - began >= SIGN_SECONDS
     assert world.observe().closed is None and world.observe().attended == "user1"
+
+
+def test_what_a_silent_sensor_saw_last_keeps_no_request_open(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    silent = Reading("requests", age=60.0)
+    others = (one for one in link.state.health if one.device != "requests")
+    link.state = replace(link.state, health=(*others, silent))
+    do(world, "encourage", "user1")
+    assert world.observe().closed == "user1" and world.observe().attended is None
+
+
+def test_whether_a_waiting_sign_is_down_is_certain_before_tangy_goes_on(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    link.sign(1, 3)
+    assert world.observe().user("user3").request == "AR"
+    link.meanwhile = lambda what, time: link.sign(1) if what == "perform" else None
+    do(world, "joke")
+    assert world.tracker.queue == ["user1"]
+    assert world.observe().user("user3").request == "ANR"
+
+
+def test_a_waiting_sign_that_is_hidden_for_a_moment_still_asks(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    beside(world, link, 1, LaidCard(CARD))
+    link.sign(1, 3)
+    world.observe()
+    down = link.time + 2.0
+
+    def meanwhile(what: str, time: float) -> None:
+        if what == "perform":
+            link.sign(1)
+        elif time > down:
+            link.sign(1, 3)
+
+    link.meanwhile = meanwhile
+    do(world, "encourage", "user1")
+    assert "user3" in world.tracker.queue
 
 
 def test_of_a_request_without_a_sign_it_is_not_seen_what_came_of_it(
