@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.reading import Table, nearest, read_toml
+from tangy_profiles.reading import Table, nearest, plain, read_toml
 
 LOOKS_AT = ("cards",)
 """What the profile can say that a camera looks at."""
@@ -135,6 +135,8 @@ def load_robot(name: str = "tangy") -> Robot:
     folder = Path(str(files("tangy_profiles"))) / "robots"
     shipped = {path.stem: path for path in folder.glob("*.toml")}
     if name not in shipped and not name.endswith(".toml"):
+        if Path(name).is_file():
+            raise ProfileError(plain(f"{name} is no robot: a robot's file ends in .toml."))
         raise ProfileError(f"There is no robot {name!r}: {nearest(name, shipped)}")
     path = shipped.get(name) or Path(name)
     return read_robot(read_toml(path), path)

@@ -15,10 +15,12 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
 from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
 from tangy_tui.verbs.sensors import Cameras, RobotName
+from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_hw.world import LiveWorld
     from tangy_profiles.faults import FaultBook
+    from tangy_sim.injection import Injection
     from tangy_tui.house import House
     from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -89,7 +91,7 @@ def live(
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
     if bench and (camera or requests or table):
         raise TangyError("--camera, --requests, --table: the bench brings its own; leave them out.")
-    faults = tuple(_listed(inject or []))
+    faults = _listed(inject or [])
     screen = not (headless or as_json) and common.full_screen()
     with common.open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
@@ -122,31 +124,40 @@ def live(
         with opening(bench) as world:
             asks = who == SCRIPTED
             supervision = house.supervision(learnt, number, asks=asks, world=world)
-            _play(house, supervision, games, as_json, expert=bool(expert))
+            to_their_end = _play(house, supervision, games, as_json, expert=bool(expert))
+        if not (to_their_end or bench):
+            raise typer.Exit(1)  # so that a script knows; on the bench it may be what is tried
 
 
-def _listed(given: list[str]) -> list[str]:
-    """Return the faults that were asked for: those of files line by line.
+def _listed(given: list[str]) -> tuple[Injection, ...]:
+    """Read the faults that were asked for: those of files line by line.
 
     Raises:
-        TangyError: a file cannot be read.
+        TangyError: a file cannot be read, or there is no such fault.
     """
-    found: list[str] = []
+    from tangy_sim.injection import read_injection
+
+    found: list[Injection] = []
     for text in given:
         path = Path(text)
         if not path.is_file():
-            found.append(text)
+            found.append(read_injection(text))
             continue
         try:
             lines = path.read_bytes()[:LARGEST_LIST].decode().splitlines()
         except (OSError, ValueError):
             raise TangyError(plain(f"--inject {text}: is no list of faults.")) from None
-        found += [line.strip() for line in lines if line.strip() and not line.startswith("#")]
-    return found
+        for number, line in enumerate(lines, start=1):
+            if line.strip() and not line.startswith("#"):
+                try:
+                    found.append(read_injection(line.strip()))
+                except TangyError as error:
+                    raise TangyError(plain(f"{text}, line {number}: {error}")) from None
+    return tuple(found)
 
 
 def _opening(
-    house: House, bench: bool, faults: tuple[str, ...], own: dict[str, Any], **both: Any
+    house: House, bench: bool, faults: tuple[Injection, ...], own: dict[str, Any], **both: Any
 ) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
     """Return what opens the robot, or its bench (in a hurry, if that is asked for).
 
@@ -158,15 +169,13 @@ def _opening(
         both: what both are told.
     """
     from tangy_profiles.fault_file import load_faults
-    from tangy_sim.injection import read_injection
     from tangy_tui.live.opening import open_bench, open_robot
 
     book: FaultBook = load_faults(house.robot)
-    to_come = [read_injection(text) for text in faults]
 
     def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
         if bench:
-            return open_bench(house, stepped=stepped, book=book, injections=to_come, **both)
+            return open_bench(house, stepped=stepped, book=book, injections=faults, **both)
         return open_robot(house, book=book, **own, **both)
 
     return opening
@@ -182,7 +191,8 @@ def _corners(text: str) -> tuple[tuple[float, float], ...]:
 
 def _play(
     house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
-) -> None:
+) -> bool:
+    """Play games, tell of them, and return whether all of them came to their end."""
     from tangy_tui.live.playing import LiveGames
     from tangy_tui.ui import reports
 
@@ -195,9 +205,10 @@ def _play(
     bar = reports.progress(range(games), "Playing", quiet=as_json or games < 2)
     played.play(bar, expert=expert, tell=tell)
     document = played.document()
+    to_their_end = not played.tally.stopped
     if as_json:
         common.print_json(document)
-        return
+        return to_their_end
     reports.print_tally(house, played.tally, supervision.persuasion.beliefs)
     for name in ("reads", "identities"):
         if name in document:
@@ -208,4 +219,6 @@ def _play(
         print(f"pose error: median {off['median']} m, p95 {off['p95']} m")
         print(f"real-time factor: {document['real_time_factor']}")
     if document["faults"]:
-        print(f"{len(document['faults'])} faults: `tangy log report last` tells.", file=sys.stderr)
+        faults = counted(len(document["faults"]), "fault")
+        print(f"{faults}: `tangy log report last` tells.", file=sys.stderr)
+    return to_their_end
