@@ -57,6 +57,9 @@ app = typer.Typer(
 def program(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Say the version.")] = False,
+    robot: Annotated[
+        str | None, typer.Option("--robot", help="Whose games are run: a robot, or its TOML.")
+    ] = None,
     data: Data = None,
     ascii_only: Ascii = False,
 ) -> None:
@@ -67,6 +70,8 @@ def program(
     given: dict[str, Any] = {} if data is None else {"data": str(data)}
     if ascii_only:
         given["ascii_only"] = True
+    if robot is not None:
+        given["robot"] = robot
     context.default_map = _defaults(context.command, given)
     if context.invoked_subcommand is None:
         if not full_screen():
@@ -77,7 +82,7 @@ def program(
             return
         from tangy_tui.ui.run import run_program
 
-        with open_house(data, "bingo", 4) as house:
+        with open_house(data, "bingo", 4, robot=robot or "tangy") as house:
             raise typer.Exit(run_program(house, ascii_only=ascii_only))
 
 

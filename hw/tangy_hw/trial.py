@@ -11,13 +11,18 @@ from typing import Any
 from tangy_hw.devices import Device, DeviceError, MachineClock
 from tangy_hw.driver_kinds import DRIVERS, Wiring, open_device
 from tangy_hw.drivers.camera import Camera
+from tangy_hw.perception.requests.asking import DEVICE as REQUESTS
+from tangy_hw.perception.requests.naming import requests_named
 from tangy_hw.sensors import Sources
 from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, OK, WARN
 from tangy_profiles.robot import Robot
+from tangy_profiles.room import load_room
 
 SECONDS = 5.0  # in which a device that works has said something: cameras take the longest
 TICK_SECONDS = 0.05
+SEATED = ("user1", "user2", "user3", "user4")  # who is there makes no difference to a trial
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,8 @@ async def try_robot(
         name: Camera(source, device=name) for name, source in cameras.items()
     }
     for name, driver in robot.drivers.items():
+        if name == REQUESTS:
+            continue  # no driver of these: it is tried below
         try:
             opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
         except DeviceError as error:
@@ -74,6 +81,8 @@ async def try_robot(
     finally:
         for one in reversed(started):
             await one.close()
+    if REQUESTS in robot.devices:
+        found[REQUESTS] = await _try_requests(robot, seconds)
     for name, device in robot.devices.items():
         if device.looks_at and name not in found:
             what = "nothing says where its pictures come from; name its source in"
@@ -85,6 +94,29 @@ async def try_robot(
             found[name] = Trial(name, False, what, absent=True)
     return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
             if name in found]  # fmt: skip
+
+
+async def _try_requests(robot: Robot, seconds: float) -> Trial:
+    """Open what tells who asks for help, and see that it is there."""
+    from tangy_hw.perception.requests.sources import open_requests
+
+    try:
+        name, corners = requests_named(robot)
+        if not name:
+            what = "nothing tells who asks; name a source under [drivers] in"
+            return Trial(REQUESTS, False, f"{what} {robot.file.name}.", absent=True)
+        opened = open_requests(name, load_room(), SEATED, corners=corners)
+    except TangyError as error:
+        return Trial(REQUESTS, False, str(error))
+    async with opened:
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if opened.reading().state == OK:
+                break
+            await asyncio.sleep(TICK_SECONDS)
+        works = opened.reading().state == OK
+    text = f"{name} works." if works else f"{name} cannot be reached, or tells nothing."
+    return Trial(REQUESTS, works, text)
 
 
 def _tried(

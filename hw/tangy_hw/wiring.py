@@ -21,6 +21,7 @@ from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.wayfinding import Wayfinder
+from tangy_hw.perception.requests.asking import DEVICE as REQUESTS
 from tangy_hw.perception.requests.asking import RequestSource
 from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_setup import RobotSetup, Setting
@@ -40,9 +41,11 @@ SETTLE_SECONDS = 2.0  # of real time at most
 def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict[str, Any]:
     """Return the settings of each driver: the given ones go before those of the profile.
 
-    With a base that is given, the profile's own navigation is left out: it drives the other.
+    With a base that is given, the profile's own navigation is left out: it drives the other. What
+    tells who asks is no driver of these (see `perception.requests.naming`).
     """
     own = {name: {"kind": d.kind, **d.settings} for name, d in robot.drivers.items()}
+    own.pop(REQUESTS, None)
     if "base" in given:
         own.pop("navigator", None)
     return {**own, **given}

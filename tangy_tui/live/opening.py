@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot_link import RobotLink
@@ -30,6 +30,35 @@ B = TypeVar("B", bound=BenchedWorld)
 LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
 PICTURES = 10  # of each drawn face that the bench's people are known by
 CAMERA = "camera"
+
+
+def opening_of(
+    house: House,
+    *,
+    bench: bool,
+    injections: Sequence[Injection] = (),
+    own: Mapping[str, Any] | None = None,
+    **both: Any,
+) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
+    """Return what opens the robot, or its bench (in a hurry, if that is asked for).
+
+    Args:
+        house: whose robot it is.
+        bench: its devices are simulated.
+        injections: the faults that are to come on the bench.
+        own: what only a robot that is there is told: its cameras and request sensor.
+        both: what both are told, as `open_bench` and `open_robot` have it.
+    """
+    from tangy_profiles.fault_file import load_faults
+
+    book = load_faults(house.robot)
+
+    def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
+        if bench:
+            return open_bench(house, stepped=stepped, book=book, injections=injections, **both)
+        return open_robot(house, book=book, **(own or {}), **both)
+
+    return opening
 
 
 @contextmanager
@@ -119,7 +148,9 @@ def open_robot(
 ) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile.
 
-    It stands at the front, unless it is `lost`: then it is to find its place by itself.
+    Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
+    robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
+    itself.
 
     Raises:
         TangyError: the profile names none, or the robot process does not begin.
@@ -131,7 +162,11 @@ def open_robot(
         )
     from tangy_hw.perception.faces.keeping import read_faces
     from tangy_hw.perception.faces.reader import open_reader
+    from tangy_hw.perception.requests.naming import requests_named
 
+    if not requests:
+        requests, named = requests_named(house.robot)
+        corners = corners or named
     known = read_faces(house.store, open_reader(house.robot.faces).kind)
     setup = RobotSetup(
         robot=str(house.robot.file),

@@ -93,8 +93,10 @@ class LinkedSensors:
         """Return where the data of a device comes from: a source of pictures, or a driver."""
         if device in self._sights:
             return self._sights[device][0]
+        if device == "requests":
+            return self._link.setup.requests
         if device not in self._drivers:
-            return self._link.setup.requests if device == "requests" else OWN_SOURCE
+            return OWN_SOURCE
         driver = self._drivers[device]
         kind = str(driver["kind"])
         at = self._link.screen if kind == PAGE else str(driver.get("at", ""))

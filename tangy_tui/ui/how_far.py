@@ -26,7 +26,12 @@ def how_far(house: House) -> Mapping[str, str]:
         "library": f"{len(shown)} in use, {away} put away" if away else "",
         "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
         "play": "" if kept is not None else "learn first",
+        "live": _robot_of(house) if kept is not None else "learn first",
         "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
         "policy": "" if kept is None else str(kept["name"]),
         "people": people,
     }
+
+
+def _robot_of(house: House) -> str:
+    return house.robot.title if house.robot.drivers else "on the bench: no robot is named"

@@ -16,6 +16,34 @@ Opening = Callable[[bool], "AbstractContextManager[LiveWorld]"]
 """Opens a robot, or its bench (in a hurry, if that is wanted)."""
 
 
+SWITCH_ON = (
+    "It stands at the front, facing people, with nobody close by, and somebody is near its stop "
+    "button. In the game ctrl+x stops it, too."
+)
+BENCH = (
+    "No robot is named, so its devices are simulated, and the people at the table; all else is as "
+    "in a live game. `tangy --robot FILE` names a robot."
+)
+
+
+async def play_from_home(program: Program, policy: Policy) -> None:
+    """Ask first, and play: with the robot, if its file names drivers, or on the bench."""
+    from tangy_tui.live.opening import opening_of
+    from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+
+    house = program.house
+    bench = not house.robot.drivers
+    if bench:
+        dialog = ConfirmDialog("Play on the bench?", BENCH, yes="play", no="back")
+    else:
+        question = f"Switch {house.robot.title} on?"
+        dialog = ConfirmDialog(question, SWITCH_ON, yes="switch it on, and play", no="back")
+    if await program.push_screen_wait(dialog):
+        seed = house.game_seed(None)
+        opening = opening_of(house, bench=bench, seed=seed)
+        await play_live(program, opening, policy, games=1, seed=seed, teacher="")
+
+
 async def play_live(
     program: Program, opening: Opening, policy: Policy, *, games: int, seed: int, teacher: str
 ) -> None:

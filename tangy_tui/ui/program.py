@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from contextlib import nullcontext
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from textual.app import SystemCommand
@@ -17,8 +15,10 @@ from tangy_tui.house import House, teacher_name
 from tangy_tui.learning import library, policies
 from tangy_tui.ui.eyes import Eyes
 from tangy_tui.ui.how_far import how_far
+from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
+from tangy_tui.ui.storytelling import tell_story_aside
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors
@@ -29,15 +29,8 @@ T = TypeVar("T")
 
 LONGEST_WORK = 600.0  # s for which a sentence about slow work may stand; it goes when that is done
 
-STORY_TEACHING = (2.0, 6.0, 12.0)
-"""Steps a second of the demo's three demonstrations: slow enough to read at first."""
-
 PLAYING = 20.0
 """Times life at which a game is watched unless Tangy speaks or another speed is asked for."""
-
-STORY_PLAYING = 100.0
-"""Times life of the demo's game: half an hour in about 20 s."""
-
 
 Start = Callable[["Program"], Coroutine[Any, Any, None]]
 """What the program does first, above its home screen."""
@@ -98,7 +91,9 @@ class Program(SoundingApp):
             case "sensors":
                 self._open(self.sensors())
             case "demo":
-                self._open(self._demo_aside())
+                self._open(tell_story_aside(self))
+            case "live":
+                self._open(self.live())
 
     def _open(self, way: Coroutine[Any, Any, None]) -> None:
         """Go a way that takes its time; nothing else is opened from home meanwhile."""
@@ -181,12 +176,12 @@ class Program(SoundingApp):
             return
         policy = await self.in_thread("Tangy is learning ...", lambda: learn(self.house))
         if policy is not None:
-            await self._open_policy(policy)
+            await self.open_policy(policy)
 
     async def _show_policy(self) -> None:
         policy = await self._load_policy()
         if policy is not None:
-            await self._open_policy(policy)
+            await self.open_policy(policy)
 
     async def play(
         self,
@@ -221,6 +216,12 @@ class Program(SoundingApp):
                 await self.push_screen(screen)
             else:
                 await self.push_screen_wait(screen)
+
+    async def live(self) -> None:
+        """Play a live game: with the robot whose drivers are named, else on the bench."""
+        policy = await self._load_policy()
+        if policy is not None:
+            await play_from_home(self, policy)
 
     async def drill(
         self, rounds: int | None = None, seed: int | None = None, who: str = ""
@@ -299,9 +300,10 @@ class Program(SoundingApp):
         chosen = await choose_policy(self, self.house)
         policy = None if chosen is None else await self._load_policy(chosen)
         if policy is not None:
-            await self._open_policy(policy)
+            await self.open_policy(policy)
 
-    async def _open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
+    async def open_policy(self, policy: Policy, leave_after: float | None = None) -> None:
+        """Open the screen of a policy, for so many s at most, and wait until it is left."""
         from tangy_tui.ui.screens.policy import PolicyScreen
 
         house = self.house
@@ -360,42 +362,3 @@ class Program(SoundingApp):
         finally:
             self._busy = False
             self.clear_notifications()
-
-    # ---------------------------------------------------------------------------------- demo
-
-    async def _demo_aside(self) -> None:
-        """Tell the story in a data folder of its own, so that nothing of it stays."""
-        own = self.house
-        with TemporaryDirectory(prefix="tangy-demo-") as scratch:
-            self.house = House(Path(scratch), activity=own.profile, users=len(own.people))
-            try:
-                await self.tell_story(1)
-            finally:
-                self.house.close()
-                self.house = own
-
-    async def tell_story(self, seed: int) -> None:
-        """Three demonstrations by a scripted teacher, learning, one game, what is believed."""
-        from tangy_tui.learning.scripted_teacher import SCRIPTED
-        from tangy_tui.story import learn
-        from tangy_tui.ui.screens.people import PeopleScreen
-        from tangy_tui.ui.screens.play import PlayScreen
-        from tangy_tui.ui.screens.teach import TeachScreen
-
-        house = self.house
-        teaching = house.teaching(SCRIPTED, seed)
-        for number, pace in enumerate(STORY_TEACHING):
-            complete = await self.push_screen_wait(
-                TeachScreen(house, teaching, scripted=pace, another=number > 0)
-            )
-            if not complete:
-                return
-        policy = await self.in_thread("Tangy is learning ...", lambda: learn(house))
-        if policy is None:
-            return
-        await self._open_policy(policy, leave_after=6.0)
-        supervision = house.supervision(policy, seed)
-        await self.push_screen_wait(
-            PlayScreen(house, supervision, speed=STORY_PLAYING, leave_after=3.0)
-        )
-        await self.push_screen_wait(PeopleScreen(house, leave_after=None))

@@ -9,6 +9,7 @@ from tangy_tui.house import House
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.live_games import Opening, play_live
 from tangy_tui.ui.program import Program, Start
+from tangy_tui.ui.storytelling import tell_story
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
@@ -126,7 +127,7 @@ def run_demo(house: House, *, seed: int, ascii_only: bool, voice: bool = False) 
     """Tell the whole story in the program; return the exit status."""
 
     async def start(program: Program) -> None:
-        await program.tell_story(seed)
+        await tell_story(program, seed)
         program.leave()
 
     return _run(house, start, ascii_only, voice=voice)

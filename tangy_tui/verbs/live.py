@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,8 +16,6 @@ from tangy_tui.verbs.sensors import Cameras, RobotName
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
-    from tangy_hw.world import LiveWorld
-    from tangy_profiles.faults import FaultBook
     from tangy_sim.injection import Injection
     from tangy_tui.house import House
     from tangy_tui.monitoring.supervision import Event, Supervision
@@ -84,6 +80,7 @@ def live(
     simulated devices over their own wires. Devices are watched all the time; what goes wrong is
     diagnosed, and a critical fault stops the robot until staff clear it.
     """
+    from tangy_hw.perception.requests.naming import read_corners
     from tangy_tui.learning.policies import need_policy
 
     who = who_answers(teacher, expert)
@@ -97,14 +94,15 @@ def live(
         need_policy(house.store, house.activity, policy)
         learnt = recall(house, policy, quiet=as_json)
         number = house.game_seed(seed)
-        if map_:
-            from tangy_tui.live.opening import check_map
+        from tangy_tui.live.opening import check_map, opening_of
 
+        if map_:
             check_map(house, map_)
         own = {
-            "cameras": camera or (), "requests": requests, "corners": _corners(table),
+            "cameras": camera or (), "requests": requests, "corners": read_corners(table),
         }  # fmt: skip
-        opening = _opening(house, bench, faults, own, seed=number, pace=pace, map_=map_, lost=lost)
+        both: dict[str, Any] = {"seed": number, "pace": pace, "map_": map_, "lost": lost}
+        opening = opening_of(house, bench=bench, injections=faults, own=own, **both)
         if screen:
             from tangy_tui.ui.run import run_live
 
@@ -154,39 +152,6 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
                 except TangyError as error:
                     raise TangyError(plain(f"{text}, line {number}: {error}")) from None
     return tuple(found)
-
-
-def _opening(
-    house: House, bench: bool, faults: tuple[Injection, ...], own: dict[str, Any], **both: Any
-) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
-    """Return what opens the robot, or its bench (in a hurry, if that is asked for).
-
-    Args:
-        house: whose robot it is.
-        bench: its devices are simulated.
-        faults: that are to come on the bench.
-        own: what only a robot that is there is told: its cameras and request sensor.
-        both: what both are told.
-    """
-    from tangy_profiles.fault_file import load_faults
-    from tangy_tui.live.opening import open_bench, open_robot
-
-    book: FaultBook = load_faults(house.robot)
-
-    def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
-        if bench:
-            return open_bench(house, stepped=stepped, book=book, injections=faults, **both)
-        return open_robot(house, book=book, **own, **both)
-
-    return opening
-
-
-def _corners(text: str) -> tuple[tuple[float, float], ...]:
-    if not text:
-        return ()
-    from tangy_tui.verbs.requests import read_corners
-
-    return tuple(read_corners(text))
 
 
 def _play(

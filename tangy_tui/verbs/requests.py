@@ -41,6 +41,7 @@ def requests(
 
     The status is 0 if the source was there in the end, and 1 if it was not.
     """
+    from tangy_hw.perception.requests.naming import read_corners
     from tangy_hw.perception.requests.sources import open_requests
     from tangy_profiles.health import OK
     from tangy_profiles.person import load_people
@@ -98,15 +99,3 @@ async def _listen(
 def _row(ask: Ask, began: float) -> dict[str, Any]:
     since = round(ask.since - began, 2)
     return {"seat": ask.seat, "person": ask.person, "since": since, "sure": round(ask.sure, 2)}
-
-
-def read_corners(text: str) -> list[tuple[float, float]]:
-    try:
-        numbers = [float(word) for word in text.split(",")] if text else []
-    except ValueError:
-        numbers = [0.0]
-    if len(numbers) not in (0, 8) or any(
-        abs(number) > 1e5 or number != number for number in numbers
-    ):
-        raise TangyError("--table must be eight numbers with commas: x,y of four corners.")
-    return list(zip(numbers[::2], numbers[1::2], strict=True))

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
 import pytest
 
+from tangy_hw.world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policies import keep_policy
+from tangy_tui.learning.policy import Policy
+from tangy_tui.live import opening
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.teach import TeachScreen
-from tests.pilot.conftest import Run, StillClock
+from tests.pilot.conftest import Run, StillClock, screen_text
+from tests.pilot.live_games import HeldLink, live, live_world, until
 
 
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])
@@ -46,3 +55,40 @@ async def test_stop_at_home_says_that_nothing_moves(
         await pilot.pause()
         await pilot.press("ctrl+x")
         assert said == ["Nothing is moving."]
+
+
+async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
+    run: Run, house: House, policy: Policy, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep_policy(house.store, policy)
+    link, opened = HeldLink(), list[bool]()
+
+    @contextmanager
+    def bench(_: House, **__: Any) -> Iterator[LiveWorld]:
+        opened.append(True)
+        yield live_world(house, link)
+        opened.append(False)
+
+    monkeypatch.setattr(opening, "open_bench", bench)
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await until(pilot, lambda: "no robot is named" in screen_text(pilot.app))
+        for answer in ("n", "y"):
+            assert opened == []
+            await pilot.press("v")
+            await until(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
+            await pilot.press(answer)
+            await until(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
+        await until(pilot, lambda: len(pilot.app.screen_stack) == 2)
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        assert opened == [True]
+        await pilot.press("escape")
+        await until(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
+        await pilot.press("y")
+        await until(pilot, lambda: opened == [True, False])
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+async def test_v_needs_something_that_was_learnt(run: Run, house: House) -> None:
+    async with run(app=Program(house, clock=StillClock())) as pilot:
+        await pilot.press("v")
+        await until(pilot, lambda: "has not learnt" in screen_text(pilot.app))

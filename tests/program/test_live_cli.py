@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 
@@ -49,3 +50,24 @@ def test_a_map_of_another_room_is_refused_with_the_place_that_is_not_on_it(
     assert "the front (5, 1.2) cannot be driven to on it." in refusal(
         house, tmp_path / "other.yaml"
     )
+
+
+def test_a_list_of_faults_is_refused_with_the_line_that_is_none(
+    tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
+) -> None:
+    faults = tmp_path / "faults"
+    faults.write_text("# for the afternoon\ncamera-frozen@3\n\ncamera-frosen\n", encoding="utf-8")
+    done = tangy("live", "--bench", "--inject", faults)
+    assert done.returncode == 2
+    assert f"{faults}, line 4: There is no fault 'camera-frosen'" in done.stderr
+
+
+def test_a_robot_is_a_toml_file(
+    tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
+) -> None:
+    notes = tmp_path / "robot.md"
+    notes.write_text("# Our robot\n", encoding="utf-8")
+    for words in (("live", "--robot", notes), ("--robot", notes, "live")):
+        done = tangy(*words)
+        assert done.returncode == 2
+        assert done.stderr == f"tangy: {notes} is no robot: a robot's file ends in .toml.\n"

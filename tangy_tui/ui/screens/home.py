@@ -41,6 +41,7 @@ CHOICES = (
     Choice("i", "Library", "all demonstrations: look, mend, delete"),
     Choice("l", "Learn", "make a policy from what was shown"),
     Choice("p", "Play", "let Tangy run the activity"),
+    Choice("v", "Live", "run it with the robot, or on its bench"),
     Choice("r", "Rehearse", "practise what to do when things go wrong"),
     Choice("o", "Policy", "what Tangy does in which situation"),
     Choice("e", "People", "who takes part, and what persuades them"),
@@ -61,7 +62,7 @@ class Menu(Widget, can_focus=True):
 
     COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
     DEFAULT_CSS = """
-    Menu { height: 1fr; padding: 1 2; }
+    Menu { height: 1fr; padding: 1 2 0 2; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "move(-1)", "Up", show=False),
