@@ -17,7 +17,7 @@ from tangy_profiles.faults import FaultBook, Remedy
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.compliance import Preferences
 from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import AT_ONCE, KINDS, WAITING, Kind
+from tangy_sim.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, Kind
 
 LATEST = 30
 """Steps among which the one is drawn from which a fault may come; few games have fewer."""
@@ -52,7 +52,8 @@ class Induced:
     @property
     def could_show(self) -> bool:
         """Whether there was something to be noticed of it."""
-        return not self.hidden and (self.kind.shows != WAITING or self.lifted is not None)
+        once = self.kind.shows in (WAITING, MOVING_ON)  # is over as soon as it has come about
+        return not self.hidden and (not once or self.lifted is not None)
 
 
 def recovery_of(kind: Kind, book: FaultBook) -> str:

@@ -238,6 +238,30 @@ class TestPeople:
         world.step(25.0)
         assert player.marked == 0
 
+    def test_what_comes_to_nothing_completes_no_line(self) -> None:
+        world = opened()
+        world.inject("no-effect")
+        deck = ACTIVITY.deck
+        line = next(line for line in deck.lines if not line & deck.free)
+        last = line & -line
+        asks(world, "user4", called=line, marked=line & ~last)
+        assert world.people.judged("user4") == "missing numbers"
+        player = world.people.sitters["user4"].player
+        say(world, "mark numbers", "User 4", *player.cells(last))
+        world.step(25.0)
+        assert player.marked & last and player.marked != line
+        assert world.people.judged("user4") == "missing numbers"
+        assert "no-effect" not in world.faults
+
+    def test_what_cannot_come_to_nothing_waits_for_another_time(self) -> None:
+        world = opened()
+        world.inject("no-effect")
+        asks(world, "user4", called=0b1, marked=0)
+        player = world.people.sitters["user4"].player
+        say(world, "mark numbers", "User 4", *player.cells(0b1))
+        world.step(25.0)
+        assert player.marked == 0b1 and "no-effect" in world.faults
+
     def test_a_dead_voice_is_not_heard_and_may_come_back_when_switched_on_again(self) -> None:
         came = Counter[bool]()
         for seed in range(30):

@@ -281,7 +281,7 @@ class People:
         if asked and self._faults.concerns("never-complies", sitter.id):
             self._refuses(sitter, response)
             return
-        vain = behaviour.effect in _CORRECTS and self._faults.lift("no-effect")
+        vain = behaviour.effect in _CORRECTS and "no-effect" in self._faults
         seconds = _shown(response.seconds, response.complied, patience)
         self.game.responses.append(response._replace(seconds=seconds))
         self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard, vain))
@@ -298,6 +298,7 @@ class People:
     def _does(self, sitter: Sitter, behaviour: Behaviour, heard: Heard, vain: bool) -> None:
         """Do what was asked; in vain, if the same is wrong with another number then."""
         player, before = sitter.player, sitter.player.marked
+        judged = self.judged(sitter.id)
         named = sum(1 << player.cell[n] for n in heard.numbers if n in player.cell)
         match behaviour.effect:
             case "bring card closer":
@@ -312,8 +313,8 @@ class People:
                 others = player.marked & player.called & ~named & ~self.activity.deck.free
             case _:
                 others = 0
-        if vain:
-            player.marked ^= _one_of(others, len(player.numbers), self._chance)
+        if vain and self._spoils(sitter, others, judged):
+            self._faults.lift("no-effect")
         if behaviour.closes == "always":
             self._closed(sitter)
         elif (
@@ -322,6 +323,21 @@ class People:
             and self.judged(sitter.id) == self.activity.card_states[-1].name
         ):
             self._after(TURNS_DOWN, partial(self._closed, sitter))
+
+    def _spoils(self, sitter: Sitter, cells: int, judged: str) -> bool:
+        """Let one of some cells be wrong so that the card is judged as before, if one can be.
+
+        Where what was asked for completes a line, not every cell can.
+        """
+        player = sitter.player
+        order = [1 << cell for cell in range(len(player.numbers)) if cells >> cell & 1]
+        first = int(self._chance() * len(order))
+        for cell in (*order[first:], *order[:first]):
+            player.marked ^= cell
+            if self.judged(sitter.id) == judged:
+                return True
+            player.marked ^= cell
+        return False
 
     def _lay(self, sitter: Sitter) -> None:
         sitter.hides = ""
@@ -365,12 +381,6 @@ class People:
     def _after(self, between: tuple[float, float], happens: Callable[[], object]) -> None:
         low, high = between
         self._agenda.at(self.now + low + (high - low) * self._moments(), happens)
-
-
-def _one_of(cells: int, count: int, uniform: Callable[[], float]) -> int:
-    """Return one of the cells of a mask, as a mask; 0 if it has none."""
-    there = [cell for cell in range(count) if cells >> cell & 1]
-    return 1 << there[int(uniform() * len(there))] if there else 0
 
 
 def _shown(seconds: float, complied: bool, patience: float) -> float:

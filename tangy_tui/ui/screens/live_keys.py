@@ -9,7 +9,7 @@ from tangy_tui.ui.screens import play_keys
 NOT_LIVE = ("one_step", "speed", "skip", "talk")
 """What can be done in a simulated game, and not to a robot among people."""
 
-ALONE, UNSURE, EVERY = "alone", "asks when unsure", "asks before everything"
+ALONE, UNSURE, EVERY = "alone", "asks when unsure", "asks each time"
 AUTONOMY = (ALONE, UNSURE, EVERY)
 """How much the robot does of itself; a key turns the dial."""
 
