@@ -98,6 +98,8 @@ class LiveWorld:
         )
         self.sitting: dict[str, str] = {}
         """Who was seen at whose place in this game, where it is not who sits there usually."""
+        self.accounted = self.link.time
+        """Until when the time of the game was told, by outcomes and remedies."""
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -146,6 +148,7 @@ class LiveWorld:
         self.commands.settle()
         if not self.broken and not self.over:
             self.requests.look_twice(self.tracker)
+        self.accounted = self.link.time
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
@@ -383,5 +386,11 @@ class LiveWorld:
         return self.link.health()
 
     def recover(self, remedy: Remedy) -> float:
-        """Let the robot, a user or an expert do something about a fault; return the s it took."""
-        return self._remedies.do(remedy)
+        """Let the robot, a user or an expert do something about a fault; return the s it took.
+
+        The time for which the robot stood still before, while staff acted, counts with it.
+        """
+        stood = max(0.0, self.link.time - self.accounted)
+        took = self._remedies.do(remedy)
+        self.accounted = self.link.time
+        return stood + took

@@ -237,6 +237,7 @@ class BenchedWorld(LiveWorld):
             with suppress(DeviceError):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
             self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
+        self.accounted = self.link.time
         return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted

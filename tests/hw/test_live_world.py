@@ -486,6 +486,17 @@ def test_looking_again_plans_anew_and_looks_round_where_only_that_shows_it(
     assert link.told[-1] == "release"
 
 
+def test_the_time_for_which_it_stood_still_counts_when_staff_are_done(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    opened(world)
+    link.time += 90.0  # somebody came, and pushed a cable back in
+    assert 90.0 <= world.recover(Remedy("call expert", "laser-disconnected", "laser")) < 95.0
+    link.time += 30.0
+    assert 30.0 <= world.recover(Remedy("look again", "laser-disconnected", "laser")) < 40.0
+    assert world.recover(Remedy("look again", "laser-disconnected", "laser")) < 10.0
+
+
 def test_what_was_called_off_and_is_never_answered_is_given_up(
     world: LiveWorld, link: FakeLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
