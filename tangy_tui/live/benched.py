@@ -216,10 +216,11 @@ class BenchedWorld(LiveWorld):
             if kind.name not in self.present:
                 self.inject(kind.name)
         if remedy.kind == "call expert":
+            since = self.accounted
             if self.link.silent or self.link.state.failed:
                 super().recover(remedy)
                 self._open_tablet()
-            return self._expert_comes(remedy)
+            return self._expert_comes(remedy, since)
         if remedy.kind == "other requests":
             self._listens = True
         if remedy.kind == "restart":
@@ -227,8 +228,7 @@ class BenchedWorld(LiveWorld):
             self._switch_tablet()
         return super().recover(remedy)
 
-    def _expert_comes(self, remedy: Remedy) -> float:
-        began = self.link.time
+    def _expert_comes(self, remedy: Remedy, since: float) -> float:
         for kind in self.bench.do("mend", fault=remedy.fault)["lifted"]:
             if kind == "navigation-failed":
                 self.link.do("fail", device="navigator", state="OK")
@@ -238,7 +238,7 @@ class BenchedWorld(LiveWorld):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
             self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
         self.accounted = self.link.time
-        return max(0.0, self.link.time - began)
+        return max(0.0, self.link.time - since)
 
     # ------------------------------------------------------------------------ what is counted
 
