@@ -35,6 +35,7 @@ PHYSICS = 0.05  # s, a step of everything but the wheels, which take smaller one
 ARRIVES, LEAVES = 0.4, 0.7  # m from where it stands for a place: it is there, it is there no more
 STANDS = 0.1  # m/s below which a robot that passes may have arrived
 AHEAD = 1.3  # m before a driving robot at which a chair is put
+STRAIGHT = 0.1  # rad/s up to which it drives straight on
 NOD = "head/neck nod"
 LOOKS_DOWN = -10.0  # degrees of the neck from which cards are looked at
 FACES_IT = 25.0  # degrees off the direction of the table
@@ -280,9 +281,11 @@ class BenchWorld:
                 self.floor.tidy()
 
     def _place_chair(self) -> None:
-        """Put a chair before the robot, as soon as it drives and there is room for one."""
+        """Put a chair before the robot, as soon as it drives straight on and there is room."""
         fault = self.faults.present.get("path-detour")
         if fault is None or fault.shown or self.wheels.forward < 0.2:
+            return
+        if abs(self.wheels.turn) > STRAIGHT:  # in a bend, ahead is not where it goes
             return
         fault.shown = self.floor.drop_ahead(self.wheels.pose, AHEAD)
 
