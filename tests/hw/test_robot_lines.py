@@ -10,6 +10,7 @@ from typing import Any, cast
 from unittest.mock import patch
 
 import numpy as np
+import pytest
 
 from tangy_hw import robot as robots
 from tangy_hw import robot_child
