@@ -80,9 +80,11 @@ def program(
             print(f"No screens here ({terminal_kind().reason}): try `tangy teach --plain`.\n")
             print(context.get_help())
             return
+        from tangy_profiles.fault_file import load_faults
         from tangy_tui.ui.run import run_program
 
         with open_house(data, "bingo", 4, robot=robot or "tangy") as house:
+            load_faults(house.robot)  # what is wrong with its file is said before a screen opens
             raise typer.Exit(run_program(house, ascii_only=ascii_only))
 
 

@@ -38,6 +38,7 @@ class SeenRequests:
         self._by_word: dict[str, float] = {}
         self._without_sign: dict[str, float] = {}
         self._aside: set[str] = set()
+        self._unseen: set[str] = set()  # whose signs a sensor showed last that then fell silent
 
     @property
     def signs(self) -> dict[str, float]:
@@ -50,7 +51,10 @@ class SeenRequests:
         """Who asks, by a sign that was not set aside or by word, and since when."""
         signs = self.signs
         self._aside &= signs.keys()  # who has turned the sign down may put it up again
-        return {p: since for p, since in signs.items() if p not in self._aside} | self._by_word
+        if self._unseen and self._sees:
+            self._unseen.clear()
+        aside = self._aside | self._unseen
+        return {p: since for p, since in signs.items() if p not in aside} | self._by_word
 
     def ask_for(self, person: str) -> None:
         """Ask on behalf of somebody who has no sign."""
@@ -69,7 +73,7 @@ class SeenRequests:
         """Say that what somebody asked for is done, and whether their sign is down then.
 
         It is waited for a while. What a sensor that fell silent saw last does not count: the sign
-        is then left at that.
+        is then left at that until it sees again.
         """
         self.over(person)
         began = self._link.time
@@ -78,7 +82,7 @@ class SeenRequests:
         while person in self.all and self._link.time - began < SIGN_SECONDS:
             self._look()
         if person in self.all and not self._sees:
-            self.set_aside(person)
+            self._unseen.add(person)
         return person not in self.all
 
     def look_twice(self, tracker: Tracker) -> None:

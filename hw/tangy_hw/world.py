@@ -33,8 +33,7 @@ from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
 
 PACE_SECONDS = 30.0
-"""From one call to the next at least, so that everybody can look and mark; in the paper's games
-it took about as long."""
+"""From one call to the next at least, so that all can look and mark; about as in the paper."""
 LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
 PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
 DRIVES = ("go to user", "go to front")
@@ -98,8 +97,7 @@ class LiveWorld:
         )
         self.sitting: dict[str, str] = {}
         """Who was seen at whose place in this game, where it is not who sits there usually."""
-        self.accounted = self.link.time
-        """Until when the time of the game was told, by outcomes and remedies."""
+        self._halted = 0.0  # since when it stands halted, 0: it does not
         self._due = 0.0  # when the next number may be called
 
     def begin(self) -> ActivityState:
@@ -148,7 +146,6 @@ class LiveWorld:
         self.commands.settle()
         if not self.broken and not self.over:
             self.requests.look_twice(self.tracker)
-        self.accounted = self.link.time
         return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
 
     def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
@@ -388,9 +385,17 @@ class LiveWorld:
     def recover(self, remedy: Remedy) -> float:
         """Let the robot, a user or an expert do something about a fault; return the s it took.
 
-        The time for which the robot stood still before, while staff acted, counts with it.
+        The time for which a halted robot stood still before, while staff acted, counts with it.
         """
-        stood = max(0.0, self.link.time - self.accounted)
-        took = self._remedies.do(remedy)
-        self.accounted = self.link.time
-        return stood + took
+        if remedy.kind == "halt":
+            self._halted = self._halted or self.link.time
+            return self._remedies.do(remedy)
+        took = self.stood() + self._remedies.do(remedy)
+        self._halted = self.link.time if self._halted and remedy.kind != "resume" else 0.0
+        return took
+
+    def stood(self) -> float:
+        """Return for how long the robot has stood halted, in s, since this was asked last."""
+        since, now = self._halted, self.link.time
+        self._halted = now if since else 0.0
+        return max(0.0, now - since) if since else 0.0

@@ -216,11 +216,11 @@ class BenchedWorld(LiveWorld):
             if kind.name not in self.present:
                 self.inject(kind.name)
         if remedy.kind == "call expert":
-            since = self.accounted
+            stood = self.stood()
             if self.link.silent or self.link.state.failed:
                 super().recover(remedy)
                 self._open_tablet()
-            return self._expert_comes(remedy, since)
+            return stood + self._expert_comes(remedy)
         if remedy.kind == "other requests":
             self._listens = True
         if remedy.kind == "restart":
@@ -228,7 +228,8 @@ class BenchedWorld(LiveWorld):
             self._switch_tablet()
         return super().recover(remedy)
 
-    def _expert_comes(self, remedy: Remedy, since: float) -> float:
+    def _expert_comes(self, remedy: Remedy) -> float:
+        began = self.link.time
         for kind in self.bench.do("mend", fault=remedy.fault)["lifted"]:
             if kind == "navigation-failed":
                 self.link.do("fail", device="navigator", state="OK")
@@ -237,8 +238,8 @@ class BenchedWorld(LiveWorld):
             with suppress(DeviceError):
                 self.link.do("wait", seconds=EXPERT_SECONDS)
             self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
-        self.accounted = self.link.time
-        return max(0.0, self.link.time - since)
+        self.stood()  # that time is told here
+        return max(0.0, self.link.time - began)
 
     # ------------------------------------------------------------------------ what is counted
 

@@ -51,9 +51,8 @@ def opening_of(
     """
     from tangy_profiles.fault_file import load_faults
 
-    book = load_faults(house.robot)
-
     def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
+        book = load_faults(house.robot)
         if bench:
             return open_bench(house, stepped=stepped, book=book, injections=injections, **both)
         return open_robot(house, book=book, **(own or {}), **both)
@@ -164,9 +163,8 @@ def open_robot(
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_hw.perception.requests.naming import requests_named
 
-    if not requests:
-        requests, named = requests_named(house.robot)
-        corners = corners or named
+    name, named = requests_named(house.robot)
+    requests, corners = requests or name, corners or named
     known = read_faces(house.store, open_reader(house.robot.faces).kind)
     setup = RobotSetup(
         robot=str(house.robot.file),

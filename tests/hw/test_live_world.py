@@ -490,11 +490,16 @@ def test_the_time_for_which_it_stood_still_counts_when_staff_are_done(
     world: LiveWorld, link: FakeLink
 ) -> None:
     opened(world)
+    link.time += 60.0  # it was paused: that is no fault's
+    world.recover(Remedy("halt", "laser-disconnected", "laser"))
     link.time += 90.0  # somebody came, and pushed a cable back in
     assert 90.0 <= world.recover(Remedy("call expert", "laser-disconnected", "laser")) < 95.0
     link.time += 30.0
     assert 30.0 <= world.recover(Remedy("look again", "laser-disconnected", "laser")) < 40.0
     assert world.recover(Remedy("look again", "laser-disconnected", "laser")) < 10.0
+    world.recover(Remedy("resume", "laser-disconnected", "laser"))
+    link.time += 60.0
+    assert world.recover(Remedy("replan", "path-blocked", "navigator")) < 10.0
 
 
 def test_what_was_called_off_and_is_never_answered_is_given_up(

@@ -313,7 +313,7 @@ class People:
                 others = player.marked & player.called & ~named & ~self.activity.deck.free
             case _:
                 others = 0
-        if vain and self._spoils(sitter, others, judged):
+        if vain and "no-effect" in self._faults and self._spoils(sitter, others, judged):
             self._faults.lift("no-effect")
         if behaviour.closes == "always":
             self._closed(sitter)

@@ -12,7 +12,7 @@ from tangy_profiles.robot import Robot
 Corners = tuple[tuple[float, float], ...]
 """Of the table in the camera's picture, in pixels; none where that does not matter."""
 
-KINDS = ("keyboard", "buttons", "mqtt", "signs")
+KINDS = ("buttons", "mqtt", "signs")
 
 
 def read_corners(text: str, what: str = "--table") -> Corners:
@@ -34,8 +34,8 @@ def requests_named(robot: Robot) -> tuple[str, Corners]:
     """Return the source of requests that a robot's file names, as `open_requests` takes it.
 
     `requests = { kind = "signs", at = "/dev/video2", table = "X,Y,..." }` under [drivers], or of
-    the kind buttons (`at`: the box, where there are several), mqtt (`at` mqtt://HOST/TOPIC) or
-    keyboard. "" where it names none.
+    the kind buttons (`at`: the box, where there are several) or mqtt (`at` mqtt://HOST/TOPIC). ""
+    where it names none.
 
     Raises:
         RequestError: it is named wrongly.
@@ -47,16 +47,24 @@ def requests_named(robot: Robot) -> tuple[str, Corners]:
     if driver.kind not in KINDS:
         wrong = f"{driver.kind!r} tells no requests; {nearest(driver.kind, KINDS)}"
         raise RequestError(plain(f"{where}: {wrong}"))
-    given = {key: str(value) for key, value in driver.settings.items()}
-    at, table = given.pop("at", ""), given.pop("table", "")
+    where = f"{where} ({driver.kind})"
+    given = {
+        key: f"{value:g}" if isinstance(value, float) else str(value)  # a camera's number
+        for key, value in driver.settings.items()
+    }
     for key in given:
-        raise RequestError(plain(f"{where} ({driver.kind}): {key} is no setting of it."))
-    if not at and driver.kind in ("mqtt", "signs"):
-        raise RequestError(f"{where} ({driver.kind}): at is missing.")
+        if key != "at" and (key, driver.kind) != ("table", "signs"):
+            raise RequestError(plain(f"{where}: {key} is no setting of it."))
+    at, table = given.get("at", ""), given.get("table", "")
+    if not at and driver.kind != "buttons":
+        raise RequestError(f"{where}: at is missing.")
     if driver.kind == "mqtt":
+        if not at.startswith(("mqtt://", "mqtts://")):
+            raise RequestError(plain(f"{where}: at = {at!r} must be mqtt://HOST/TOPIC."))
         return at, ()
     if driver.kind == "signs":
         if "://" not in at and not at.isdecimal():
             at = str(Path(robot.file.parent, at))
         return f"signs:{at}", read_corners(table, f"{where}: table")
-    return f"{driver.kind}:{at}" if at and driver.kind == "buttons" else driver.kind, ()
+    at = at.removeprefix("buttons:")
+    return f"buttons:{at}" if at else "buttons", ()
