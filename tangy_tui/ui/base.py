@@ -7,6 +7,7 @@ from typing import Any, ClassVar, TypeVar
 
 from textual import events
 from textual.binding import Binding, BindingType
+from textual.messages import Prune
 from textual.screen import ModalScreen, Screen
 from textual.strip import Strip
 from textual.widget import Widget
@@ -100,6 +101,10 @@ class TangyScreen(Screen[ResultT]):
         """Dismiss the screen with a result, unless it is covered or has been dismissed already."""
         if self.is_active:
             self.dismiss(result)
+
+    async def on_prune(self, event: Prune) -> None:
+        """End what goes on beside the screen before its panels go: it writes on them."""
+        self.workers.cancel_node(self)
 
     def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
         """Remember whether the keys were the screen's own, so that they are so again."""

@@ -348,9 +348,8 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        if self._shown:
-            for line in self._seats.news(events, self._world.sitting):
-                self._write(line, "warn")
+        for line in self._seats.news(events, self._world.sitting):
+            self._write(line, "warn")
 
     def _track(self) -> None:
         """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
@@ -373,8 +372,6 @@ class LiveScreen(PlayScreen):
 
     def _show_status(self) -> None:
         super()._show_status()
-        if not self._shown:
-            return
         going = self._going.is_set()
         self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self._at_rest))
 

@@ -320,13 +320,11 @@ class PlayScreen(PlayAsking):
 
     @property
     def _drives(self) -> bool:
-        return any(room.going is not None for room in self.query(RoomView))
+        return self.query_one(RoomView).going is not None
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
         self._tally.add(events)
-        if not self._shown:
-            return
         if self._faults.urgent(events):
             self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
@@ -355,8 +353,6 @@ class PlayScreen(PlayAsking):
             super().action_inject()
 
     def _show_status(self) -> None:
-        if not self._shown:
-            return
         asking = self._asking
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()

@@ -26,26 +26,12 @@ from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable
 from tangy_tui.ui.widgets.posteriors import Posteriors
-from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
 
 CHOOSABLE = ("transcript", "policy", "posteriors", "log", "faults")
 ON_THE_LEFT = ("log", "faults")
 """Panels that live under the room; where one is seen at a time they take the others' place."""
-
-WRITTEN_ON = {
-    StatusLine,
-    FaultBanner,
-    RoomView,
-    FaultList,
-    LogView,
-    Transcript,
-    PolicyTable,
-    Posteriors,
-    KeyLine,
-}
-"""What a game writes on as it goes."""
 
 
 class PlayPanels(TangyScreen[Tally]):
@@ -64,11 +50,6 @@ class PlayPanels(TangyScreen[Tally]):
         self._faults = FaultConsole(
             self, house, supervision, who, tell=self._tell, failed=self._fail
         )
-
-    @property
-    def _shown(self) -> bool:
-        """Whether all panels are there; as a screen goes, they go before what writes on them."""
-        return {type(widget) for widget in self.walk_children()} >= WRITTEN_ON
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""
