@@ -18,7 +18,7 @@ from tangy_hw.drivers.camera_source import CameraError, CameraSource, find_camer
 from tangy_hw.drivers.camera_state import State
 from tests.hw.pictures import room, seen
 from tests.real.camera_server import CameraServer
-from tests.real.conftest import PATIENCE, TANGY
+from tests.support.terminal import PATIENCE, TANGY
 
 PICTURES = [seen(room(60 + number, 160, 120), np.random.default_rng(number)) for number in range(6)]
 

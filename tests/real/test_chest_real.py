@@ -14,7 +14,7 @@ from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tests.hw.waiting import until
 from tests.real.browser import CHROMIUM, Browser, Tab, chromium
-from tests.real.conftest import PATIENCE
+from tests.support.terminal import PATIENCE
 
 pytestmark = [
     pytest.mark.slow,

@@ -19,7 +19,7 @@ from tangy_tui.live.opening import open_bench
 from tangy_tui.monitoring.fault import Diagnosed
 from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tests.real.conftest import TANGY, Terminal
+from tests.support.terminal import TANGY, Terminal
 
 pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 

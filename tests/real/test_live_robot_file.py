@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tangy_tui.live.bench import Bench
-from tests.real.conftest import TANGY, Terminal
 from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
+from tests.support.terminal import TANGY, Terminal
 
 ROOT = Path(__file__).parents[2]
 PROFILE = ROOT / "profiles/tangy_profiles/robots/tangy.toml"

@@ -18,7 +18,7 @@ import pytest
 from tangy_hw.sound.sources import SOCKET_NAME, open_source
 from tangy_hw.sound.wav import RATE
 from tests.hw.sounds import wav
-from tests.real.conftest import PATIENCE, TANGY, Terminal
+from tests.support.terminal import PATIENCE, TANGY, Terminal
 
 if TYPE_CHECKING:
     from tests.real.conftest import OpenTerminal

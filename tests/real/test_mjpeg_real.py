@@ -14,7 +14,7 @@ from tangy_hw.drivers.camera_source import find_camera
 from tangy_sim.wires.mjpeg_server import MjpegServer
 from tests.hw.pictures import encoded, room, seen
 from tests.hw.waiting import until
-from tests.real.conftest import PATIENCE
+from tests.support.terminal import PATIENCE
 
 RATE = 15.0
 

@@ -17,7 +17,7 @@ from tangy_profiles.health import OK, STALE
 from tangy_profiles.room import load_room
 from tests.hw.signs import CORNERS, sequence
 from tests.real.broker import Broker
-from tests.real.conftest import PATIENCE
+from tests.support.terminal import PATIENCE
 
 PEOPLE = ("ada", "ben", "cleo", "dot")
 

@@ -19,7 +19,7 @@ from tangy_sim.wires.mjpeg_server import MjpegServer
 from tangy_sim.wires.scip_server import ScipServer
 from tests.hw.pictures import encoded, room, seen
 from tests.hw.waiting import until
-from tests.real.conftest import PATIENCE, TANGY
+from tests.support.terminal import PATIENCE, TANGY
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ from tangy_hw.drivers.scip import ScipLaser
 from tangy_sim.wires.scip_server import ScipServer
 from tangy_sim.wires.scip_session import URG, UTM, Scanner
 from tests.hw.waiting import until
-from tests.real.conftest import PATIENCE
+from tests.support.terminal import PATIENCE
 
 pytestmark = pytest.mark.slow
 

@@ -19,7 +19,7 @@ from tangy_profiles.robot import load_robot
 from tangy_sim.card_frames import CardCamera, View
 from tests.hw.pictures import room, seen
 from tests.real.camera_server import CameraServer
-from tests.real.conftest import PATIENCE
+from tests.support.terminal import PATIENCE
 
 MARKED = 0b00100_01010_10001_00000_11111
 

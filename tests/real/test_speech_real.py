@@ -30,8 +30,8 @@ from tangy_tui.learning.speech.recogniser import WORKER, Recogniser, SpeechUnava
 from tangy_tui.learning.speech.understanding import understand, wanted
 from tangy_tui.learning.verifying import Say, Stop
 from tests.hw.sounds import wav
-from tests.real.conftest import PATIENCE, ended
 from tests.real.voices import FESTIVAL, NOISES, Voices
+from tests.support.terminal import PATIENCE, ended
 
 pytestmark = [
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),

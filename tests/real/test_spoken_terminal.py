@@ -15,11 +15,12 @@ import pytest
 
 from tangy_hw.sound.wav import RATE
 from tests.hw.sounds import wav
-from tests.real.conftest import PATIENCE, ended
 from tests.real.voices import Voices
+from tests.support.terminal import PATIENCE, ended
 
 if TYPE_CHECKING:
-    from tests.real.conftest import OpenTerminal, Terminal, Tmux
+    from tests.real.conftest import OpenTerminal
+    from tests.support.terminal import Terminal, Tmux
 
 pytestmark = [
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),

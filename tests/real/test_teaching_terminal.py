@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from tests.real.conftest import OpenTerminal, Tmux
+    from tests.real.conftest import OpenTerminal
+    from tests.support.terminal import Tmux
 
 
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (160, 45)])

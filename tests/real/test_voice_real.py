@@ -23,7 +23,8 @@ from tangy_hw.sound.synthesis import NoSuchVoice, Synthesiser, examine_voice, wa
 from tangy_hw.sound.voice import Voice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
-from tests.real.conftest import PATIENCE, TANGY, OpenTerminal
+from tests.real.conftest import OpenTerminal
+from tests.support.terminal import PATIENCE, TANGY
 
 pytestmark = [
     pytest.mark.skipif(

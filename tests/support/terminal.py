@@ -1,0 +1,186 @@
+"""Real terminals for tests and recordings: a pty read by a terminal in memory, and tmux."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import termios
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from time import monotonic
+
+import pyte
+
+PATIENCE = 30.0
+"""Seconds after which something that should be on a screen is missed."""
+
+TANGY = str(Path(sys.executable).parent / "tangy")
+
+
+class Terminal:
+    """A program in a pty, and what can be read on its screen."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        *,
+        columns: int = 80,
+        lines: int = 24,
+        environment: dict[str, str] | None = None,
+    ) -> None:
+        self._screen = pyte.Screen(columns, lines)
+        self._stream = pyte.ByteStream(self._screen)
+        self.raw = b""
+        """Everything that was written to the terminal."""
+        self._parent, child = pty.openpty()
+        self.resize(columns, lines)
+        self.process = subprocess.Popen(  # noqa: S603 - our own program
+            command,
+            stdin=child,
+            stdout=child,
+            stderr=child,
+            env={**os.environ, "TERM": "xterm-256color", "LANG": "C.UTF-8", **(environment or {})},
+            start_new_session=True,
+            preexec_fn=lambda: fcntl.ioctl(child, termios.TIOCSCTTY, 0),
+        )
+        os.close(child)
+
+    def resize(self, columns: int, lines: int) -> None:
+        """Make the window larger or smaller."""
+        size = struct.pack("HHHH", lines, columns, 0, 0)
+        fcntl.ioctl(self._parent, termios.TIOCSWINSZ, size)
+        self._screen.resize(lines, columns)
+
+    @property
+    def text(self) -> str:
+        """What can be read on the screen."""
+        return "\n".join(line.rstrip() for line in self._screen.display)
+
+    def read(self, seconds: float) -> bytes:
+        """Read what is written within a time; stops at the first chunk."""
+        if not select.select([self._parent], [], [], seconds)[0]:
+            return b""
+        try:
+            chunk = os.read(self._parent, 65536)
+        except OSError:  # the program has closed its side
+            return b""
+        self.raw += chunk
+        self._stream.feed(chunk)
+        return chunk
+
+    def until(self, seen: str | Callable[[str], bool]) -> str:
+        """Read until a text (or what a function looks for) is on the screen, and return it."""
+        found = (lambda text: seen in text) if isinstance(seen, str) else seen
+        deadline = monotonic() + PATIENCE
+        while not found(self.text):
+            if monotonic() > deadline or (not self.read(0.2) and self.process.poll() is not None):
+                self.read(0.0)
+                if found(self.text):
+                    break
+                raise AssertionError(f"never saw {seen!r}; the screen shows:\n{self.text}")
+        return self.text
+
+    def settle(self, seconds: float = 0.5) -> int:
+        """Read until nothing is written for a while; return how many bytes were."""
+        count = 0
+        while chunk := self.read(seconds):
+            count += len(chunk)
+        return count
+
+    def type(self, keys: str) -> None:
+        """Type."""
+        os.write(self._parent, keys.encode())
+
+    def wait(self) -> int:
+        """Read to the end of the program; return its exit status."""
+        deadline = monotonic() + PATIENCE
+        while self.process.poll() is None and monotonic() < deadline:
+            self.read(0.1)
+        while self.read(0.0):
+            pass
+        return self.process.wait(timeout=1)
+
+    def close(self) -> None:
+        """Close the window, as a person would who has had enough."""
+        if self._parent >= 0:
+            os.close(self._parent)
+            self._parent = -1
+
+    def end(self) -> None:
+        """Clear up, whatever state the program is in."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        self.close()
+
+
+def ended(pid: int) -> bool:
+    """Wait for a process to end."""
+    try:
+        descriptor = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return True
+    try:
+        return bool(select.select([descriptor], [], [], PATIENCE)[0])
+    finally:
+        os.close(descriptor)
+
+
+class Tmux:
+    """A tmux server of the test's own, with one window."""
+
+    def __init__(self, folder: Path, columns: int, lines: int) -> None:
+        tmux = shutil.which("tmux")
+        assert tmux is not None
+        self._tmux = [tmux, "-S", str(folder / "tmux")]
+        self._pipe = folder / "written"
+        os.mkfifo(self._pipe)
+        self._size = ["-x", str(columns), "-y", str(lines)]
+        self._reader = -1
+
+    def __call__(self, *words: str) -> str:
+        """Give tmux a command."""
+        done = subprocess.run(  # noqa: S603 - tmux, found on the path
+            [*self._tmux, *words], capture_output=True, text=True, check=True
+        )
+        return done.stdout
+
+    def run(self, *command: str) -> None:
+        """Run a program in the window, with a shell behind it that stays."""
+        if self._reader < 0:
+            self("-f", "/dev/null", "new-session", "-d", *self._size, "sh")
+            self._reader = os.open(self._pipe, os.O_RDONLY | os.O_NONBLOCK)
+            self("pipe-pane", "-o", f"cat > '{self._pipe}'")
+        self("send-keys", "-l", " ".join(command))
+        self("send-keys", "Enter")
+
+    @property
+    def text(self) -> str:
+        """What can be read in the window."""
+        return self("capture-pane", "-p")
+
+    def until(self, seen: str | Callable[[str], bool]) -> str:
+        """Wait until a text can be read in the window, and return what is there."""
+        found = (lambda text: seen in text) if isinstance(seen, str) else seen
+        deadline = monotonic() + PATIENCE
+        while not found(text := self.text):
+            if monotonic() > deadline:
+                raise AssertionError(f"never saw {seen!r}; the window shows:\n{text}")
+            if select.select([self._reader], [], [], 0.2)[0]:
+                os.read(self._reader, 65536)
+        return text
+
+    def end(self) -> None:
+        """End the server."""
+        with suppress(subprocess.CalledProcessError):
+            self("kill-server")
+        if self._reader >= 0:
+            os.close(self._reader)
