@@ -1,21 +1,13 @@
-"""What the verbs share: their options, the house they work in, and how they print."""
+"""What the verbs share: their options, and how they print."""
 
 from __future__ import annotations
 
 import json
 import shlex
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
-
-from tangy_profiles.reading import plain
-
-if TYPE_CHECKING:
-    from tangy_tui.house import House
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, nothing else.")]
 Seed = Annotated[int | None, typer.Option(help="Repeat the same simulated games.")]
@@ -24,31 +16,6 @@ ActivityName = Annotated[str, typer.Option("--activity", help="A shipped activit
 Users = Annotated[int, typer.Option(help="How many people take part, 1 to 8.")]
 Ascii = Annotated[bool, typer.Option("--ascii", help="Draw with plain ASCII characters only.")]
 Games = Annotated[int, typer.Option(min=1, help="How many games.")]
-
-
-@contextmanager
-def open_house(
-    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = "tangy"
-) -> Iterator[House]:
-    from tangy_tui.house import House, data_folder
-
-    house = House(data_folder(data), activity=activity, users=users, write=write, robot=robot)
-    try:
-        say_notices(house.store.notices)
-        yield house
-    finally:
-        house.close()
-
-
-def full_screen() -> bool:
-    from tangy_tui.ui.terminal import terminal_kind
-
-    return terminal_kind().full_screen
-
-
-def say_notices(notices: list[str]) -> None:
-    for notice in notices:
-        print(f"tangy: {plain(notice)}", file=sys.stderr)
 
 
 def as_given(data: Path | None, users: int = 4) -> str:

@@ -10,7 +10,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, open_house, print_json
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
+from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity

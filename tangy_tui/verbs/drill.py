@@ -15,12 +15,10 @@ from tangy_tui.verbs.common import (
     Json,
     Seed,
     Users,
-    full_screen,
-    open_house,
     print_json,
     print_line,
-    say_notices,
 )
+from tangy_tui.verbs.opening import full_screen, open_house, say_notices
 
 LONGEST_WHO = 40  # characters
 

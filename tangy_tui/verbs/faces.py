@@ -15,7 +15,8 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, open_house, print_json
+from tangy_tui.verbs.common import Data, Json, Seed, print_json
+from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_source import CameraSource

@@ -10,15 +10,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Data,
-    Json,
-    Seed,
-    open_house,
-    print_json,
-    say_notices,
-)
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
+from tangy_tui.verbs.opening import open_house, say_notices
 
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration

@@ -14,17 +14,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Data,
-    Json,
-    Seed,
-    as_given,
-    open_house,
-    print_json,
-    print_line,
-    say_notices,
-)
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
+from tangy_tui.verbs.opening import open_house, say_notices
 
 if TYPE_CHECKING:
     from tangy_tui.house import House

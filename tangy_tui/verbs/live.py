@@ -11,6 +11,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
+from tangy_tui.verbs.opening import full_screen, open_house
 from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
 from tangy_tui.verbs.sensors import Cameras, RobotName
 from tangy_tui.wording import counted
@@ -89,8 +90,8 @@ def live(
     if bench and (camera or requests or table):
         raise TangyError("--camera, --requests, --table: the bench brings its own; leave them out.")
     faults = _listed(inject or [])
-    screen = not (headless or as_json) and common.full_screen()
-    with common.open_house(data, activity, users, robot=robot) as house:
+    screen = not (headless or as_json) and full_screen()
+    with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         learnt = recall(house, policy, quiet=as_json)
         number = house.game_seed(seed)

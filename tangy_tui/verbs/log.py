@@ -11,7 +11,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, print_json, print_line, say_notices
+from tangy_tui.verbs.common import Data, Json, print_json, print_line
+from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import ActivityName, Data, Json, open_house, print_json, print_line
+from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
+from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_hw.sound.source import Source

@@ -11,16 +11,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Data,
-    Json,
-    Seed,
-    Users,
-    as_given,
-    open_house,
-    print_json,
-)
+from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, as_given, print_json
+from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, open_house, print_json
+from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import find_anybody
+from tangy_tui.verbs.opening import open_house
 from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:

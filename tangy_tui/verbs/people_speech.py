@@ -9,7 +9,8 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, open_house, print_json
+from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, print_json
+from tangy_tui.verbs.opening import open_house
 from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
+from tangy_tui.verbs.opening import full_screen, open_house
 from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
@@ -77,12 +78,12 @@ def play(
     listening.check()
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
-    screen = not (headless or as_json) and common.full_screen()
+    screen = not (headless or as_json) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
-    with common.open_house(data, activity, users, robot=robot) as house:
+    with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         if screen:
             from tangy_hw.sensors import sensors_of
@@ -147,10 +148,10 @@ def demo(
     """See the whole story in a minute: three demonstrations, learning, one game."""
     from tempfile import TemporaryDirectory
 
-    with TemporaryDirectory(prefix="tangy-demo-") as scratch, common.open_house(
+    with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_house(
         data or Path(scratch), "bingo", 4
     ) as house:  # fmt: skip
-        if common.full_screen() and not (plain_lines or as_json):
+        if full_screen() and not (plain_lines or as_json):
             from tangy_tui.ui.run import run_demo
 
             status = run_demo(house, seed=seed, ascii_only=ascii_only)

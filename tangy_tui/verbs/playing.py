@@ -8,7 +8,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import say_notices
+from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
     from tangy_tui.house import House

@@ -9,16 +9,8 @@ import typer
 
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_tui.verbs.cards import DeckSeed
-from tangy_tui.verbs.common import (
-    ActivityName,
-    Ascii,
-    Data,
-    Json,
-    Seed,
-    full_screen,
-    open_house,
-    print_json,
-)
+from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_json
+from tangy_tui.verbs.opening import full_screen, open_house
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sensors

@@ -23,6 +23,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
+from tangy_tui.verbs.opening import full_screen, open_house
 
 if TYPE_CHECKING:
     from tangy_tui.house import House
@@ -76,14 +77,14 @@ def teach(
     listening = Listening(mic, hands_free, spoken_answers, mode, record)
     listening.check()
     sound = keys_from_terminal(script) if mic == "-" else 0  # before it is asked for a screen
-    screen = not (plain_lines or script or as_json) and common.full_screen()
+    screen = not (plain_lines or script or as_json) and full_screen()
     if not screen:
         listening = replace(listening, hands_free=True)  # there is no key to talk with
-    with common.open_house(data, activity, users) as house:
+    with open_house(data, activity, users) as house:
         teaching = house.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
         ears = listening.ears(house, teaching.phrasebook, who, sound=sound)
-        if who == "scripted" and (speed is None or not common.full_screen()):
+        if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif screen:
             from tangy_tui.ui.run import run_teaching

@@ -1,0 +1,87 @@
+"""Which verbs there are, and the module of each: it is imported when the verb is called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+
+@dataclass(frozen=True)
+class Verb:
+    """Where a verb is found: a function of a module, or a module's `app` with verbs below it."""
+
+    module: str
+    function: str = ""
+    below: tuple[tuple[str, str, str], ...] = ()
+    """Verbs below it that have modules of their own: name, module, function."""
+
+    def load(self, name: str) -> Any:
+        """Import the verb and return it as a command of this name."""
+        module = import_module(f"tangy_tui.verbs.{self.module}")
+        parent = typer.Typer(add_completion=False, rich_markup_mode=None)
+        parent.callback()(lambda: None)  # so that a single verb, too, is one below it
+        if self.function:
+            parent.command(name)(getattr(module, self.function))
+        else:
+            parent.add_typer(module.app, name=name)
+        command: Any = typer.main.get_command(parent)
+        found = command.commands[name]
+        for below, other, function in self.below:
+            found.commands[below] = Verb(other, function).load(below)
+        return found
+
+
+VERBS = {
+    "teach": Verb("teach", "teach"),
+    "learn": Verb("learn", "learn"),
+    "policy": Verb("learn", "policy"),
+    "play": Verb("play", "play"),
+    "demo": Verb("play", "demo"),
+    "live": Verb("live", "live"),
+    "drill": Verb("drill", "drill"),
+    "listen": Verb("listen", "listen"),
+    "say": Verb("say", "say"),
+    "camera": Verb("camera", "camera"),
+    "capture": Verb("camera", "capture"),
+    "requests": Verb("requests", "requests"),
+    "sensors": Verb("sensors", "sensors"),
+    "read-card": Verb("read_card", "read_card"),
+    "doctor": Verb("machine", "doctor"),
+    "map": Verb("map", "draw_map"),
+    "demonstrations": Verb("demonstrations"),
+    "people": Verb(
+        "people",
+        below=(
+            ("pronounce", "people_speech", "people_pronounce"),
+            ("voice", "people_speech", "people_voice"),
+            ("forget", "people_forget", "people_forget"),
+        ),
+    ),
+    "mic": Verb("mic", below=(("check", "mic_check", "check"),)),
+    "experiment": Verb("experiment"),
+    "activity": Verb("activity"),
+    "cards": Verb("cards"),
+    "faces": Verb("faces", below=(("enrol", "faces_enrol", "faces_enrol"),)),
+    "log": Verb("log"),
+}
+"""In the order in which help lists them."""
+
+
+class LazyVerbs(TyperGroup):
+    """The verbs of the program: each is imported when it is called, all of them for help."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all verbs, in the order of the help page."""
+        return list(VERBS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a verb, imported now; None where there is none of this name."""
+        if cmd_name not in VERBS:
+            return None
+        if cmd_name not in self.commands:
+            self.commands[cmd_name] = VERBS[cmd_name].load(cmd_name)
+        return self.commands[cmd_name]

@@ -1,0 +1,57 @@
+"""Opening the house that a verb works in, and the program on its screens; without Typer."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tangy_profiles.reading import plain
+from tangy_tui.ui.terminal import terminal_kind
+
+if TYPE_CHECKING:
+    from tangy_tui.house import House
+
+
+@contextmanager
+def open_house(
+    data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = "tangy"
+) -> Iterator[House]:
+    """Open the house on a data folder, say what its store has noticed, and close it afterwards.
+
+    Raises:
+        TangyError: where the folder, the activity or the robot cannot be read.
+    """
+    from tangy_tui.house import House, data_folder
+
+    house = House(data_folder(data), activity=activity, users=users, write=write, robot=robot)
+    try:
+        say_notices(house.store.notices)
+        yield house
+    finally:
+        house.close()
+
+
+def open_program(
+    data: Path | None = None, *, robot: str = "tangy", ascii_only: bool = False
+) -> int:
+    """Open the program at its first screen, and return its exit status."""
+    from tangy_profiles.fault_file import load_faults
+    from tangy_tui.ui.run import run_program
+
+    with open_house(data, "bingo", 4, robot=robot) as house:
+        load_faults(house.robot)  # what is wrong with its file is said before a screen opens
+        return run_program(house, ascii_only=ascii_only)
+
+
+def full_screen() -> bool:
+    """Return whether input and output are a terminal on which screens can be drawn."""
+    return terminal_kind().full_screen
+
+
+def say_notices(notices: list[str]) -> None:
+    """Print each notice as a line on standard error."""
+    for notice in notices:
+        print(f"tangy: {plain(notice)}", file=sys.stderr)
