@@ -79,8 +79,9 @@ class LogFile:
         self.path.chmod(0o600)
         db = self.db = self._connect()
         # secure_delete: a name that was replaced or forgotten must not stay on a free page.
-        for setting in ("journal_mode=WAL", "synchronous=FULL", "secure_delete=ON"):
-            db.execute(f"PRAGMA {setting}").fetchall()
+        self._settle(db, "secure_delete", "ON", 1)
+        self._settle(db, "synchronous", "FULL", 2)
+        self._settle(db, "journal_mode", "WAL", "wal")
         self._migrate(db)
         return db
 
@@ -105,9 +106,26 @@ class LogFile:
                     steps = range(version, len(MIGRATIONS))
                     instead = "".join(INSTEAD.get(step, "") for step in steps)
                     db.executescript(f"PRAGMA temp_store=MEMORY; {instead}")
-                db.execute("PRAGMA query_only=ON")
+                try:
+                    self._settle(db, "query_only", "ON", 1)
+                except BaseException:
+                    db.close()
+                    raise
                 self.db = db
         return self.db
+
+    def _settle(self, db: sqlite3.Connection, setting: str, wanted: str, granted: object) -> None:
+        """Set a setting, and ask SQLite whether it stands: it grants or ignores without a word.
+
+        Raises:
+            StoreError: it does not, so that the log would not be kept as is promised.
+        """
+        db.execute(f"PRAGMA {setting}={wanted}").fetchall()
+        found = db.execute(f"PRAGMA {setting}").fetchone()
+        if found != (granted,):
+            is_now = found[0] if found else "unknown"
+            problem = f"cannot be kept safely here: SQLite leaves {setting} at {is_now}, not"
+            raise self.wrong(f"{problem} {wanted}; choose a folder on another disk with --data")
 
     def _bring_up_to_date(self) -> int:
         """Bring an older log that is sound up to date; return its version then, 0 if not done."""

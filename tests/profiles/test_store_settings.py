@@ -1,0 +1,123 @@
+"""What the log rests on in SQLite is asked for, asked about, and refused where it is not given."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import pytest
+
+from tangy_profiles import log_file
+from tangy_profiles.errors import StoreError
+from tangy_profiles.store import Store
+
+connect = sqlite3.connect
+
+
+def otherwise_built(monkeypatch: pytest.MonkeyPatch, deaf: str = "") -> None:
+    """Let SQLite begin as careless as it can be built, and grant one setting never."""
+
+    class Careless(sqlite3.Connection):
+        def execute(self, sql: str, *values: Any) -> sqlite3.Cursor:
+            if deaf and sql.startswith(f"PRAGMA {deaf}="):
+                return super().execute("SELECT 1")
+            return super().execute(sql, *values)
+
+    def made(*where: Any, **how: Any) -> sqlite3.Connection:
+        db: sqlite3.Connection = connect(*where, **how, factory=Careless)
+        for setting in ("synchronous=OFF", "secure_delete=OFF"):
+            sqlite3.Connection.execute(db, f"PRAGMA {setting}").fetchall()
+        return db
+
+    monkeypatch.setattr(sqlite3, "connect", made)
+
+
+def asked(store: Store, setting: str) -> Any:
+    """Ask the store's own connection how a setting stands."""
+    db = store._file.db
+    assert db is not None
+    return db.execute(f"PRAGMA {setting}").fetchone()[0]
+
+
+def test_each_commit_of_a_writer_waits_for_the_disk_however_sqlite_was_built(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    otherwise_built(monkeypatch)
+    with Store.open(tmp_path) as store:
+        assert asked(store, "synchronous") == 2, "FULL: one sync of the tail with each commit"
+        assert asked(store, "journal_mode") == "wal"
+        assert asked(store, "secure_delete") == 1
+
+
+@pytest.mark.parametrize("setting", ["synchronous", "secure_delete", "journal_mode"])
+def test_a_log_that_sqlite_will_not_keep_as_promised_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, setting: str
+) -> None:
+    otherwise_built(monkeypatch, deaf=setting)
+    with pytest.raises(StoreError) as refused:
+        Store.open(tmp_path)
+    said = str(refused.value)
+    assert str(tmp_path) in said and setting in said and "--data" in said
+    monkeypatch.undo()
+    with Store.open(tmp_path) as store:
+        assert (store.append("greeting", {}), store.notices) == (1, []), "nothing was left behind"
+
+
+def test_a_disk_that_cannot_hold_a_tail_beside_the_log_is_refused_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def on_a_simple_disk(file: log_file.LogFile) -> sqlite3.Connection:
+        uri = f"file:{quote(str(file.path))}?mode=rw&vfs=unix-dotfile"  # no shared memory there
+        return connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+
+    monkeypatch.setattr(log_file.LogFile, "_connect", on_a_simple_disk)
+    with pytest.raises(StoreError, match="journal_mode at delete, not WAL; choose a folder"):
+        Store.open(tmp_path)
+
+
+def test_the_connection_of_a_console_itself_takes_no_change(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.rename("user1", "Rosa")
+        with Store.open(tmp_path, write=False) as console:
+            assert console.names() == {"user1": "Rosa"}
+            db = console._file.db
+            assert db is not None
+            for change in ("DELETE FROM name", "INSERT INTO meta VALUES ('a', 'b')"):
+                with pytest.raises(sqlite3.OperationalError, match="readonly"):
+                    db.execute(change)
+        assert store.names() == {"user1": "Rosa"}
+
+
+def test_a_console_that_could_write_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Store.open(tmp_path).close()
+    otherwise_built(monkeypatch, deaf="query_only")
+    with pytest.raises(StoreError, match="query_only at 0, not ON"):
+        Store.open(tmp_path, write=False)
+
+
+def test_a_log_that_a_reader_brought_up_to_date_is_vouched_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that the next writer need not read all of a large log that nobody touched since."""
+    with monkeypatch.context() as older:
+        older.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
+        with Store.open(tmp_path) as store:
+            store.append("greeting", {})
+    Store.open(tmp_path, write=False).close()
+    read: list[str] = []
+
+    def watched(*where: Any, **how: Any) -> sqlite3.Connection:
+        db: sqlite3.Connection = connect(*where, **how)
+        db.set_trace_callback(read.append)
+        return db
+
+    monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
+    monkeypatch.setattr(sqlite3, "connect", watched)
+    with Store.open(tmp_path) as store:
+        assert store.append("joke", {}) == 2
+    assert read and not any("quick_check" in sql for sql in read)
+    with closing(connect(tmp_path / "tangy.db")) as db:
+        assert db.execute("PRAGMA user_version").fetchone() == (len(log_file.MIGRATIONS),)
