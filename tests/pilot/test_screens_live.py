@@ -124,6 +124,22 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
         await until(pilot, lambda: link.told[-1] == "release")
 
 
+async def test_each_stop_is_logged_once_and_told_once(
+    run: Run, program: Program, house: House
+) -> None:
+    async with run(app=program) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        for count in (1, 2):
+            await pilot.press("ctrl+x")
+            await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+            noted = [event.body["what"] for event in house.store.events(STAFF)]
+            assert noted.count("the robot was stopped") == count
+            await pilot.press("p")
+            await until(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
+        told = live(pilot).query_one(LogView).sentences
+        assert sum(line.startswith("STOP.") for line in told) == 2
+
+
 async def test_staff_can_ask_for_help_for_somebody(
     run: Run, program: Program, link: HeldLink, world: LiveWorld
 ) -> None:

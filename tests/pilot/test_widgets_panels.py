@@ -382,3 +382,37 @@ def test_fit_shorten_and_wrap_count_cells() -> None:
     assert wrap("one two three", 7) == ["one two", "three"]
     assert wrap("abcdefghij", 4) == ["abcd", "efgh", "ij"]
     assert wrap("", 4) == [""]
+
+
+async def test_the_log_goes_on_at_its_end_after_it_became_smaller(run: Run) -> None:
+    log = LogView()
+    screen = One(log)
+    async with run() as pilot:
+        await pilot.app.push_screen(screen)
+        await pilot.pause()
+        for number in range(60):
+            log.write(f"sentence {number}")
+        await pilot.pause()
+        await pilot.resize_terminal(80, 18)  # as when a banner takes lines above it
+        await pilot.pause()
+        assert log.is_vertical_scroll_end
+        log.write("the newest")
+        await pilot.pause()
+        assert log.is_vertical_scroll_end
+
+
+async def test_a_log_that_is_read_further_up_stays_there_when_its_size_changes(run: Run) -> None:
+    log = LogView()
+    screen = One(log)
+    async with run() as pilot:
+        await pilot.app.push_screen(screen)
+        await pilot.pause()
+        for number in range(60):
+            log.write(f"sentence {number}")
+        await pilot.pause()
+        log.scroll_to(y=5, animate=False)
+        await pilot.pause()
+        await pilot.resize_terminal(80, 18)
+        log.write("the newest")
+        await pilot.pause()
+        assert log.scroll_offset.y == 5

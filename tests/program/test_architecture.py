@@ -132,3 +132,19 @@ def test_no_word_of_an_activity_stands_in_the_code_of_the_engine(activity: Activ
 def test_every_package_is_marked_as_typed() -> None:
     for package in ("tangy_tui", "sim/tangy_sim", "hw/tangy_hw", "profiles/tangy_profiles"):
         assert (ROOT / package / "py.typed").exists(), package
+
+
+def test_no_handler_calls_the_one_that_it_overrides() -> None:
+    # Textual calls the handlers of all base classes itself: each would be run twice.
+    twice = [
+        f"{path.name}:{call.lineno} {call.func.attr}"
+        for path in sorted((ROOT / "tangy_tui" / "ui").rglob("*.py"))
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Attribute)
+        and call.func.attr.startswith("on_")
+        and isinstance(call.func.value, ast.Call)
+        and isinstance(call.func.value.func, ast.Name)
+        and call.func.value.func.id == "super"
+    ]
+    assert twice == []

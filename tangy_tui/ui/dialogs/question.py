@@ -133,7 +133,6 @@ class VerifyingDialog(Dialog[Answer]):
 
     def on_resize(self, event: events.Resize) -> None:
         """Show as much as there is room for."""
-        super().on_resize(event)
         if self._told is not None:
             self._write()
 

@@ -85,7 +85,6 @@ class DemonstrationsScreen(TangyScreen[None]):
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Read the library: something may have been shown, or settled, meanwhile."""
-        super().on_screen_resume(event)
         self._read()
 
     # ---------------------------------------------------------------------------- the choice

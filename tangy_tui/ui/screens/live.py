@@ -82,8 +82,7 @@ class LiveScreen(PlayScreen):
         self._seats = Seats(house.name)
 
     def on_mount(self) -> None:
-        """Show what is known, begin, and follow the robot."""
-        super().on_mount()
+        """Show what is known of the robot, and follow it; the playing screen begins the game."""
         self._show_status()
         self.set_interval(TRACK_SECONDS, self._track)
 
@@ -201,9 +200,8 @@ class LiveScreen(PlayScreen):
     # ------------------------------------------------------------------------- staff's keys
 
     def on_stop(self, message: Stop) -> None:
-        """Stop the robot itself, before anything is drawn."""
+        """Stop the robot itself, before the playing screen draws anything."""
         self._world.link.stop(STOPPED, by=STAFF)
-        super().on_stop(message)
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""

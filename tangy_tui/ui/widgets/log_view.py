@@ -51,6 +51,7 @@ class LogView(ScrollView, can_focus=True):
         self._lines: deque[tuple[str, Kind]] = deque(maxlen=most)
         self._rows = Rows(self)
         self._follow = follow
+        self._at_end = True
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -59,7 +60,7 @@ class LogView(ScrollView, can_focus=True):
 
     def write(self, sentence: str, kind: Kind = "text") -> None:
         """Add a sentence; the view follows unless it was scrolled back."""
-        follow = self.is_vertical_scroll_end
+        follow = self._at_end
         self._lines.append((clean(sentence), kind))
         self._show(follow)
 
@@ -69,8 +70,13 @@ class LogView(ScrollView, can_focus=True):
         self._show(True)
 
     def on_resize(self, event: events.Resize) -> None:
-        """Wrap anew."""
-        self._show(self.is_vertical_scroll_end)
+        """Wrap anew, at the end where the end was shown before."""
+        self._show(self._at_end)
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Take note whether the end is shown: by the size of now that cannot be told later."""
+        super().watch_scroll_y(old_value, new_value)
+        self._at_end = self.is_vertical_scroll_end
 
     def notify_style_update(self) -> None:
         """Draw in the new colours."""
