@@ -70,6 +70,7 @@ def policy_document(house: House, policy: Policy) -> dict[str, Any]:
         ],
         "joint_states": {"people": len(people), "reachable": len(states), "as_expected": right},
         "exact": policy.exact(activity),
+        "asks": [list(s) for s in activity.situations if not policy.decide(s).sure],
         "effects": {
             behaviour: {variable: sorted(values) for variable, values in variables.items()}
             for behaviour, variables in effects.values.items()

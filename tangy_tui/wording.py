@@ -12,6 +12,7 @@ from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.learning.asking import Lesson
 from tangy_tui.learning.conflicts import Conflict, Resolution
 from tangy_tui.learning.library import Edit, Library
+from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verifying import (
     Asked,
     NotUnderstood,
@@ -26,6 +27,20 @@ MOST_STEPS = 3
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""
+
+
+def agreement_words(activity: Activity, policy: Policy) -> str:
+    """Say whether a policy does all that is expected of a host of the activity.
+
+    Where it is not sure it asks instead of acting, so that it does not do what is expected either.
+    """
+    if not activity.expected:
+        return "nothing to compare it with"
+    wrong = len(policy.errors(activity))
+    asks = sum(not policy.decide(situation).sure for situation in activity.expected)
+    if wrong:
+        return f"not as expected in {counted(wrong, 'situation')}"
+    return f"asks in {counted(asks, 'situation')}" if asks else "as expected everywhere"
 
 
 def counted(number: int, noun: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Situation
-from tangy_tui.interaction.facilitation import Acted, GameEnded, Learnt, Taught
+from tangy_tui.interaction.facilitation import Acted, GameEnded, Learnt, Taught, Unsure
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,15 @@ class Tally:
     steps: int = 0
     interactions: int = 0
     answers: int = 0
-    stopped: list[str] = field(default_factory=list)
+    asked: int = 0
+    """How often Tangy asked what to do."""
+    stopped: list[tuple[int, str]] = field(default_factory=list)
+    """The games that did not come to their end: which one, from 1 on, and why."""
+    injected: list[dict[str, Any]] = field(default_factory=list)
+    """The faults that were to be brought about: in which game, which, and at which step.
+
+    `step` is None for one that did not come about.
+    """
     _done: Counter[tuple[Situation, str]] = field(default_factory=Counter)
     _right: Counter[tuple[Situation, str]] = field(default_factory=Counter)
 
@@ -50,7 +58,31 @@ class Tally:
                 case GameEnded():
                     self.games += 1
                     if event.stopped is not None:
-                        self.stopped.append(event.stopped)
+                        self.stopped.append((self.games, event.stopped))
+                case Unsure():
+                    self.asked += 1
+
+    def add_injections(self, came: Iterable[tuple[int, str]], absent: Iterable[str]) -> None:
+        """Note what was brought about in the newest game.
+
+        Args:
+            came: step and kind of each fault that set in.
+            absent: the injections that did not come about.
+        """
+        for step, kind in came:
+            self.injected.append({"game": self.games, "fault": kind, "step": step})
+        for words in absent:
+            self.injected.append({"game": self.games, "fault": words, "step": None})
+
+    @property
+    def absent(self) -> dict[str, int]:
+        """In how many games each injection did not come about."""
+        return dict(Counter(one["fault"] for one in self.injected if one["step"] is None))
+
+    @property
+    def finished(self) -> int:
+        """How many games came to their end."""
+        return self.games - len(self.stopped)
 
     def rows(self, order: Iterable[Situation]) -> list[Row]:
         """Return the rows that came about, in the given order of situations, others last."""
@@ -77,6 +109,7 @@ class Tally:
         for (_, behaviour), count in self._done.items():
             behaviours[behaviour] += count
         visits = self.games * len(beliefs)
+        reasons = [{"reason": reason} for _, reason in self.stopped]
         return {
             "games": self.games,
             "steps": self.steps,
@@ -97,5 +130,8 @@ class Tally:
                 person: {strategy: [b.alpha, b.beta] for strategy, b in profile.items()}
                 for person, profile in beliefs.items()
             },
-            "faults": [{"reason": reason} for reason in self.stopped] if faults is None else faults,
+            "faults": reasons if faults is None else faults,
+            "finished": self.finished,
+            "stopped": [{"game": game, "reason": reason} for game, reason in self.stopped],
+            "asked": self.asked,
         }

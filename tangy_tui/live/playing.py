@@ -26,7 +26,6 @@ class LiveGames:
         """Begin to count."""
         self.tally = Tally()
         self.faults: list[dict[str, Any]] = []
-        self.absent: dict[str, int] = {}
         self.seconds = 0.0
         """How long the games took in the robot's time."""
         self.took = 0.0
@@ -70,8 +69,7 @@ class LiveGames:
         self.seconds += world.link.time - since
         self.faults += fault_documents(game.faults, stopped)
         if isinstance(world, BenchedWorld):
-            for kind in world.still_to_come:
-                self.absent[kind] = self.absent.get(kind, 0) + 1
+            self.tally.add_injections(world.came, world.still_to_come)
 
     def lines(self, events: list[Event]) -> list[str]:
         """Say what happened, for whoever waits, and who was seen where somebody else sits."""
@@ -89,7 +87,8 @@ class LiveGames:
             found |= world.score.to_json()
             found["real_time_factor"] = round(self.seconds / self.took, 2) if self.took else None
             if world.injections:
-                found["did_not_come_about"] = self.absent
+                found["injected"] = self.tally.injected
+                found["did_not_come_about"] = self.tally.absent
         return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -22,7 +23,7 @@ from tangy_tui.learning.library import Library
 from tangy_tui.learning.listing import ListRow
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.ui.local_time import local_time
-from tangy_tui.wording import conflict_lines, counted
+from tangy_tui.wording import agreement_words, conflict_lines, counted
 
 T = TypeVar("T")
 
@@ -39,7 +40,7 @@ def progress(items: Iterable[T], what: str, *, quiet: bool) -> Iterator[T]:
 def print_policy(activity: Activity, policy: Policy, effects: Effects, library: Library) -> None:
     """Print the decision for every situation, the learnt effects, and what to mind."""
     console = Console(highlight=False)
-    exact = "as expected everywhere" if policy.exact(activity) else "not as expected everywhere"
+    exact = agreement_words(activity, policy)
     table = _table(
         f"Policy {policy.name} ({counted(len(policy.demonstrations), 'demonstration')}, {exact}; "
         f"digest {policy.digest[:8]})",
@@ -137,10 +138,8 @@ def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> N
         )
     console.print(table)
     console.print(_people_table(house, beliefs))
-    reasons = sorted(set(tally.stopped))
-    for reason in reasons:
-        stopped = counted(tally.stopped.count(reason), "game")
-        console.print(Text(f"{stopped} stopped: {reason}"))
+    for reason, times in sorted(Counter(reason for _, reason in tally.stopped).items()):
+        console.print(Text(f"{counted(times, 'game')} stopped: {reason}"))
 
 
 def _people_table(house: House, beliefs: Mapping[str, Beliefs]) -> Table:

@@ -12,7 +12,16 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
 from tangy_tui.verbs.opening import full_screen, open_house
-from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
+from tangy_tui.verbs.playing import (
+    INJECT_HELP,
+    SCRIPTED,
+    Expert,
+    PolicyName,
+    Teacher,
+    list_injections,
+    recall,
+    who_answers,
+)
 from tangy_tui.verbs.sensors import Cameras, RobotName
 from tangy_tui.wording import counted
 
@@ -84,6 +93,9 @@ def live(
     from tangy_hw.perception.requests.naming import read_corners
     from tangy_tui.learning.policies import need_policy
 
+    if INJECT_HELP in (inject or ()):
+        list_injections(as_json)
+        return
     who = who_answers(teacher, expert)
     if inject and not bench:
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
@@ -124,8 +136,8 @@ def live(
             asks = who == SCRIPTED
             supervision = house.supervision(learnt, number, asks=asks, world=world)
             to_their_end = _play(house, supervision, games, as_json, expert=bool(expert))
-        if not (to_their_end or bench):
-            raise typer.Exit(1)  # so that a script knows; on the bench it may be what is tried
+        if not to_their_end:
+            raise typer.Exit(1)  # so that a script knows that games did not come to their end
 
 
 def _listed(given: list[str]) -> tuple[Injection, ...]:

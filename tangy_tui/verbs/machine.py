@@ -20,23 +20,29 @@ def doctor(
 ) -> None:
     """Say what of this machine works: terminal, store, speech, voice, microphone, camera.
 
-    With --robot each driver that the robot's profile names is tried, too; nothing is moved.
+    With --robot each driver that the robot's profile names is tried, too; nothing is moved. The
+    exit status is 1 where the data folder, or a device of that robot, is broken.
     """
     from tangy_tui.doctor import examine, examine_robot
     from tangy_tui.house import data_folder
 
     findings = examine(data_folder(data))
+    wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without
     if robot is not None:
         from tangy_hw.sensors import camera_sources
         from tangy_profiles.activity import load_activity
         from tangy_profiles.robot import load_robot
 
         body = load_robot(robot)
-        findings += examine_robot(body, load_activity(activity), camera_sources(body))
+        tried = examine_robot(body, load_activity(activity), camera_sources(body))
+        wanted |= {finding.part for finding in tried}
+        findings += tried
     if as_json:
         print_json(
             [{"part": f.part, "ok": f.ok, "state": f.state, "text": f.text} for f in findings]
         )
-        return
-    for finding in findings:
-        print(f"{finding.state:<7}  {finding.part}: {finding.text}")
+    else:
+        for finding in findings:
+            print(f"{finding.state:<7}  {finding.part}: {finding.text}")
+    if any(finding.broken and finding.part in wanted for finding in findings):
+        raise typer.Exit(1)

@@ -18,7 +18,16 @@ from tangy_tui.verbs.hearing import (
     WithVoice,
 )
 from tangy_tui.verbs.opening import full_screen, open_house
-from tangy_tui.verbs.playing import SCRIPTED, Expert, PolicyName, Teacher, recall, who_answers
+from tangy_tui.verbs.playing import (
+    INJECT_HELP,
+    SCRIPTED,
+    Expert,
+    PolicyName,
+    Teacher,
+    list_injections,
+    recall,
+    who_answers,
+)
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
@@ -72,6 +81,9 @@ def play(
     from tangy_tui.learning.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
+    if INJECT_HELP in (inject or ()):
+        list_injections(as_json)
+        return
     who = who_answers(teacher, expert)
     faults = tuple(inject or ())
     listening = Listening(mic, hands_free, spoken_answers, mode)
@@ -173,8 +185,6 @@ def _play_headless(
     expert: bool,
     injected: bool,
 ) -> None:
-    from collections import Counter
-
     from tangy_sim.faulty import FaultyWorld
     from tangy_tui.documents import lesson_document
     from tangy_tui.interaction.facilitation import GameEnded, Taught
@@ -187,7 +197,6 @@ def _play_headless(
     tally = Tally()
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
-    absent = Counter[str]()
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(supervision.begin())
@@ -199,7 +208,7 @@ def _play_headless(
                 lessons += [event.lesson for event in events if isinstance(event, Taught)]
         world = supervision.world
         if isinstance(world, FaultyWorld):
-            absent.update(world.still_to_come)
+            tally.add_injections(world.came, world.still_to_come)
         faults += fault_documents(supervision.faults, stopped)
     beliefs = supervision.persuasion.beliefs
     if as_json:
@@ -207,13 +216,14 @@ def _play_headless(
         if lessons:
             told["answers"] = [lesson_document(house, one) for one in lessons]
         if injected:
-            told["did_not_come_about"] = dict(absent)
+            told["injected"] = tally.injected
+            told["did_not_come_about"] = tally.absent
         common.print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
             print(lesson_words(house.activity, lesson))
         reports.print_tally(house, tally, beliefs)
-        for one, times in absent.items():
+        for one, times in tally.absent.items():
             print(f"{one} did not come about in {times} of {games} games.")
         if faults:
             critical = sum(fault.get("criticality") == "critical" for fault in faults)
@@ -221,3 +231,5 @@ def _play_headless(
                 f"{counted(len(faults), 'fault')}, {critical} of them critical: "
                 "`tangy log` lists the games, `tangy log report last` tells of the last one."
             )
+    if tally.stopped:
+        raise typer.Exit(1)  # so that a script knows that games did not come to their end

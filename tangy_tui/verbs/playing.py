@@ -8,6 +8,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.verbs.common import print_json
 from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
@@ -66,3 +67,21 @@ def recall(house: House, wanted: str, *, quiet: bool) -> Policy:
         notices = [*notices, last]
     say_notices(notices)
     return learnt
+
+
+INJECT_HELP = "help"
+"""The word that lists the faults instead of bringing one about."""
+
+
+def list_injections(as_json: bool) -> None:
+    """Print the faults that can be brought about: each with what happens and when it shows."""
+    from tangy_sim.injection import KINDS
+
+    if as_json:
+        print_json([{"fault": k.name, "what": k.words, "shows": k.shows} for k in KINDS.values()])
+        return
+    width = max(map(len, KINDS))
+    for kind in KINDS.values():
+        when = kind.shows if kind.shows == "at once" else f"while {kind.shows}"
+        print(f"{kind.name:<{width}}  {kind.words} (shows {when})")
+    print(f"\nAs in: --inject {next(iter(KINDS))}@12. After @ comes a step, after ~ a chance.")

@@ -41,7 +41,7 @@ def tally(activity: Activity) -> Tally:
 
 def test_games_steps_and_interactions_are_counted(tally: Tally) -> None:
     assert (tally.games, tally.steps, tally.interactions) == (2, 5, 2)
-    assert tally.stopped == ["Nobody knew."]
+    assert tally.stopped == [(2, "Nobody knew.")]
 
 
 def test_rows_come_in_the_given_order_with_instances_and_success(
@@ -64,6 +64,7 @@ def test_the_document_has_just_the_keys_that_were_agreed(tally: Tally, activity:
     assert json.loads(json.dumps(document)) == document
     assert list(document) == [
         "games", "steps", "behaviours", "rows", "interactions_per_user_game", "beliefs", "faults",
+        "finished", "stopped", "asked",
     ]  # fmt: skip
     assert document["behaviours"] == {"call number": 3, "joke": 2}
     assert list(document["rows"][0]) == [

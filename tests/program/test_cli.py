@@ -39,8 +39,10 @@ def test_the_story_taught_learnt_and_played_for_300_games(tangy: Tangy, tmp_path
     )
     assert list(played) == [
         "games", "steps", "behaviours", "rows", "interactions_per_user_game", "beliefs", "faults",
+        "finished", "stopped", "asked",
     ]  # fmt: skip
     assert (played["games"], played["faults"]) == (300, [])
+    assert (played["finished"], played["stopped"], played["asked"]) == (300, [], 0)
     assert 33 <= played["behaviours"]["call number"] / 300 <= 38
     assert 47 <= played["steps"] / 300 <= 53
     assert {row["behaviour"] for row in played["rows"]} == set(FITTED)

@@ -160,7 +160,12 @@ def untaught(tangy: Tangy, disagreeing: Path) -> Path:
 def test_without_a_teacher_a_game_stops_where_tangy_is_not_sure(
     tangy: Tangy, untaught: Path
 ) -> None:
-    played = document(tangy("play", "--headless", "--json", "--seed", 3, "--data", untaught))
+    done = tangy("play", "--headless", "--json", "--seed", 3, "--data", untaught)
+    assert done.returncode == 1, "the game did not come to its end"
+    played = json.loads(done.stdout)
+    assert (played["games"], played["finished"]) == (1, 0)
+    assert [stop["game"] for stop in played["stopped"]] == [1]
+    assert played["stopped"][0]["reason"] == played["faults"][0]["reason"]
     (fault,) = played["faults"]
     assert "Demonstrations disagree about what to do here: start" in fault["reason"]
     assert "tangy demonstrations resolve" in fault["reason"]
@@ -315,15 +320,47 @@ def test_a_teacher_is_compared_as_they_showed_it_whatever_was_settled(
 def test_what_goes_wrong_is_told_in_one_document(tangy: Tangy, taught: Path) -> None:
     at = ("play", "--headless", "--seed", 3, "--data", taught)
     asked = ("--inject", "laser-disconnected@4", "--inject", "base-stuck@999")
-    played = document(tangy(*at, "--json", *asked))
+    halted = tangy(*at, "--json", *asked)
+    assert halted.returncode == 1, "nobody cleared it, so that the game did not come to its end"
+    played = json.loads(halted.stdout)
     (fault,) = played["faults"]
     assert fault["code"] == "laser-disconnected"
     assert fault["criticality"] == "critical"
     assert fault["moves"][-1]["kind"] == "given up"
     assert played["did_not_come_about"] == {"base-stuck@999": 1}
+    assert played["injected"] == [
+        {"game": 1, "fault": "laser-disconnected", "step": 4},
+        {"game": 1, "fault": "base-stuck@999", "step": None},
+    ]
     cleared = document(tangy(*at, "--json", "--expert", "scripted", *asked))
     assert [fault["status"] for fault in cleared["faults"]] == ["over"]
+    assert (cleared["finished"], cleared["stopped"]) == (1, [])
     assert "did_not_come_about" not in document(tangy(*at, "--json"))
     said = tangy(*at, "--expert", "scripted", *asked).stdout
     assert "base-stuck@999 did not come about in 1 of 1 games." in said
     assert "1 fault, 1 of them critical" in said
+
+
+def test_injections_are_listed_without_a_game(tangy: Tangy, tmp_path: Path) -> None:
+    listed = document(tangy("play", "--inject", "help", "--json", "--data", tmp_path))
+    said = tangy("live", "--bench", "--inject", "help", "--data", tmp_path).stdout
+    assert len(listed) > 20
+    for one in listed:
+        assert set(one) == {"fault", "what", "shows"}
+        assert one["fault"] in said
+        assert one["what"] in said
+
+
+def test_a_policy_is_called_as_expected_only_where_it_asks_nothing(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    data = ("--data", tmp_path)
+    tangy("teach", "--plain", *data, stdin="greet everyone\ny\ncall number\ny\nquit\n")
+    tangy("learn", "--unfinished", *data)
+    asks = document(tangy("policy", "--json", *data))["asks"]
+    assert asks
+    assert "as expected everywhere" not in tangy("policy", *data).stdout
+    tangy("teach", "--guided", "--teacher", "scripted", "--new", *data)
+    tangy("learn", *data)
+    assert document(tangy("policy", "--json", *data))["asks"] == []
+    assert "as expected everywhere" in tangy("policy", *data).stdout

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import socket
+from collections.abc import Callable
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 
@@ -163,3 +166,19 @@ def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path:
     laser = found["Tangy's laser scanner"]
     assert (laser.state, "/dev/no-such-port cannot be opened" in laser.text) == ("broken", True)
     assert found["Tangy's wheels"].state == "missing"
+
+
+def test_what_was_asked_for_and_is_broken_is_the_exit_status(
+    tangy: Callable[..., CompletedProcess[str]], tmp_path: Path
+) -> None:
+    data = ("--data", tmp_path / "data")
+    assert tangy("doctor", *data).returncode == 0, "what is missing, Tangy does without"
+    with socket.socket() as closed:  # bound and never listening: nobody else can take the port
+        closed.bind(("127.0.0.1", 0))
+        shipped = load_robot().file.read_text(encoding="utf-8")
+        laser = f'laser = {{ kind = "scip", at = "tcp://127.0.0.1:{closed.getsockname()[1]}" }}'
+        robot = tmp_path / "robot.toml"
+        robot.write_text(f"{shipped}\n[drivers]\n{laser}\n", encoding="utf-8")
+        done = tangy("doctor", "--robot", robot, *data)
+    assert done.returncode == 1
+    assert "broken   Tangy's laser scanner" in done.stdout
