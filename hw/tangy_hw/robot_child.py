@@ -3,6 +3,7 @@
 The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "do": "go", ...} is
 answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
 broken off}; several may be under way. {"beat": n} says that the program lives, without an answer.
+A line that cannot be heeded is answered by what is wrong with it, and ends nothing.
 By itself it says {"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
 
 Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
@@ -21,14 +22,24 @@ from collections.abc import Awaitable, Callable
 from dataclasses import astuple
 from typing import Any
 
-from tangy_hw.devices import DeviceError, Picture, Pose, Twist
+from tangy_hw.devices import DeviceError, Twist
 from tangy_hw.robot import LiveRobot
+from tangy_hw.robot_beat import beat_of
+from tangy_hw.robot_lines import (
+    Asked,
+    LineError,
+    id_of,
+    number_of,
+    picture_of,
+    pose_of,
+    read_line,
+    text_of,
+)
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.senses import CardSeen, Senses
 from tangy_hw.stopping import STAFF, BrokenOff
 from tangy_hw.wiring import Wired, wire
 from tangy_profiles.errors import TangyError
-from tangy_profiles.health import Health
 
 BEAT_SECONDS = 0.1
 SILENT_SECONDS = 0.15
@@ -36,14 +47,12 @@ SILENT_SECONDS = 0.15
 stand then, and stands when it has braked; it does not drive on when that takes longer."""
 SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
-MOST_PARTICLES = 60  # that are told, of those by which it finds its place
 LONGEST_LINE = 1 << 22
 LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
 END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
 MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 
-Asked = dict[str, Any]
 Answer = dict[str, Any]
 
 
@@ -58,7 +67,7 @@ class RobotProcess:
         self._patience = SILENT_STEPPED if stepped else SILENT_SECONDS
         self._stepped = stepped
         self._heard = time.monotonic()
-        self._doing: dict[int, asyncio.Task[None]] = {}
+        self._doing: dict[int | str, asyncio.Task[None]] = {}
         self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
         self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
         self.robot.alone = self._why_alone
@@ -84,39 +93,73 @@ class RobotProcess:
     # ---------------------------------------------------------------------- the lines
 
     async def take(self, line: bytes) -> None:
-        """Take a line of the program."""
+        """Take a line of the program; what is wrong with one is answered, and ends nothing."""
         self._heard = time.monotonic()
         try:
-            asked = json.loads(line)
-            do = asked.get("do")
-        except (ValueError, AttributeError):
-            self._say({"failed": "That line is no JSON object."})
+            asked = read_line(line)
+        except LineError as error:
+            self.refuse(str(error))
             return
         if "beat" in asked:
             return
-        if do == "stop":  # it waits behind nothing
-            why = str(asked.get("why", "stopped"))
-            await self.robot.stop(why, str(asked.get("by", STAFF)))
-            self._break_off(why)
-        elif do == "release":
-            self.robot.release(str(asked.get("by", "")))
-        elif do == "cancel":
-            self.robot.navigator.cancel()
-            self._break_off(str(asked.get("why", "called off")))
-        elif do == "drive":
-            self.robot.drive_by_hand(Twist(float(asked["forward"]), float(asked["turn"])))
-        elif do in self._deeds:
-            task = asyncio.create_task(self._do(asked))
-            self._doing[asked["id"]] = task
-            task.add_done_callback(lambda task: self._over(task, asked))
-            return
+        try:
+            if asked.get("do") == "stop":  # it waits behind nothing, nor for what is wrong with it
+                await self._stop(asked)
+            if id_of(asked) is None and "id" in asked:
+                raise LineError("An id must be a whole number or a text.")
+            self._heed(asked)
+        except LineError as error:
+            self.refuse(str(error), asked)
+        except Exception as error:  # whoever asked must not wait for ever
+            self.refuse(f"It went wrong ({error!r}).", asked)
+
+    async def _stop(self, asked: Asked) -> None:
+        why, by = asked.get("why"), asked.get("by")
+        why = why if isinstance(why, str) else "stopped"
+        await self.robot.stop(why, by if isinstance(by, str) else STAFF)
+        self._break_off(why)
+
+    def refuse(self, why: str, asked: Asked | None = None) -> None:
+        """Answer a line that is not heeded; without an id to answer to it is only said."""
+        if asked is not None and id_of(asked) is not None:
+            self._answer(asked, failed=why)
         else:
-            self._answer(asked, failed=f"It cannot do {do!r}.")
-            return
+            self._say({"failed": why})
+
+    def _heed(self, asked: Asked) -> None:
+        """Do what a line asks for at once, or begin it.
+
+        Raises:
+            LineError: it cannot be heeded.
+        """
+        match asked.get("do"):
+            case "stop":
+                pass
+            case "release":
+                self.robot.release(text_of(asked, "by", ""))
+            case "cancel":
+                self.robot.navigator.cancel()
+                self._break_off(text_of(asked, "why", "called off"))
+            case "drive":
+                twist = Twist(number_of(asked, "forward"), number_of(asked, "turn"))
+                self.robot.drive_by_hand(twist)
+            case str(do) if do in self._deeds:
+                self._begin(asked)
+                return
+            case do:
+                raise LineError(f"It cannot do {do!r:.100}.")
         self._answer(asked, done={})
 
+    def _begin(self, asked: Asked) -> None:
+        number = id_of(asked)
+        if number is None or number in self._doing:
+            raise LineError(f"{asked['do']} needs an id of its own, to be answered by.")
+        task = asyncio.create_task(self._do(asked))
+        self._doing[number] = task
+        task.add_done_callback(lambda task: self._over(task, asked))
+
     def _answer(self, asked: Asked, **what: Any) -> None:
-        if "id" in asked:
+        if id_of(asked) is not None:
             self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
 
     async def _do(self, asked: Asked) -> None:
@@ -153,14 +196,14 @@ class RobotProcess:
         picture = asked.get("picture")
         return dict(
             await self.robot.perform(
-                text=asked.get("text", ""),
-                picture=None if picture is None else _picture(picture),
+                text=text_of(asked, "text", ""),
+                picture=None if picture is None else picture_of(picture),
                 posture=asked.get("posture"),
             )
         )
 
     async def _go(self, asked: Asked) -> Answer:
-        arrived = await self.robot.go(Pose(*asked["to"]), asked.get("name", ""))
+        arrived = await self.robot.go(pose_of(asked, "to"), text_of(asked, "name", ""))
         return {"arrived": arrived, "pose": list(self.robot.pose)}
 
     async def _spin(self, _: Asked) -> Answer:
@@ -170,7 +213,7 @@ class RobotProcess:
         senses = self._senses
         await self.robot.look_at("card")
         if asked.get("after"):
-            await self.robot.passing.sleep(float(asked["after"]))
+            await self.robot.passing.sleep(number_of(asked, "after"))
         seen = await senses.read_card(set(asked["called"]), int(asked.get("pictures", 5)))
         self._looked = seen, time.monotonic()
         if seen.card is not None:
@@ -218,7 +261,7 @@ class RobotProcess:
         heed = bool(asked.get("asks"))
         await self.robot.passing.until(
             lambda: heed and {ask.seat for ask in self.robot.asking} - there != set(),
-            float(asked["seconds"]),
+            number_of(asked, "seconds"),
         )
 
     async def _settle(self, _: Asked) -> None:
@@ -240,7 +283,7 @@ class RobotProcess:
         await self.robot.relax()
 
     async def _place(self, asked: Asked) -> None:
-        self.robot.navigator.place(Pose(*asked["at"]))
+        self.robot.navigator.place(pose_of(asked, "at"))
 
     async def _fail(self, asked: Asked) -> None:
         self.robot.fail(str(asked["device"]), str(asked["state"]))
@@ -258,52 +301,13 @@ class RobotProcess:
         while True:
             number += 1
             async with self.robot.passing.still:
-                self._say({"beat": self._state(number)})
+                self._say({"beat": beat_of(self.robot, number)})
             await asyncio.sleep(BEAT_SECONDS)
-
-    def _state(self, number: int) -> Answer:
-        robot, navigator = self.robot, self.robot.navigator
-        path = () if navigator.path is None else navigator.path.points
-        return {
-            "number": number,
-            "time": robot.passing.clock.now(),
-            "health": _health(robot.health()),
-            "pose": [round(value, 3) for value in robot.pose],
-            "going": robot.going,
-            "path": [[round(x, 2), round(y, 2)] for x, y in path],
-            "particles": _thinned(navigator.particles),
-            "obstacles": [[round(x, 2), round(y, 2)] for x, y in navigator.obstacles],
-            "asks": [[ask.seat, ask.since] for ask in robot.asking],
-            "hazard": robot.hazard,
-            "stopped": robot.stopped,
-            "failed": robot.failed,
-        }
-
-
-def _picture(told: dict[str, Any]) -> Picture:
-    return Picture(
-        str(told.get("text", "")),
-        str(told.get("number", "")),
-        tuple(map(str, told.get("before", ()))),
-        str(told.get("asks", "")),
-    )
 
 
 def _aged(seen: tuple[CardSeen, float] | None) -> Answer | None:
     """Return what was seen of a card, and how long ago, in s."""
     return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
-
-
-def _health(health: Health) -> list[list[Any]]:
-    def rounded(rate: float | None) -> float | None:
-        return None if rate is None else round(rate, 2)
-
-    return [[r.device, min(r.age, 1e6), r.state, dict(r.facts), rounded(r.rate)] for r in health]
-
-
-def _thinned(particles: Any) -> list[list[float]]:
-    apart = max(1, len(particles) // MOST_PARTICLES)
-    return [[round(float(x), 2), round(float(y), 2)] for x, y, *_ in particles[::apart]]
 
 
 async def _lines() -> asyncio.StreamReader:
@@ -367,14 +371,24 @@ async def _serve(lines: asyncio.StreamReader) -> int:
         out.write({"ready": True, "done": {"screen": wired.robot.screen_url}})
         beating = asyncio.create_task(process.beat())
         try:
-            while line := await lines.readline():
-                await process.take(line)
-        except ValueError:  # a line without an end
-            pass
+            while await _take_next(lines, process):
+                pass
         finally:
             beating.cancel()
             await wired.robot.stop("the program has ended")
     return 0
+
+
+async def _take_next(lines: asyncio.StreamReader, process: RobotProcess) -> bool:
+    """Take the next line; return whether there was one."""
+    try:
+        line = await lines.readline()
+    except ValueError:
+        process.refuse("That line is too long.")
+        return True
+    if line:
+        await process.take(line)
+    return bool(line)
 
 
 def main() -> None:

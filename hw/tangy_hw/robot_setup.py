@@ -57,5 +57,5 @@ class RobotSetup:
             start = body.get("start")
             body["start"] = None if start is None else tuple(map(float, start))
             return cls(**body)
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             raise TangyError("The robot process was not told what robot it is.") from None

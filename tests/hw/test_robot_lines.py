@@ -11,6 +11,8 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tangy_hw import robot as robots
 from tangy_hw import robot_child
@@ -19,6 +21,7 @@ from tangy_hw.devices import MachineClock
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.passing_time import TICK
 from tangy_hw.robot import LiveRobot
+from tangy_hw.robot_beat import beat_of
 from tangy_hw.robot_child import RobotProcess
 from tangy_hw.robot_link import RobotState
 from tangy_hw.wiring import Wired
@@ -43,7 +46,7 @@ class Spoken:
         await self.process.take(json.dumps(line).encode())
 
     def state(self) -> RobotState:
-        return RobotState.from_json(json.loads(json.dumps(self.process._state(1))))
+        return RobotState.from_json(json.loads(json.dumps(beat_of(self.robot, 1))))
 
 
 @asynccontextmanager
@@ -119,3 +122,99 @@ async def test_what_has_failed_of_the_control_is_told_for_good() -> None:
         await one.take(do="release")
         state = one.state()
         assert "ZeroDivisionError" in state.failed and state.hazard == state.failed
+
+
+DEEP = b"[" * 100_000
+WRONG = [
+    b"",
+    b"hello",
+    b"[1, 2]",
+    b'"go"',
+    b"\xff\xfe",
+    DEEP,
+    b'{"do": ' + DEEP,
+    b'{"id": [1], "do": "spin"}',
+    b'{"id": {"a": 1}, "do": "wait", "seconds": 0}',
+    b'{"id": null, "do": "spin"}',
+    b'{"id": true, "do": "spin"}',
+    b'{"id": 1.5, "do": "spin"}',
+    b'{"do": "spin"}',
+    b'{"id": 1, "do": ["go"]}',
+    b'{"id": 1, "do": {"go": 1}}',
+    b'{"id": 1}',
+    b'{"id": 1, "do": "fly"}',
+    b'{"id": 1, "do": "drive", "forward": "fast", "turn": 0}',
+    b'{"id": 1, "do": "drive", "forward": 0.1}',
+    b'{"do": "drive", "forward": NaN, "turn": 0}',
+    b'{"do": "drive", "forward": 0.1, "turn": Infinity}',
+    b'{"do": "drive", "forward": true, "turn": 0}',
+    b'{"do": "drive", "forward": 1' + 400 * b"0" + b', "turn": 0}',
+    b'{"id": 1, "do": "go", "to": ["a", 1, 0]}',
+    b'{"id": 1, "do": "go", "to": [NaN, 1, 0]}',
+    b'{"id": 1, "do": "go", "to": [1, 1]}',
+    b'{"id": 1, "do": "go", "to": [1, 1, 0], "name": 5}',
+    b'{"id": 1, "do": "place", "at": [1, Infinity, 0]}',
+    b'{"id": 1, "do": "wait", "seconds": NaN}',
+    b'{"id": 1, "do": "wait"}',
+    b'{"id": 1, "do": "perform", "text": ["Hello"]}',
+    b'{"id": 1, "do": "perform", "picture": 7}',
+    b'{"id": 1, "do": "release", "by": ["staff"]}',
+    b'{"id": 1, "do": "cancel", "why": 1}',
+]
+
+
+@pytest.mark.parametrize("line", WRONG, ids=lambda line: line[:40].decode("latin-1"))
+async def test_a_line_that_cannot_be_heeded_is_answered_and_ends_nothing(line: bytes) -> None:
+    async with spoken() as one:
+        await one.process.take(line)
+        await until(lambda: one.said)
+        (answer,) = one.said
+        assert answer["failed"].endswith(".") and "done" not in answer
+        assert answer.get("id", 1) == 1
+        json.dumps(answer)
+        one.said.clear()
+        await one.take(id=2, do="wait", seconds=0)
+        await until(lambda: one.said)
+        assert one.said[0]["id"] == 2 and "done" in one.said[0]
+        assert one.robot.failed == ""
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=9),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
+    max_leaves=6,
+)
+DOES = ("stop", "release", "cancel", "drive", "go", "wait", "place", "perform", "answered", "fail")
+KEYS = ("id", "why", "by", "forward", "turn", "to", "at", "seconds", "text", "picture", "device")
+
+
+@given(
+    do=st.sampled_from(DOES) | JSON,
+    what=st.dictionaries(st.sampled_from(KEYS), JSON),
+)
+async def test_whatever_a_line_holds_the_process_lives(do: Any, what: dict[str, Any]) -> None:
+    async with spoken() as one:
+        await one.take(**{**what, "do": do})
+        await one.take(id="last", do="stop")
+        await until(lambda: any(said.get("id") == "last" for said in one.said))
+        assert one.robot.failed == "" and one.robot.stopped
+
+
+@pytest.mark.parametrize("id", [[1], None, {"a": 1}])
+async def test_a_stop_is_heeded_whatever_else_is_wrong_with_its_line(id: Any) -> None:
+    async with spoken() as one:
+        await one.take(id=id, do="stop", why=["a hand"], by=3)
+        assert one.state().stopped == "stopped" and one.parts.told[0] == "stop"
+        assert "failed" in one.said[0]
+        await one.take(do="release", by="staff")
+        assert one.state().stopped == ""
+
+
+async def test_a_second_line_of_an_id_that_is_under_way_is_refused() -> None:
+    async with spoken() as one:
+        await one.take(id=1, do="wait", seconds=60)
+        await one.take(id=1, do="wait", seconds=0)
+        assert "id of its own" in one.said[0]["failed"]
+        await one.take(id=2, do="cancel", why="enough")
+        await until(lambda: len(one.said) == 3)
+        assert [said.get("failed") for said in one.said if said["id"] == 1][1] == "enough"

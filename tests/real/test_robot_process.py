@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import select
@@ -19,6 +20,7 @@ import pytest
 
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot import HAZARD_SECONDS
+from tangy_hw.robot_child import LONGEST_LINE
 from tangy_hw.robot_link import CHILD, RobotLink
 from tangy_hw.stopping import BrokenOff
 from tangy_tui.live.bench import Bench
@@ -216,3 +218,32 @@ def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
 
     link.restart()
     assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
+
+
+def test_lines_that_make_no_sense_are_answered_and_the_robot_process_lives(bench: Bench) -> None:
+    wrong = [
+        "[" * 100_000,
+        '{"id": [1], "do": "spin"}',
+        '{"id": 1, "do": ["go"]}',
+        '{"id": 2, "do": "drive", "forward": "fast", "turn": 0}',
+        '{"id": 3, "do": "drive", "forward": NaN, "turn": 0}',
+        "x" * (2 * LONGEST_LINE),
+    ]
+    with subprocess.Popen(  # noqa: S603 - our own program
+        [*CHILD, str(os.getpid())], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as robot:
+        assert robot.stdin is not None and robot.stdout is not None
+        said = (json.loads(line) for line in robot.stdout)
+        robot.stdin.write(setup_on(bench).to_json() + "\n")
+        robot.stdin.flush()
+        assert next(said)["ready"]
+        for line in wrong:
+            robot.stdin.write(line + "\n")
+            robot.stdin.flush()
+            answer = next(one for one in said if "beat" not in one)
+            assert "failed" in answer, line[:60]
+        robot.stdin.write('{"id": 9, "do": "wait", "seconds": 0.1}\n')
+        robot.stdin.flush()
+        assert "done" in next(one for one in said if one.get("id") == 9)
+        robot.stdin.close()
+        assert robot.wait(PATIENCE) == 0
