@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tangy_sim.faulty import FaultyWorld
 from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, Move
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.monitoring.telling import move_words
+from tangy_tui.monitoring.telling import move_words, whom_to_call
 from tangy_tui.monitoring.times import clock
 
 Read = Callable[[], str | None]
 Write = Callable[[str], None]
 
 HALTED = "Tangy stands still. Type: seen, expert, clear, what, faults, or quit."
+SIMULATED = "The simulated expert has looked at it."
+CALLS_NOBODY = "Tangy calls nobody itself."
 MEANINGS = (
     ("seen", "you have seen it"),
-    ("expert", "call the expert"),
+    ("expert", "whom to call"),
     ("clear", "all is well again: Tangy goes on"),
     ("what", "what to do"),
     ("faults", "all faults of this game"),
@@ -72,8 +75,10 @@ def attend(game: Supervision, write: Write, read: Read, who: str) -> list[Event]
             told = game.acknowledge(who)
             if told:
                 return told
-            write("It was seen already: expert calls the expert, clear lets Tangy go on.")
+            write("It was seen already: expert says whom to call, clear lets Tangy go on.")
         elif word in ("expert", "call expert", "e"):
+            simulated = isinstance(game.world, FaultyWorld)
+            write(SIMULATED if simulated else f"{whom_to_call(game.robot)} {CALLS_NOBODY}")
             return game.call_expert(who)
         elif word in ("clear", "cleared", "c"):
             if fault.acknowledged:

@@ -84,6 +84,14 @@ class Driver:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """A person whom staff call: a name, and a telephone number ("": none is given)."""
+
+    name: str
+    telephone: str = ""
+
+
+@dataclass(frozen=True)
 class FaceModels:
     """The two ONNX files by which faces are found and told apart, where a facility has them."""
 
@@ -98,6 +106,7 @@ class Robot:
     `faces` are its files for faces; without them it uses what comes with OpenCV. `drivers` drive
     it when it is there in earnest, by the name of the device. `gaze` says which limb does what
     (angles in degrees) to look at a `card` and at a `face`. `file` is where all this was read.
+    `expert` is whom the facility has named for what staff cannot mend; Tangy itself calls nobody.
     """
 
     name: str
@@ -110,6 +119,7 @@ class Robot:
     file: Path = Path()
     drivers: Mapping[str, Driver] = field(default_factory=dict)
     gaze: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
+    expert: Contact | None = None
 
     def check(self, activity: Activity) -> None:
         """Check that the body knows every posture of an activity.
@@ -184,9 +194,20 @@ def read_robot(top: Table, path: Path) -> Robot:
         path,
         MappingProxyType(_drivers(top, devices)),
         MappingProxyType(_gaze(top, limbs)),
+        _contact(top, "expert"),
     )
     top.close()
     return robot
+
+
+def _contact(top: Table, key: str) -> Contact | None:
+    """Read whom staff call, where the robot's file says so."""
+    if key not in top:
+        return None
+    entry = top.table(key)
+    contact = Contact(entry.text("name"), entry.text("telephone") if "telephone" in entry else "")
+    entry.close()
+    return contact
 
 
 def _face_models(top: Table, folder: Path) -> FaceModels | None:

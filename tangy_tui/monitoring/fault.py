@@ -33,7 +33,7 @@ MOVES: Mapping[str, str] = {
     "teacher asked": "asked the teacher",
     "halted": "halted",
     "acknowledged": "was acknowledged",
-    "expert called": "the expert was called",
+    "expert called": "staff were shown whom to call",
     "still there": "it is still there: it must be mended before it can be cleared",
     "escalated": "that did not help",
     "went on": "went on",

@@ -223,7 +223,7 @@ class Supervision:
         return self._recovery.move(fault, Move("acknowledged", self.seconds, by=by))
 
     def call_expert(self, by: str) -> list[Event]:
-        """Call the expert about the fault that halts the robot."""
+        """Note that staff turn to the expert about what halts the robot, and do what Tangy can."""
         fault = self.halted
         if fault is None:
             return []

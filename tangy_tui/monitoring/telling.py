@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
 from tangy_profiles.health import STALE, Fact
+from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.fault import MOVES, Move
@@ -113,6 +114,15 @@ RECOVERY_WORDS = {
 }
 """The recoveries in words."""
 _TO = RECOVERY_WORDS
+
+
+def whom_to_call(robot: Robot) -> str:
+    """Say whom staff call about what they cannot mend, or that nobody is named."""
+    expert = robot.expert
+    if expert is None:
+        return "No expert is named for this robot: ask your facility who looks after it."
+    number = f": {expert.telephone}" if expert.telephone else ""
+    return plain(f"Call the expert, {expert.name}{number}.")
 
 
 def _number(value: Fact) -> str:

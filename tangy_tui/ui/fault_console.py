@@ -292,7 +292,7 @@ class FaultConsole:
 
     @property
     def takes_time(self) -> bool:
-        """Whether it takes its time to call the expert and to clear."""
+        """Whether it takes its time to do something about the fault."""
         return self.beside is not None
 
     @property
@@ -302,8 +302,13 @@ class FaultConsole:
         link = world.link if isinstance(world, LiveWorld) else None
         return link is not None and bool(link.silent or link.state.failed)
 
+    @property
+    def simulated(self) -> bool:
+        """Whether the expert is simulated, as all else in the room."""
+        return isinstance(self.supervision.world, FaultyWorld | BenchedWorld)
+
     async def call_expert(self) -> None:
-        """Call the expert about the fault that halts the robot."""
+        """Note that the expert is needed for what halts the robot, and do what Tangy can."""
         await self._do(lambda: self.supervision.call_expert(self._who))
 
     async def clear(self) -> None:
@@ -322,7 +327,7 @@ class FaultConsole:
 
     def refuses(self) -> str:
         """Say why no fault can be brought about now; empty if one can."""
-        if not isinstance(self.supervision.world, FaultyWorld | BenchedWorld):
+        if not self.simulated:
             return NOT_SIMULATED
         return NO_GAME if self.supervision.over else ""
 

@@ -43,7 +43,7 @@ _DOING = {
     "halted": "Tangy stands still",
     "acknowledged": "",  # what came before that is still so
     "kept": "another fault comes first",
-    "expert called": "the expert was called",
+    "expert called": "staff were shown whom to call",
     "still there": "it is still there",
     "given up": "the game was given up",
     "left open": "left open at the end of the game",

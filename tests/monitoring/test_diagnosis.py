@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_profiles.errors import ProfileError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.health import Fact
-from tangy_profiles.robot import load_robot
+from tangy_profiles.robot import Contact, load_robot
 from tangy_sim.body import WELL, readings
 from tangy_sim.injection import KINDS
 from tangy_tui.learning.effects import Effects, Mismatch
 from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import diagnose
-from tangy_tui.monitoring.telling import evidence_words
+from tangy_tui.monitoring.telling import evidence_words, whom_to_call
 
 ROBOT = load_robot()
 BOOK = load_faults(ROBOT)
@@ -101,3 +105,23 @@ def test_a_mismatch_belongs_to_the_fault_that_explains_it() -> None:
     }
     told = {d.rule.code: d.mismatches for d in diagnose(BOOK, found, [place, other])}
     assert told == {"path-blocked": (place,), "unexplained": (other,)}
+
+
+def test_staff_read_whom_to_call_or_that_nobody_is_named() -> None:
+    nobody = load_robot()
+    assert whom_to_call(nobody).startswith("No expert is named")
+    named = replace(nobody, expert=Contact("Anna Berg", "030 901820"))
+    assert whom_to_call(named) == "Call the expert, Anna Berg: 030 901820."
+    assert whom_to_call(replace(nobody, expert=Contact("Anna Berg"))) == (
+        "Call the expert, Anna Berg."
+    )
+
+
+def test_a_robots_file_names_the_expert(tmp_path: Path) -> None:
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    file = tmp_path / "mine.toml"
+    file.write_text(f'{shipped}\n[expert]\nname = "Anna Berg"\n', encoding="utf-8")
+    assert load_robot(str(file)).expert == Contact("Anna Berg")
+    file.write_text(f'{shipped}\n[expert]\nnmae = "Anna Berg"\n', encoding="utf-8")
+    with pytest.raises(ProfileError, match="expert"):
+        load_robot(str(file))

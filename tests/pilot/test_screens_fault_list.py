@@ -164,7 +164,7 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
         for words in (
             "0:31 noticed",
             "0:31 halted",
-            "0:31 the expert was called, by ann",
+            "0:31 staff were shown whom to call, by ann",
             "5:31 was cleared, by ann",
             "emergency stop, pressed: yes",
             "to be expected: no",

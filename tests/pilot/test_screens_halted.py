@@ -80,7 +80,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
         assert "laser scanner, newest data: 2 s old" in text
         assert "at most 0.25 s old" in text
         assert "1. Do not push or pull the robot." in text
-        assert "Call the expert for the robot with e." in text
+        assert "No expert is named for this robot" in text
         assert "0:31 halted" in text
 
 
@@ -97,7 +97,7 @@ async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
         await pilot.press("e", "e")
         await pilot.pause()
         assert "It is gone now: press c to clear." in seen(pilot)
-        assert "The expert was called already" in seen(pilot)
+        assert "The simulated expert has looked at it." in seen(pilot)
         assert kinds_of(dialog.fault).count("expert called") == 1
 
 

@@ -80,15 +80,17 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
             await lives(pilot, link)
             await pilot.press("c")
             assert "! Wait. The robot process is started again ..." in seen(pilot)
-            assert "^x STOP" in pilot.text() and "e call expert" not in pilot.text()
+            assert "^x STOP" in pilot.text() and "c clear" not in pilot.text()
             await pilot.press("ctrl+x")
             assert link.told[-1] == "stop: staff stopped it" and "STOPPED" in pilot.lines()[0]
             link.told.append("another process")
         finally:
             link.free = True
-        await until(pilot, lambda: "The expert was called. Press c" in seen(pilot))
+        await until(
+            pilot, lambda: "The robot process was started again. No expert is named" in seen(pilot)
+        )
         assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
-        assert "e call expert" in pilot.text()
+        assert "c clear" in pilot.text()
 
 
 async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(

@@ -15,7 +15,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import move_words
+from tangy_tui.monitoring.telling import move_words, whom_to_call
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -35,13 +35,14 @@ from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 SEEN_FIRST = "Press a first: it says that you have seen this."
-SEEN = "You have seen it. Press e to call the expert, or c when all is well."
-ALREADY_CALLED = "The expert was called already. Press c when all is well."
-CALLED = "The expert was called. Press c when all is well."
-STILL_THERE = "It is still there. Tangy stands still. Press e to call the expert (again)."
+SEEN = "You have seen it. Press e to see whom to call, or c when all is well."
+CALL_YOURSELF = "Tangy calls nobody itself. Press c when all is well."
+SIMULATED = "The simulated expert has looked at it. Press c when all is well."
+RESTARTED = "The robot process was started again."
+STILL_THERE = "It is still there. Tangy stands still. Press e to see whom to call."
 STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
 RESTARTING = "The robot process is started again ..."
-CALLING = "The expert is called ..."
+CALLING = "The simulated expert looks at it ..."
 LOOKING = "Looking whether it is gone ..."
 KEYS = ("a", "e", "c", "g", "escape")
 
@@ -53,17 +54,21 @@ class Desk(Protocol):
 
     @property
     def takes_time(self) -> bool:
-        """Whether it takes its time to call the expert and to clear."""
+        """Whether it takes its time to do something about the fault."""
 
     @property
     def restarts(self) -> bool:
         """Whether calling the expert starts the robot process again."""
 
+    @property
+    def simulated(self) -> bool:
+        """Whether the expert is simulated, as all else in the room."""
+
     def acknowledge(self) -> None:
         """Say that it was seen."""
 
     async def call_expert(self) -> None:
-        """Call the expert."""
+        """Note that the expert is needed, and do what Tangy itself can."""
 
     async def clear(self) -> None:
         """Let the robot go on, if the fault is gone."""
@@ -88,14 +93,14 @@ class CriticalDialog(Dialog[None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("a", "nothing", "I have seen it"),
-        Binding("e", "nothing", "Call the expert"),
+        Binding("e", "nothing", "Show whom to call"),
         Binding("c", "nothing", "Clear it: all is well, Tangy goes on"),
         Binding("g,escape", "nothing", "Give the game up", key_display="g esc"),
     ]
     HELP = (
-        "Tangy has stopped and stands still. a says that you have seen it, e calls the expert, "
-        "and c lets Tangy go on, if the fault is gone; otherwise nothing moves. g or esc gives "
-        "the game up, after asking. Up and down scroll."
+        "Tangy has stopped and stands still. a says that you have seen it, e shows whom to call "
+        "(Tangy calls nobody itself), and c lets Tangy go on, if the fault is gone; otherwise "
+        "nothing moves. g or esc gives the game up, after asking. Up and down scroll."
     )
 
     def __init__(
@@ -206,7 +211,7 @@ class CriticalDialog(Dialog[None]):
     def _takes(self, key: str) -> str:
         """Say what a key has done that takes its time, "" if it has nothing done."""
         if key == "e" and not self._called:
-            return RESTARTING if self._desk.restarts else CALLING
+            return RESTARTING if self._desk.restarts else CALLING if self._desk.simulated else ""
         return LOOKING if key == "c" and self._fault.acknowledged else ""
 
     async def _tried(self, key: str) -> None:
@@ -224,11 +229,11 @@ class CriticalDialog(Dialog[None]):
             case "a":
                 desk.acknowledge()
                 self.say(SEEN)
-            case "e" if self._called:
-                self.say(ALREADY_CALLED)
             case "e":
-                await desk.call_expert()
-                self.say(CALLED)
+                restarts = desk.restarts
+                if not self._called:
+                    await desk.call_expert()
+                self.say(self._whom_to_call(restarts and not desk.restarts))
             case "c" if not fault.acknowledged:
                 self.say(SEEN_FIRST)
             case "c":
@@ -241,9 +246,16 @@ class CriticalDialog(Dialog[None]):
             case _:
                 self.run_worker(self._confirm(), group="give up", exclusive=True)
 
+    def _whom_to_call(self, restarted: bool) -> str:
+        """Say whom to call, and what was done meanwhile."""
+        if self._desk.simulated:
+            return SIMULATED
+        begun = f"{RESTARTED} " if restarted else ""
+        return f"{begun}{whom_to_call(self._robot)} {CALL_YOURSELF}"
+
     @property
     def _called(self) -> bool:
-        """Whether the expert was called, and the fault not found to be still there since then."""
+        """Whether staff asked whom to call, and it was not found to be still there since then."""
         kinds = [m.kind for m in self._fault.moves if m.kind in ("expert called", "still there")]
         return kinds[-1:] == ["expert called"]
 
@@ -272,7 +284,7 @@ class CriticalDialog(Dialog[None]):
         if self._doing:
             return (("^x", "STOP"), ("?", "help"))
         seen = () if self._fault.acknowledged else (("a", "seen"),)
-        return (*seen, ("e", "call expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
+        return (*seen, ("e", "expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
 
     def _write(self, width: int) -> list[Line]:
         fault, supervision = self._fault, self._desk.supervision
@@ -290,7 +302,7 @@ class CriticalDialog(Dialog[None]):
             lines += paragraph(clean(so_far), width, "dim")
         lines += heading("What to do, and whom to call")
         lines += advice_lines(fault.advice, width)
-        lines += paragraph("Call the expert for the robot with e.", width)
+        lines += paragraph(clean(whom_to_call(self._robot)), width)
         pieces = evidence_of(fault, book, robot)
         pieces += ages_of(fault, book, robot, supervision.world.health())
         if pieces:
