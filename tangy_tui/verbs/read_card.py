@@ -53,7 +53,7 @@ def read_card(
 ) -> None:
     """Read Tangy's printed cards in pictures.
 
-    A cell that cannot be told is hidden, and never a guess. With --called the answer is how the
+    A cell that cannot be told is hidden, and never a guess; of several cards none is read. With --called the answer is how the
     person is doing; hidden cells matter only where they could change it. What a hand hides in one
     picture another may show: give several of the same card with --together.
 
@@ -222,6 +222,8 @@ def _row(
 
 def _told(row: dict[str, Any], reading: CardReading, unseen: str) -> str:
     """Say in words what was read; `unseen` is the state of a card that is not in view."""
+    if len(reading.cards) > 1:
+        return f"{reading.problem}; which one is meant cannot be told, so none is read"
     if row["card"] is None:
         told = reading.problem
     else:

@@ -102,8 +102,31 @@ def test_a_card_is_read_from_colours_of_any_kind(
     done = tangy("read-card", tmp_path / file, "--json")
     assert done.returncode == 0, done.stderr
     [row] = json.loads(done.stdout)
-    assert [*row] == ["file", "card", "marked", "hidden", "confidence", "cells"]
+    keys = ["file", "card", "marked", "hidden", "confidence", "cells", "cards", "problem"]
+    assert [*row] == keys
     assert (row["card"], row["marked"], row["hidden"]) == (42, [], [])
+    assert (row["cards"], row["problem"]) == ([42], "")
+
+
+def test_of_several_cards_in_a_picture_none_is_read_or_judged(tangy: Tangy, tmp_path: Path) -> None:
+    tangy("cards", "print", "--first", 42, "--count", 2, "--png", tmp_path, "--dpi", 60)
+    one, other = (Image.open(tmp_path / f"card-04{last}.png") for last in (2, 3))
+    both = Image.new("RGB", (one.width * 2, one.height), (120, 90, 60))
+    both.paste(one, (0, 0))
+    both.paste(other, (one.width, 0))
+    both.paste((200, 170, 150), (0, 0, one.width, one.height // 4))  # a sleeve on the upper tags
+    both.save(tmp_path / "both.png")
+    done = tangy("read-card", tmp_path / "both.png", "--called", "1,2")
+    assert done.returncode == 0 and done.stderr == ""
+    assert "two cards in sight: 42 and 43; which one is meant cannot be told" in done.stdout
+    done = tangy("read-card", tmp_path / "both.png", "--called", "1,2", "--json")
+    [row] = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert (row["card"], row["marked"], row["cards"]) == (None, [], [42, 43])
+    assert row["state"] == "occluded" and row["problem"] == "two cards in sight: 42 and 43"
+    files = [tmp_path / "both.png", tmp_path / "card-043.png"]
+    [row] = json.loads(tangy("read-card", *files, "--together", "--json").stdout)
+    assert row["card"] is None
 
 
 def test_what_was_read_is_drawn(tangy: Tangy, tmp_path: Path) -> None:

@@ -1,13 +1,13 @@
-"""Where cards are in a picture: their corner tags, and the plane that these lie on."""
+"""Where cards are in a picture: all that are there, and the plane that each lies on."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.card_face import HEIGHT, LAST_CARD, TAGS, WIDTH
+from tangy_hw.perception.cards.tags import Tag, is_printed, joined, tags_enlarged, tags_in
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,23 +16,22 @@ if TYPE_CHECKING:
     Plane = NDArray[Any]
 
 NEAR_ENOUGH = 4.0  # mm that a tag's corner may lie off the plane through the card's other tags
-LARGER = 2.0  # how many times larger a picture is looked at when tags are missing
-MOST_LARGER = 1_000_000  # pixels of such a larger picture's origin
-
-QUICK, THOROUGH, STEP = (11, 11), (7, 21), 14
-"""Sides of the windows over which a picture is made black and white, in pixels."""
+ELSEWHERE = 1.5  # sides of a tag off its place on a card, from which it is on a copy of it
+MOST_LARGER = 1_000_000  # pixels of a picture that is enlarged as a whole
 
 
 @dataclass(frozen=True)
 class Sighting:
     """A card that may be there: its number, how many of its tags were seen, and its plane.
 
-    `plane` takes mm on the card to pixels of the picture.
+    `plane` takes mm on the card to pixels of the picture. `sure` says whether a card is there,
+    legible or not: several tags lie on one plane, or the only one is printed as tags are.
     """
 
     card: int
     tags: int
     plane: Plane
+    sure: bool = True
 
     @property
     def cell_area(self) -> float:
@@ -55,18 +54,12 @@ def project(plane: Plane, points: NDArray[Any]) -> NDArray[Any]:
 
 
 def find_cards(grey: Picture) -> list[Sighting]:
-    """Find the cards in a grey picture, the surest first; none of them is verified yet."""
-    import cv2
-    import numpy as np
+    """Find all cards in a grey picture, the best seen first; none of them is verified yet.
 
-    tags = _tags(grey, 1.0, QUICK)
-    found = _sightings(tags)
-    if found and found[0].tags == len(TAGS):
-        return found
-    if not found or found[0].tags < 2:
-        for tag, corners in _tags(grey, 1.0, THOROUGH).items():
-            tags.setdefault(tag, corners)
-        found = _sightings(tags)
+    Two copies of one card are two.
+    """
+    tags = tags_in(grey)
+    found = _sightings(grey, tags)
     if found and found[0].tags == len(TAGS):
         return found
     if found and found[0].tags > 1:  # the others are near
@@ -75,91 +68,85 @@ def find_cards(grey: Picture) -> list[Sighting]:
         box = (0, 0, grey.shape[1], grey.shape[0])
     else:
         return found
-    left, top, right, bottom = box
-    part = grey[top:bottom, left:right]
-    large = cv2.resize(part, None, fx=LARGER, fy=LARGER, interpolation=cv2.INTER_CUBIC)
-    for tag, corners in _tags(large.astype(np.uint8), LARGER, THOROUGH).items():
-        tags.setdefault(tag, corners + np.array([left, top]))
-    return _sightings(tags)
+    return _sightings(grey, joined(tags, tags_enlarged(grey, box)))
 
 
-def _tags(grey: Picture, scale: float, windows: tuple[int, int]) -> dict[int, NDArray[Any]]:
-    """Return the corners of the tags in a picture; the largest where one is seen twice."""
-    found: dict[int, NDArray[Any]] = {}
-    corners, ids, _ = _detector(windows).detectMarkers(grey)
-    for place, tag in enumerate(() if ids is None else ids.ravel()):
-        seen = (corners[place][0] + 0.5) / scale - 0.5
-        if tag not in found or _area(seen) > _area(found[int(tag)]):
-            found[int(tag)] = seen.astype(float)
-    return found
-
-
-@cache
-def _detector(windows: tuple[int, int]) -> Any:
-    import cv2
-
-    parameters = cv2.aruco.DetectorParameters()
-    parameters.adaptiveThreshWinSizeMin, parameters.adaptiveThreshWinSizeMax = windows
-    parameters.adaptiveThreshWinSizeStep = STEP
-    parameters.minMarkerPerimeterRate = 0.02
-    parameters.perspectiveRemovePixelPerCell = 6
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_1000)
-    return cv2.aruco.ArucoDetector(dictionary, parameters)
-
-
-def _area(corners: NDArray[Any]) -> float:
-    import cv2
-    import numpy as np
-
-    return float(cv2.contourArea(corners.astype(np.float32)))
-
-
-def _sightings(tags: dict[int, NDArray[Any]]) -> list[Sighting]:
-    cards: dict[int, dict[int, NDArray[Any]]] = defaultdict(dict)
-    for tag, corners in tags.items():
-        if 1 <= tag // 4 <= LAST_CARD:
-            cards[tag // 4][tag % 4] = corners
-    found = [seen for card, corners in cards.items() for seen in [_through(card, corners)] if seen]
+def _sightings(grey: Picture, tags: list[Tag]) -> list[Sighting]:
+    cards: dict[int, list[Tag]] = defaultdict(list)
+    for tag in sorted(tags, key=lambda tag: -tag.side):
+        cards[tag.card].append(tag)
+    found = [seen for of_card in cards.values() for seen in _copies(grey, of_card)]
     return sorted(found, key=lambda seen: (-seen.tags, -seen.cell_area))
 
 
-def _through(card: int, tags: dict[int, NDArray[Any]]) -> Sighting | None:
-    """Lay a plane through the tags of a card, without those that do not lie on it."""
+def _copies(grey: Picture, tags: list[Tag]) -> list[Sighting]:
+    """Return the sightings of one card whose tags these are, the largest first: mostly one."""
+    found: list[Sighting] = []
+    left = tags
+    while left:
+        corners = {tag.corner: tag for tag in reversed(left)}  # the largest of each
+        laid = _through(corners)
+        if laid is None:
+            break
+        plane, kept = laid
+        sure = len(kept) > 1 or is_printed(grey, kept[0])
+        found.append(Sighting(kept[0].card, len(kept), plane, sure))
+        left = [tag for tag in left if tag not in kept and _is_elsewhere(tag, plane, kept)]
+    return found
+
+
+def _is_elsewhere(tag: Tag, plane: Plane, kept: list[Tag]) -> bool:
+    """Say whether a tag cannot be one of the card that lies on a plane through other tags."""
+    if len(kept) == 1 and tag.corner != kept[0].corner:
+        return False  # how the card lies is not known well enough
+    place = project(plane, _on_card(tag.corner)).mean(0)
+    off = float(abs(tag.corners.mean(0) - place).max())
+    return off > ELSEWHERE * tag.side
+
+
+def _on_card(corner: int) -> NDArray[Any]:
+    """Return where the four corners of a tag are on the card, in mm."""
+    import numpy as np
+
+    box = TAGS[corner]
+    ends = [(box.left, box.top), (box.right, box.top)]
+    return np.array([*ends, (box.right, box.bottom), (box.left, box.bottom)])
+
+
+def _through(tags: dict[int, Tag]) -> tuple[Plane, list[Tag]] | None:
+    """Lay a plane through the tags of a card, without those that do not lie on it.
+
+    Returns the plane and the tags that do; None where there is none.
+    """
     import cv2
     import numpy as np
 
-    on_card = {
-        corner: np.array(
-            [(b.left, b.top), (b.right, b.top), (b.right, b.bottom), (b.left, b.bottom)]
-        )
-        for corner, b in enumerate(TAGS)
-    }
     kept = dict(tags)
     while kept:
-        here = np.vstack([on_card[corner] for corner in kept])
-        there = np.vstack([kept[corner] for corner in kept])
+        here = np.vstack([_on_card(corner) for corner in kept])
+        there = np.vstack([tag.corners for tag in kept.values()])
         back, _ = cv2.findHomography(there, here)
         if back is None or abs(np.linalg.det(back)) < 1e-12:
             return None
         off = np.abs(project(back.astype(float), there) - here).max(1).reshape(-1, 4).max(1)
         if off.max() <= NEAR_ENOUGH:
             plane = np.linalg.inv(back.astype(float))
-            return Sighting(card, len(kept), plane / plane[2, 2])
+            return plane / plane[2, 2], list(kept.values())
         if len(kept) == 2:  # which of two is wrong cannot be seen: the smaller is less sure
-            kept.pop(min(kept, key=lambda corner: _area(kept[corner])))
+            kept.pop(min(kept, key=lambda corner: kept[corner].side))
         else:
-            kept.pop(_worst(kept, on_card))
+            kept.pop(_worst(kept))
     return None
 
 
-def _worst(tags: dict[int, NDArray[Any]], on_card: dict[int, NDArray[Any]]) -> int:
+def _worst(tags: dict[int, Tag]) -> int:
     """Return the tag without which the others lie best on one plane."""
     import cv2
     import numpy as np
 
     def without(corner: int) -> float:
-        here = np.vstack([on_card[other] for other in tags if other != corner])
-        there = np.vstack([tags[other] for other in tags if other != corner])
+        here = np.vstack([_on_card(other) for other in tags if other != corner])
+        there = np.vstack([tag.corners for other, tag in tags.items() if other != corner])
         back, _ = cv2.findHomography(there, here)
         if back is None:
             return float("inf")

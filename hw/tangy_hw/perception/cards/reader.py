@@ -42,6 +42,8 @@ class CardReading:
 
     Masks have the bits of `Deck`'s cells. `cells` is the probability that a cell is marked;
     `confidence` that of the least sure cell that was told; `problem` says why there is no card.
+    `cards` are the numbers of all cards in sight, legible or not, a copy as often as it lies there:
+    where they are several none is read, for nothing tells whose it is.
     """
 
     card: int | None
@@ -52,6 +54,27 @@ class CardReading:
     problem: str = ""
     parts: tuple[tuple[float, float, float], ...] = ()
     corners: tuple[tuple[float, float], ...] = ()
+    cards: tuple[int, ...] = ()
+
+
+def cards_in(readings: Sequence[CardReading]) -> tuple[int, ...]:
+    """Return the numbers of all cards in sight in one picture or another of a table."""
+    most = max((reading.cards for reading in readings), key=len, default=())
+    more = {card for reading in readings for card in reading.cards}.difference(most)
+    return tuple(sorted((*most, *more)))
+
+
+def several_words(cards: Sequence[int]) -> str:
+    """Say that several cards are in sight."""
+    if len(set(cards)) == 1:
+        return f"{_count(len(cards))} copies of card {cards[0]} in sight"
+    *first, last = sorted(set(cards))
+    return f"{_count(len(cards))} cards in sight: {', '.join(map(str, first))} and {last}"
+
+
+def _count(number: int) -> str:
+    words = ("no", "one", "two", "three", "four")
+    return words[number] if number < len(words) else str(number)
 
 
 def _reconsidered(parts: Real, measured: Measured) -> Real:
@@ -74,7 +97,7 @@ class CardReader:
         self.face = Face(deck)
 
     def read(self, picture: Picture) -> CardReading:
-        """Read the card in a picture (blue, green, red); of several, the one best seen."""
+        """Read the card in a picture (blue, green, red); of several, none."""
         import cv2
         import numpy as np
 
@@ -91,17 +114,22 @@ class CardReader:
         import cv2
 
         grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY).astype("uint8")
+        sightings = find_cards(grey)
+        there = tuple(sorted(seen.card for seen in sightings if seen.sure))
+        if len(there) > 1:
+            return self.several(there)
         problem = NO_TAGS
-        for seen in find_cards(grey)[:TRIES]:
+        for seen in sightings[:TRIES]:
             reading = self._read_card(picture, seen)
             if reading.card is not None:
-                return reading
-            if seen.tags > 1:  # a single one may be no tag at all
+                there = there if seen.sure else (*there, reading.card)
+                return reading if len(there) == 1 else self.several(there)
+            if seen.sure:  # else it may be no tag at all
                 problem = reading.problem
-        return self.nothing(problem)
+        return self.nothing(problem, there)
 
-    def nothing(self, problem: str) -> CardReading:
-        """Return a reading of nothing at all."""
+    def nothing(self, problem: str, cards: Sequence[int] = ()) -> CardReading:
+        """Return a reading of nothing at all, with these cards in sight."""
         cells = self.deck.rows * len(self.deck.columns)
         return CardReading(
             None,
@@ -111,7 +139,12 @@ class CardReader:
             (0.5,) * cells,
             problem,
             ((UNCERTAIN,) * 3,) * cells,
+            cards=tuple(cards),
         )
+
+    def several(self, cards: Sequence[int]) -> CardReading:
+        """Return the reading of several cards: of none of them is told whose it is."""
+        return self.nothing(several_words(cards), sorted(cards))
 
     def _read_card(self, picture: Picture, seen: Sighting) -> CardReading:
         import numpy as np
@@ -185,19 +218,20 @@ class CardReader:
             "",
             tuple((float(a), float(b), float(c)) for a, b, c in parts),
             corners,
+            (card,),
         )
 
     def fuse(self, readings: Sequence[CardReading]) -> CardReading:
         """Make one reading of several of the same card; where they name different ones, none."""
         import numpy as np
 
-        cards = {reading.card for reading in readings if reading.card is not None}
-        if len(cards) != 1:
-            problem = readings[-1].problem if readings and not cards else "different cards in sight"
-            return self.nothing(problem or NO_TAGS)
-        if len(readings) == 1:
-            return readings[0]
-        parts = np.array([r.parts for r in readings if r.card is not None], float)
+        there = cards_in(readings)
+        if len(there) > 1:
+            return self.several(there)
+        told = [reading for reading in readings if reading.card is not None]
+        if len(readings) == 1 or not told:
+            return readings[-1] if readings else self.nothing(NO_TAGS)
+        parts = np.array([reading.parts for reading in told], float)
         odds = np.log(np.clip(parts, 1e-6, 1)[..., MARKED] / np.clip(parts, 1e-6, 1)[..., UNMARKED])
         seen = 1 - parts[..., HIDDEN]
         # Frames of one camera go wrong together, so that many of them count less than each alone.
@@ -205,7 +239,7 @@ class CardReader:
         hidden = np.prod(parts[..., HIDDEN], 0) ** (1 / len(parts) ** 0.5)
         marked = (1 - hidden) / (1 + np.exp(-total))
         fused = np.stack([1 - hidden - marked, marked, hidden], 1).astype(np.float32)
-        return self.told(cards.pop(), fused, readings[-1].corners)
+        return self.told(there[0], fused, readings[-1].corners)
 
     def state(self, reading: CardReading, states: Sequence[CardState], called: set[int]) -> str:
         """Name the user activity state of a card that was read; the unread one if not certain.
@@ -251,4 +285,6 @@ class CardReader:
             "hidden": places(reading.hidden),
             "confidence": round(reading.confidence, 4),
             "cells": [cells[row * columns : (row + 1) * columns] for row in range(self.deck.rows)],
+            "cards": list(reading.cards),
+            "problem": reading.problem,
         }

@@ -1,0 +1,131 @@
+"""All cards in a picture are noticed: where there are several, none is taken for the person's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tangy_hw.perception.cards.locating import project
+from tangy_hw.perception.cards.reader import NO_TAGS, CardReader
+from tangy_hw.perception.cards.tags import is_printed, tags_in
+from tangy_profiles.activity import Activity
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box
+from tangy_sim.card_frames import CardCamera, Frame, View
+from tangy_sim.card_things import background
+
+VIEW = View(pixels=30, noise=2, quality=92, size=(620, 700))
+WHOLE = Box(-3, -3, WIDTH + 3, HEIGHT + 3)
+UPPER, LOWER = TAGS[:2], TAGS[2:]
+SLEEVE = (172, 188, 214)
+
+
+@pytest.fixture(scope="module")
+def reader(activity: Activity) -> CardReader:
+    return CardReader(activity.deck)
+
+
+@pytest.fixture(scope="module")
+def camera(activity: Activity) -> CardCamera:
+    return CardCamera(activity.deck, title=activity.title)
+
+
+def taken(camera: CardCamera, card: int, seed: int = 1, view: View = VIEW) -> Frame:
+    random = np.random.default_rng([seed, card])
+    return camera.take(card, camera.chips(random, 0b10000_00100_01010), view, random)
+
+
+def covered(camera: CardCamera, frame: Frame, *boxes: Box) -> Frame:
+    """Lay a sleeve on parts of a card, in mm."""
+    grid = camera.face.grid
+    ends = [(grid.left, grid.top), (grid.right, grid.top)]
+    ends += [(grid.right, grid.bottom), (grid.left, grid.bottom)]
+    here, there = np.array(ends, np.float32), np.array(frame.corners, np.float32)
+    plane = np.asarray(cv2.getPerspectiveTransform(here, there), float)
+    picture = frame.picture.copy()
+    for box in boxes:
+        left, top, right, bottom = box.left - 4, box.top - 4, box.right + 4, box.bottom + 4
+        outline = np.array([(left, top), (right, top), (right, bottom), (left, bottom)], float)
+        cv2.fillPoly(picture, [np.round(project(plane, outline)).astype(np.int32)], SLEEVE)
+    return replace(frame, picture=picture)
+
+
+def beside(*frames: Frame) -> np.ndarray:
+    return np.hstack([frame.picture for frame in frames])
+
+
+@pytest.mark.parametrize("order", [(17, 31), (31, 17)])
+def test_of_two_cards_none_is_read_and_both_are_named(
+    reader: CardReader, camera: CardCamera, order: tuple[int, int]
+) -> None:
+    reading = reader.read(beside(*(taken(camera, card) for card in order)))
+    assert reading.card is None and reading.cards == (17, 31)
+    assert reading.problem == "two cards in sight: 17 and 31"
+    assert reading.marked == 0 and reading.hidden.bit_count() == 25
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [UPPER, LOWER, TAGS[:3], (TAGS[0], TAGS[2], TAGS[3]), TAGS[1:]],
+    ids=["upper", "lower", "all but the last", "all but the second", "all but the first"],
+)
+def test_a_card_whose_tags_are_partly_hidden_is_noticed_beside_another(
+    reader: CardReader, camera: CardCamera, hidden: tuple[Box, ...]
+) -> None:
+    own = covered(camera, taken(camera, 17), *hidden)
+    reading = reader.read(beside(own, taken(camera, 31)))
+    assert reading.card is None and reading.cards == (17, 31)
+
+
+def test_a_card_is_noticed_by_one_tag_however_far_it_is_out_of_the_picture(
+    reader: CardReader, camera: CardCamera
+) -> None:
+    corner = np.array(taken(camera, 17).corners)
+    left = int(corner[:, 0].max()) - 44  # of it just the tags at the right, one of them covered
+    own = covered(camera, taken(camera, 17), TAGS[1]).picture[:, left:]
+    reading = reader.read(np.hstack([own, taken(camera, 31).picture]))
+    assert reading.card is None and reading.cards == (17, 31)
+
+
+def test_two_copies_of_one_card_are_two_cards(reader: CardReader, camera: CardCamera) -> None:
+    both = beside(taken(camera, 17, 1), taken(camera, 17, 2, replace(VIEW, spin=20, pixels=27)))
+    reading = reader.read(both)
+    assert reading.card is None and reading.cards == (17, 17)
+    assert reading.problem == "two copies of card 17 in sight"
+    half = covered(camera, taken(camera, 17, 1), *UPPER)
+    assert reader.read(beside(half, taken(camera, 17, 2))).cards == (17, 17)
+
+
+def test_three_cards_are_counted(reader: CardReader, camera: CardCamera) -> None:
+    view = replace(VIEW, size=(420, 560), pixels=24)
+    three = beside(*(taken(camera, card, view=view) for card in (9, 101, 44)))
+    assert reader.read(three).problem == "three cards in sight: 9, 44 and 101"
+
+
+def test_a_card_alone_is_read_and_named(reader: CardReader, camera: CardCamera) -> None:
+    for tilt in (0.0, 45.0):
+        reading = reader.read(taken(camera, 17, view=replace(VIEW, tilt=tilt)).picture)
+        assert reading.card == 17 and reading.cards == (17,)
+    hidden = reader.read(covered(camera, taken(camera, 17), camera.face.grid, *UPPER).picture)
+    assert hidden.card is None and hidden.cards == (17,)
+    nothing = reader.read(covered(camera, taken(camera, 17), WHOLE).picture)
+    assert nothing.cards == () and nothing.problem == NO_TAGS
+
+
+def test_a_bent_card_is_one(reader: CardReader, camera: CardCamera) -> None:
+    for seed in range(6):
+        view = replace(VIEW, bend=1.2, tilt=30.0 + 5 * seed, spin=40.0 * seed)
+        assert reader.read(taken(camera, 17, seed, view).picture).cards == (17,)
+
+
+def test_what_happens_to_look_like_a_tag_is_no_card() -> None:
+    """Rooms and tables are full of detail; hardly any of it is black on white."""
+    for number in range(12):
+        random = np.random.default_rng([77, number])
+        room = background(960, 540, random) + random.normal(0, 0.02, (540, 960, 3))
+        grey = cv2.cvtColor(np.clip(room * 255, 0, 255).astype(np.uint8), cv2.COLOR_BGR2GRAY)
+        assert not [tag for tag in tags_in(grey) if is_printed(grey, tag)]
+    noise = np.random.default_rng(2).integers(0, 256, (540, 960), np.uint8)
+    assert not [tag for tag in tags_in(noise) if is_printed(noise, tag)]
