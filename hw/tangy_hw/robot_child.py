@@ -36,7 +36,7 @@ from tangy_hw.robot_lines import (
     text_of,
 )
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.senses import CardSeen, Senses
+from tangy_hw.senses import MOST_PICTURES, CardSeen, Senses
 from tangy_hw.stopping import STAFF, BrokenOff
 from tangy_hw.wiring import Wired, wire
 from tangy_profiles.errors import TangyError
@@ -214,7 +214,11 @@ class RobotProcess:
         await self.robot.look_at("card")
         if asked.get("after"):
             await self.robot.passing.sleep(number_of(asked, "after"))
-        seen = await senses.read_card(set(asked["called"]), int(asked.get("pictures", 5)))
+        seen = await senses.read_card(
+            set(asked["called"]),
+            int(asked.get("pictures", MOST_PICTURES)),
+            identify=bool(asked.get("identify")),
+        )
         self._looked = seen, time.monotonic()
         if seen.card is not None:
             self._read = self._looked

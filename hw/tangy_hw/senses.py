@@ -1,4 +1,4 @@
-"""What the robot makes of its pictures: whose card lies there, how it is marked, whose face it is.
+"""What the robot makes of its pictures: which card lies there, how it is marked, whose face it is.
 
 Several pictures are made one reading of, each taken after the question was put: a picture from
 before the robot arrived tells nothing.
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.drivers.camera import Frame
 from tangy_hw.drivers.camera_source import CameraError
+from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.faces.voting import FRAMES, Vote, vote
 from tangy_hw.sensors import Sensors
 from tangy_profiles.activity import Activity
@@ -22,7 +23,7 @@ from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.robot import FaceModels
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.cards.reader import CardReader, CardReading
+    from tangy_hw.perception.cards.reader import CardReader
     from tangy_hw.perception.faces.gallery import Gallery, Match
     from tangy_hw.perception.faces.reader import FaceReader
 
@@ -39,7 +40,8 @@ class CardSeen:
 
     `card` is its number, None where it cannot be told, and `problem` says why; `marked` and
     `hidden` are masks of its cells; `state` is the user activity state; `pictures` is how many
-    were looked at.
+    were looked at. `cards` are the numbers of all cards in sight: of several none is told. `sure`:
+    pictures of two moments show this card.
     """
 
     card: int | None
@@ -48,6 +50,8 @@ class CardSeen:
     state: str
     problem: str
     pictures: int
+    cards: tuple[int, ...] = ()
+    sure: bool = False
 
     def to_json(self) -> dict[str, Any]:
         """Return it as the robot process tells it."""
@@ -93,29 +97,38 @@ class Senses:
         """Load what readers need, so that the first reading takes no longer than others."""
         await self._in_thread(self._load)
 
-    async def read_card(self, called: set[int], most: int = MOST_PICTURES) -> CardSeen:
+    async def read_card(
+        self, called: set[int], most: int = MOST_PICTURES, *, identify: bool = False
+    ) -> CardSeen:
         """Read the card that the robot looks at, from as many pictures as it takes.
 
         Args:
             called: the numbers that were called.
             most: pictures that are looked at; it ends as soon as the state is told.
+            identify: two of them are to show which card it is, whatever its state is.
         """
-        states = self._activity.user_states
-        readings: list[CardReading] = []
-        fused: CardReading | None = None
-        state = self._activity.unread
-        async for frame in _fresh(self.sensors, most):
-            reader, reading = await self._in_thread(self._read, frame)
-            readings.append(reading)
-            fused = reader.fuse(readings) if len(readings) > 1 else reading
-            if fused.card is None and reading.card is not None:
-                readings, fused = [reading], reading  # another card came into view
-            state = reader.state(fused, states, called)
-            if state != self._activity.unread:
+        look: CardLook | None = None
+        async for frame in _fresh(self.sensors, most, apart=MOMENT):
+            reader = await self._in_thread(self._card_reader)
+            if look is None:
+                look = CardLook(reader, self._activity.user_states, called, identify=identify)
+            if look.is_another(frame.pixels, frame.stamp):
+                look.add(await self._in_thread(reader.read, frame.image()))
+            if look.is_over:
                 break
-        if fused is None:
-            return CardSeen(None, 0, 0, state, NOTHING_SEEN, 0)
-        return CardSeen(fused.card, fused.marked, fused.hidden, state, fused.problem, len(readings))
+        if look is None:
+            return CardSeen(None, 0, 0, self._activity.unread, NOTHING_SEEN, 0)
+        seen = look.reading
+        return CardSeen(
+            seen.card,
+            seen.marked,
+            seen.hidden,
+            look.state,
+            seen.problem,
+            look.pictures,
+            seen.cards,
+            look.sure,
+        )
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
         """Say whose face the robot looks at: so many pictures are looked at for a vote."""
@@ -142,10 +155,10 @@ class Senses:
             self._face_reader = open_reader(self._models)
             self._gallery = Gallery(self._faces)
 
-    def _read(self, frame: Frame) -> tuple[CardReader, CardReading]:
+    def _card_reader(self) -> CardReader:
         self._load()
         assert self._reader is not None  # noqa: S101 - `_load` has seen to that
-        return self._reader, self._reader.read(frame.image())
+        return self._reader
 
     def _match(self, frame: Frame) -> Match | None:
         """Compare the largest face in a picture that is seen well enough, if there is one."""
@@ -160,8 +173,11 @@ class Senses:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work, *args)
 
 
-async def _fresh(sensors: Sensors, most: int) -> AsyncIterator[Frame]:
-    """Give pictures that were taken from now on, at most so many; none if none comes."""
+async def _fresh(sensors: Sensors, most: int, apart: float = 0.0) -> AsyncIterator[Frame]:
+    """Give pictures that were taken from now on, at most so many; none if none comes.
+
+    Each was taken so many s `apart` from the one before.
+    """
     after, seq = time.monotonic() + SETTLE_SECONDS, -1
     given = late = 0
     while given < most and late < 2 and sensors.card_device:
@@ -175,4 +191,5 @@ async def _fresh(sensors: Sensors, most: int) -> AsyncIterator[Frame]:
         seq = frame.seq
         if frame.stamp >= after:
             given += 1
+            after = frame.stamp + apart
             yield frame

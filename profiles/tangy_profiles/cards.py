@@ -167,6 +167,29 @@ def judge_partly(
     return next(state.name for state in states if state.checker == "unread")
 
 
+def is_borne_out(checker: str, deck: Deck, marked: int, unmarked: int, called: int) -> bool:
+    """Say whether cells that were looked at twice bear out what a checker says of a card.
+
+    What says that a person has won, or made a mistake, is to be seen more than once; that all is
+    well, or that nothing can be told, needs no second look.
+
+    Args:
+        checker: one of `CHECKERS`.
+        deck: the deck that the card belongs to.
+        marked: the cells that were seen marked more than once, as a mask.
+        unmarked: those that were seen unmarked more than once.
+        called: as of `judge`.
+    """
+    match checker:
+        case "complete line":
+            return deck.wins((marked | deck.free) & called)
+        case "wrong marks":
+            return bool(marked & ~called)
+        case "missing marks":
+            return bool(unmarked & called)
+    return True
+
+
 def read_deck(table: Table) -> Deck:
     """Read a deck and check that its cards can be filled."""
     rows = table.whole("rows", 1, 9)

@@ -1,0 +1,120 @@
+"""A look at a card: pictures of several moments, made one reading of, and what two of them show.
+
+One picture may be misread: a finger for a chip, a stripe of shadow for a mark. That a person has
+won, or made a mistake, is said only where pictures of two moments show it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from tangy_profiles.card_face import called_cells, numbers_of
+from tangy_profiles.cards import CardState, is_borne_out
+
+if TYPE_CHECKING:
+    from tangy_hw.perception.cards.reader import CardReader, CardReading
+
+MOMENT = 0.1
+"""The s from which two pictures show different moments: a hand or the light has moved by then."""
+
+
+class CardLook:
+    """What is seen of a card in one look. `add` readings until it `is_over`."""
+
+    def __init__(
+        self,
+        reader: CardReader,
+        states: Sequence[CardState],
+        called: set[int],
+        *,
+        identify: bool = False,
+    ) -> None:
+        """Begin a look.
+
+        Args:
+            reader: what made the readings.
+            states: the activity's user states in order of precedence.
+            called: the numbers that were called.
+            identify: it is not over before two moments show which card it is.
+        """
+        self._reader = reader
+        self._states = states
+        self._called = called
+        self._identify = identify
+        self._readings: list[CardReading] = []
+        self._seen: set[bytes] = set()
+        self._last = float("-inf")
+        self._unread = next(state.name for state in states if state.checker == "unread")
+        self.reading = reader.nothing("")
+        """All of the look, made one reading of; there is no card in it where several are seen."""
+        self.state = self._unread
+        """The user activity state that is told; the unread one where none is."""
+
+    def is_another(self, picture: bytes, stamp: float) -> bool:
+        """Say whether a picture, taken at a moment in s, shows another moment than those before."""
+        if stamp < self._last + MOMENT or picture in self._seen:
+            return False
+        self._seen.add(picture)
+        self._last = stamp
+        return True
+
+    def add(self, reading: CardReading) -> None:
+        """Take in what was read in the picture of another moment."""
+        self._readings.append(reading)
+        self.reading = self._reader.fuse(self._readings)
+        self.state = self._reader.state(self.reading, self._states, self._called)
+        if not self._is_borne_out():
+            self.state = self._unread
+
+    @property
+    def pictures(self) -> int:
+        """How many pictures were read."""
+        return len(self._readings)
+
+    @property
+    def sure(self) -> bool:
+        """Whether two moments show the card that is told, and none another."""
+        told = [reading for reading in self._readings if reading.card is not None]
+        return self.reading.card is not None and len(told) > 1
+
+    @property
+    def is_over(self) -> bool:
+        """Whether more pictures would tell nothing more."""
+        if len(self.reading.cards) > 1:
+            return True
+        return self.state != self._unread and (self.sure or not self._identify)
+
+    def _is_borne_out(self) -> bool:
+        """Say whether two moments show what the state rests on, and none shows otherwise."""
+        checker = next(state.checker for state in self._states if state.name == self.state)
+        deck, card = self._reader.deck, self.reading.card
+        if card is None:
+            return True
+        numbers = numbers_of(deck, card, self._reader.deck_seed)
+        marked, unmarked = self._agreed()
+        cells = called_cells(deck, numbers, self._called)
+        return is_borne_out(checker, deck, marked, unmarked, cells)
+
+    def _agreed(self) -> tuple[int, int]:
+        """Return the cells that two moments tell marked, and unmarked, with none against it."""
+        told = [reading for reading in self._readings if reading.card is not None]
+        marked = [reading.marked & ~reading.hidden for reading in told]
+        unmarked = [~reading.marked & ~reading.hidden for reading in told]
+        return _twice(marked) & ~_any(unmarked), _twice(unmarked) & ~_any(marked)
+
+
+def _any(masks: Sequence[int]) -> int:
+    found = 0
+    for mask in masks:
+        found |= mask
+    return found
+
+
+def _twice(masks: Sequence[int]) -> int:
+    """Return the bits that two or more of the masks have."""
+    once = twice = 0
+    for mask in masks:
+        twice |= once & mask
+        once |= mask
+    return twice
