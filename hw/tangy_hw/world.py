@@ -91,7 +91,7 @@ class LiveWorld:
         self.tracker = Tracker(self.activity, self.people)
         self.called: list[int] = []
         self._numbers = self.activity.deck.shuffled(self._order.random)
-        self.cards.view = None
+        self.cards.begin()
         self.requests = SeenRequests(
             self.people, self.commands, self._robot.devices.get("requests")
         )
@@ -242,7 +242,7 @@ class LiveWorld:
         if not self.drive(place):
             return False
         self.tracker.arrive(place)
-        self.cards.view = None
+        self.cards.leave()
         if place != FRONT:
             if self._knows_faces:
                 self._see_who(place)
@@ -279,7 +279,8 @@ class LiveWorld:
         Raises:
             DeviceError: it cannot look.
         """
-        card = self.cards.look(self.tracker.place, self.called, after)
+        sitting = self.who(self.tracker.place)
+        card = self.cards.look(self.tracker.place, self.called, after, person=sitting)
         self.cards.looked("card", person, card)
         self.tracker.seen = self._told_by(card)
 
@@ -320,7 +321,7 @@ class LiveWorld:
             self.commands.wait(LOOK_SECONDS)
             self.commands.settle()
             return place not in self.requests.signs
-        card = self.cards.look(place, self.called, LOOK_SECONDS)
+        card = self.cards.look(place, self.called, LOOK_SECONDS, person=self.who(place))
         done = self.cards.shows_done(card, behaviour, numbers)
         if done:
             self.cards.looked("card", place, card)

@@ -96,7 +96,7 @@ class BenchedWorld(LiveWorld):
 
     def begin(self) -> ActivityState:
         """Begin a game on the bench, with other cards, and nothing wrong."""
-        self.bench.do("begin")
+        self.cards.dealt.deal(self.bench.do("begin")["cards"])
         self.link.do("fail", device="navigator", state="OK")
         self._switch_tablet()
         if any(r.device == "voice" and r.state != OK for r in self.health()):

@@ -46,7 +46,7 @@ def opening_of(
         house: whose robot it is.
         bench: its devices are simulated.
         injections: the faults that are to come on the bench.
-        own: what only a robot that is there is told: its cameras and request sensor.
+        own: what only a robot that is there is told: its cameras, request sensor, and cards.
         both: what both are told, as `open_bench` and `open_robot` have it.
     """
     from tangy_profiles.fault_file import load_faults
@@ -144,12 +144,13 @@ def open_robot(
     corners: tuple[tuple[float, float], ...] = (),
     map_: str = "",
     lost: bool = False,
+    cards: Mapping[str, int] | None = None,
 ) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile.
 
     Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
     robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
-    itself.
+    itself. `cards` are the numbers of the cards that were dealt, by person.
 
     Raises:
         TangyError: the profile names none, or the robot process does not begin.
@@ -180,6 +181,7 @@ def open_robot(
         log=str(house.store.folder / LOG),
     )
     with _linked(LiveWorld, setup, house, seed=seed, pace=pace, book=book) as world:
+        world.cards.dealt.deal(cards or {})
         yield world
 
 

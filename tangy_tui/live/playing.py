@@ -10,6 +10,7 @@ from tangy_hw.world import LiveWorld
 from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.live.card_news import BY, CardNews, CardNote, doubt_document
 from tangy_tui.live.seats import Seats
 from tangy_tui.monitoring.fault import fault_documents
 from tangy_tui.monitoring.scripted_people import go_on_by_script
@@ -26,12 +27,16 @@ class LiveGames:
         """Begin to count."""
         self.tally = Tally()
         self.faults: list[dict[str, Any]] = []
+        self.card_doubts: list[dict[str, Any]] = []
+        """Why cards were not judged, as JSON has it."""
         self.seconds = 0.0
         """How long the games took in the robot's time."""
         self.took = 0.0
         self._house = house
         self._supervision = supervision
         self._seats = Seats(house.name)
+        self._cards = CardNews(house.name)
+        self._card_notes: list[CardNote] = []
 
     def play(
         self,
@@ -58,6 +63,7 @@ class LiveGames:
         world.link.release()  # nobody is there to say that all is well
         events = game.begin()
         self.tally.add(events)
+        self._look_at_cards(events)
         tell(events)
         since = world.link.time
         stopped = None
@@ -65,6 +71,7 @@ class LiveGames:
             events = go_on_by_script(game, expert=expert)
             self.tally.add(events)
             stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), stopped)
+            self._look_at_cards(events)
             tell(events)
         self.seconds += world.link.time - since
         self.faults += fault_documents(game.faults, stopped)
@@ -74,15 +81,27 @@ class LiveGames:
     def lines(self, events: list[Event]) -> list[str]:
         """Say what happened, for whoever waits, and who was seen where somebody else sits."""
         world = self._supervision.world
-        sitting = world.sitting if isinstance(world, LiveWorld) else {}
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
         lines = (_told(self._house, event) for event in events)
-        return [*filter(None, lines), *self._seats.news(events, sitting)]
+        cards = (note.words for note in self._card_notes)
+        return [*filter(None, (*lines, *cards)), *self._seats.news(events, world.sitting)]
+
+    def _look_at_cards(self, events: list[Event]) -> None:
+        """Take in what is new of whose card is whose, and log it."""
+        game, world = self._supervision, self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        self._card_notes = self._cards.take(events, world.cards)
+        for note in self._card_notes:
+            game.note(note.note, BY)
+            if note.doubt is not None:
+                self.card_doubts.append(doubt_document(note.doubt, game.game.games))
 
     def document(self) -> dict[str, Any]:
         """Return what `tangy live --json` prints."""
         world = self._supervision.world
         beliefs = self._supervision.persuasion.beliefs
         found = self.tally.to_json(self._house.activity.situations, beliefs, self.faults)
+        found["card_doubts"] = self.card_doubts
         if isinstance(world, BenchedWorld):
             found |= world.score.to_json()
             found["real_time_factor"] = round(self.seconds / self.took, 2) if self.took else None

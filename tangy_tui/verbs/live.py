@@ -79,6 +79,14 @@ def live(
     table: Annotated[
         str, typer.Option(help="The table's corners in the pictures, as for `tangy requests`.")
     ] = "",
+    card: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="PERSON=NUMBER",
+            help="Which card was dealt to somebody, as in Rosa=17; Tangy judges no other before "
+            "them. What is not said it learns when it first sees a card there. Repeatable.",
+        ),
+    ] = None,
     seed: common.Seed = None,
     data: common.Data = None,
     as_json: common.Json = False,
@@ -99,20 +107,23 @@ def live(
     who = who_answers(teacher, expert)
     if inject and not bench:
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
-    if bench and (camera or requests or table):
-        raise TangyError("--camera, --requests, --table: the bench brings its own; leave them out.")
+    if bench and (camera or requests or table or card):
+        options = "--camera, --requests, --table, --card"
+        raise TangyError(f"{options}: the bench brings its own; leave them out.")
     faults = _listed(inject or [])
     screen = not (headless or as_json) and full_screen()
     with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         learnt = recall(house, policy, quiet=as_json)
         number = house.game_seed(seed)
+        from tangy_tui.live.dealing import read_dealt
         from tangy_tui.live.opening import check_map, opening_of
 
         if map_:
             check_map(house, map_)
         own = {
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
+            "cards": read_dealt(card or (), house.people),
         }  # fmt: skip
         both: dict[str, Any] = {"seed": number, "pace": pace, "map_": map_, "lost": lost}
         opening = opening_of(house, bench=bench, injections=faults, own=own, **both)

@@ -53,9 +53,10 @@ def read_card(
 ) -> None:
     """Read Tangy's printed cards in pictures.
 
-    A cell that cannot be told is hidden, and never a guess; of several cards none is read. With --called the answer is how the
-    person is doing; hidden cells matter only where they could change it. What a hand hides in one
-    picture another may show: give several of the same card with --together.
+    A cell that cannot be told is hidden, and never a guess; of several cards in a picture none is
+    read. With --called the answer is how the person is doing; hidden cells matter only where they
+    could change it. What a hand hides in one picture another may show: give several of the same
+    card with --together.
 
     With --bench the truth is in DIR/labels.json, in the form in which --json prints: make it with
     `tangy read-card DIR/*.jpg --json > DIR/labels.json` and correct what is wrong in it. Or it is

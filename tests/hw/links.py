@@ -24,11 +24,16 @@ BINGO = load_activity("bingo")
 
 @dataclass
 class LaidCard:
-    """A card on the table: its number, its marks, and whether it is seen."""
+    """A card on the table: its number, its marks, and whether it is seen, and surely.
+
+    `others` are the cards that are in sight beside it.
+    """
 
     number: int
     marked: int = 0
     seen: bool = True
+    others: tuple[int, ...] = ()
+    sure: bool = True
 
 
 class FakeLink:
@@ -142,8 +147,10 @@ class FakeLink:
 
     def _card(self, called: set[int]) -> dict[str, Any]:
         card = self.cards.get(self.place)
-        if card is None or not card.seen:
-            return {"card": None, "marked": 0, "hidden": 0, "state": "occluded", "problem": "?"}
+        there = () if card is None or not card.seen else (card.number, *card.others)
+        if card is None or len(there) != 1:
+            unread = {"card": None, "marked": 0, "hidden": 0, "state": "occluded", "problem": "?"}
+            return {**unread, "cards": sorted(there), "sure": False}
         numbers = numbers_of(BINGO.deck, card.number, self.setup.deck_seed)
         cells = called_cells(BINGO.deck, numbers, called)
         state = judge(BINGO.card_states, BINGO.deck, card.marked, cells)
@@ -153,4 +160,6 @@ class FakeLink:
             "hidden": 0,
             "state": state,
             "problem": "",
+            "cards": [card.number],
+            "sure": card.sure,
         }

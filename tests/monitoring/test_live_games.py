@@ -9,6 +9,7 @@ from tangy_hw.world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.live.playing import LiveGames
+from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.monitoring.supervision import Event
 from tests.hw.links import FakeLink, LaidCard
 
@@ -46,3 +47,36 @@ def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
     said = [line for line in lines if "sits at" in line]
     assert len([line for line in lines if "navigate to user (User 2)" in line]) == 4
     assert said == ["User 4 sits at User 2's place: Tangy speaks to User 4."] * 2
+
+
+def test_what_is_not_judged_is_said_logged_and_counted(house: House, learnt: Policy) -> None:
+    link = FakeLink(PEOPLE)
+    link.cards["user2"] = LaidCard(7, marked=1, others=(9,))
+    world = LiveWorld(
+        house.activity,
+        PEOPLE,
+        cast(RobotLink, link),
+        house.robot,
+        house.room,
+        seed=1,
+        names=house.names,
+    )
+    world.cards.dealt.deal({"user2": 7})
+    game = house.supervision(learnt, 1, world=world)
+    played = LiveGames(house, game)
+    lines: list[str] = []
+
+    def tell(events: list[Event]) -> None:
+        lines.extend(played.lines(events))
+        if game.steps == 2:
+            link.sign(2)
+        elif world.tracker.place == "user2":
+            link.sign()  # no sign is up any more
+
+    played.play(range(1), expert=False, tell=tell)
+    told = [line for line in lines if "two cards in front of User 2: 7 and 9" in line]
+    assert len(told) == 1
+    notes = [event.body["what"] for event in house.store.events(STAFF)]
+    assert notes[:2] == ["cards: user2 has 7", "several cards before user2: 7, 9; not judged"]
+    (doubt,) = played.document()["card_doubts"]
+    assert (doubt["game"], doubt["person"], doubt["cards"]) == (1, "user2", [7, 9])

@@ -34,6 +34,7 @@ from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys
+from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
@@ -80,6 +81,7 @@ class LiveScreen(PlayScreen):
         """Whoever has it has the supervision, and the robot."""
         self._seen_doing = ""
         self._seats = Seats(house.name)
+        self._cards = LiveCards(house, supervision, world, self._write)
 
     def on_mount(self) -> None:
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
@@ -306,6 +308,12 @@ class LiveScreen(PlayScreen):
             self._faults.note(f"staff asked for help for {person}")
             self._tell_now(f"{name} asks for help.", "dim")
 
+    def action_whose_card(self) -> None:
+        """Say whose a card is."""
+        if not self._supervision.over:
+            say = self._cards.say_whose(self.app, self._faults)
+            self.run_worker(say, name="card", group="ask")
+
     async def _tried(self, work: Callable[[], object]) -> None:
         async with self._turn:
             self._working = self._faults.busy = True
@@ -332,15 +340,10 @@ class LiveScreen(PlayScreen):
         """Make the screen of the devices that the robot process has."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
-        house, benched = self._house, isinstance(self._world, BenchedWorld)
+        house, where = self._house, "on the bench" if isinstance(self._world, BenchedWorld) else ""
         sensors = LinkedSensors(self._world.link, house.robot, house.activity.deck)
         return SensorsScreen(
-            house,
-            sensors,
-            health=sensors.health,
-            shown=shown,
-            live=True,
-            where="on the bench" if benched else "",
+            house, sensors, health=sensors.health, shown=shown, live=True, where=where
         )
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
@@ -348,10 +351,12 @@ class LiveScreen(PlayScreen):
         super()._tell(events, known)
         for line in self._seats.news(events, self._world.sitting):
             self._write(line, "warn")
+        self._cards.tell(events)
 
     def _track(self) -> None:
         """Draw where the robot is, and what it knows of the floor; and tell it that this lives."""
         self._world.link.alive()
+        self._cards.tell()
         room = self.query_one(RoomView)
         state = self._world.link.state
         if not state.number:

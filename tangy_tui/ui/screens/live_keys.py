@@ -22,7 +22,8 @@ HELP = (
     "i turns the dial of how much Tangy does of itself: all of it, or it asks you before it does "
     "what it is less sure of, or before everything. o takes over: you say what it does next, and "
     "Esc lets it go on by itself after all. d drives it by the arrow keys. c calls the last "
-    "number again, x takes it back, h asks for help for somebody who cannot. l says that what "
+    "number again, x takes it back, h asks for help for somebody who cannot, b says whose card is "
+    "whose. l says that what "
     "somebody did last was done otherwise than was seen. f brings a fault about, on the bench. "
     "Esc ends the game."
 )
@@ -34,6 +35,7 @@ BINDINGS: list[BindingType] = [
     Binding("c", "call_again", "Call the last number again"),
     Binding("x", "void_call", "Take the last call back"),
     Binding("h", "ask_for", "Ask for help for somebody"),
+    Binding("b", "whose_card", "Say whose card is whose"),
     *play_keys.BINDINGS,
 ]
 

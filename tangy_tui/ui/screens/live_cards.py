@@ -1,0 +1,71 @@
+"""Whose card is whose, on the live screen: what Tangy cannot tell, and what staff say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from textual.app import App
+
+from tangy_hw.world import LiveWorld
+from tangy_tui.house import House
+from tangy_tui.live.card_news import BY, CardNews
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
+from tangy_tui.ui.fault_console import FaultConsole
+from tangy_tui.ui.widgets.log_view import Kind
+
+LEARN = "learn"
+KEY_HINT = " Press b to say whose it is."
+
+
+class LiveCards:
+    """Tells staff of cards that are not judged, and lets them say whose a card is."""
+
+    def __init__(
+        self,
+        house: House,
+        supervision: Supervision,
+        world: LiveWorld,
+        write: Callable[[str, Kind], None],
+    ) -> None:
+        """Prepare; `write` shows a line in a colour by its name."""
+        self._house = house
+        self._supervision = supervision
+        self._cards = world.cards
+        self._write = write
+        self._news = CardNews(house.name)
+
+    def tell(self, events: Sequence[Event] = ()) -> None:
+        """Show and log what is new, as soon as it is known."""
+        for note in self._news.take(events, self._cards):
+            self._supervision.note(note.note, BY)
+            if note.words:
+                self._write(note.words + KEY_HINT, "warn" if note.doubt else "dim")
+
+    async def say_whose(self, app: App[Any], faults: FaultConsole) -> None:
+        """Ask staff who has which card, and keep it.
+
+        The card is one of those that were in sight last, or Tangy is to learn it anew.
+        """
+        dealt, name = self._cards.dealt, self._house.name
+        people = []
+        for person in self._house.people:
+            known = dealt.card_of(person.id)
+            people.append(
+                Option(person.id, person.name, f"has card {known}" if known else "not known yet")
+            )
+        whom = await app.push_screen_wait(ChooseDialog("Whose card is it?", people))
+        if whom is None:
+            return
+        seen = sorted({*self._cards.in_sight})
+        options = [Option(str(card), f"card {card}", "was in sight last") for card in seen]
+        options.append(Option(LEARN, "another one", "Tangy takes the next that it sees there"))
+        question = f"Which card does {name(whom)} have?"
+        told = await app.push_screen_wait(ChooseDialog(question, options))
+        if told is None:
+            return
+        dealt.give(whom, None if told == LEARN else int(told))
+        whose = "another card" if told == LEARN else f"card {told}"
+        faults.note(f"staff said that {whom} has {whose}")
+        self._write(f"{name(whom)} has {whose}.", "dim")

@@ -1,0 +1,109 @@
+"""Whose card is whose, on the live screen: staff are told at once, and can say it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tangy_hw.world import LiveWorld
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.fault import STAFF
+from tangy_tui.ui.dialogs.choose import ChooseDialog
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.widgets.log_view import LogView
+from tests.hw.links import LaidCard
+from tests.pilot.conftest import screen_text
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+
+if TYPE_CHECKING:
+    from tests.pilot.conftest import Run, TangyPilot
+
+
+@pytest.fixture
+def link() -> HeldLink:
+    return HeldLink()
+
+
+@pytest.fixture
+def world(house: House, link: HeldLink) -> LiveWorld:
+    return live_world(house, link)
+
+
+@pytest.fixture
+def program(house: House, world: LiveWorld, policy: Policy) -> Program:
+    return live_program(house, world, policy)
+
+
+def told(pilot: TangyPilot) -> str:
+    return " ".join(live(pilot).query_one(LogView).sentences)
+
+
+def notes(house: House) -> list[str]:
+    return [event.body["what"] for event in house.store.events(STAFF)]
+
+
+async def shown(pilot: TangyPilot, text: str) -> None:
+    await until(pilot, lambda: text in screen_text(pilot.app))
+
+
+async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
+    run: Run, program: Program, link: HeldLink, house: House
+) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        link.cards["user1"] = LaidCard(17, marked=1, others=(31,))
+        link.sign(1)
+        before = len(link.said)
+        live(pilot)._going.set()
+        name = house.name("user1")
+        await until(
+            pilot, lambda: f"There are two cards in front of {name}: 17 and 31" in told(pilot)
+        )
+        assert "Tangy cannot tell which is theirs, and judges neither" in told(pilot)
+        live(pilot)._going.clear()
+        await until(pilot, lambda: not live(pilot)._working)
+        wrong = house.activity.behaviours["remove markers"].name
+        assert not [said for said in link.said[before:] if wrong in said]
+        assert "several cards before user1: 17, 31; not judged" in notes(house)
+        assert name not in " ".join(notes(house))  # the log knows ids
+
+
+async def test_staff_say_whose_a_card_is(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, house: House
+) -> None:
+    world.cards.dealt.deal({"user1": 17, "user2": 31})
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        world.cards.look("user1", [], person="user1")
+        link.place = "user1"
+        link.cards["user1"] = LaidCard(31)
+        world.cards.look("user1", [], person="user1")
+        assert world.cards.doubt is not None
+        await until(pilot, lambda: "as far as Tangy knows" in told(pilot))
+        await pilot.press("b")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await shown(pilot, "has card 17")
+        await pilot.press("enter")
+        await shown(pilot, f"Which card does {house.name('user1')} have?")
+        await pilot.press("enter")
+        await until(pilot, lambda: world.cards.dealt.card_of("user1") == 31)
+        assert world.cards.dealt.card_of("user2") is None
+        assert "staff said that user1 has card 31" in notes(house)
+        world.cards.look("user1", [], person="user1")
+        assert world.cards.doubt is None
+
+
+async def test_staff_let_tangy_learn_a_card_anew(
+    run: Run, program: Program, link: HeldLink, world: LiveWorld
+) -> None:
+    world.cards.dealt.deal({"user1": 17})
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("b")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await pilot.press("enter")
+        await shown(pilot, "another one")
+        await pilot.press("enter")
+        await until(pilot, lambda: world.cards.dealt.card_of("user1") is None)
