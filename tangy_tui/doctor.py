@@ -66,7 +66,12 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
 
 
 def examine_robot(
-    robot: Robot, activity: Activity, cameras: Sources, seconds: float = 5.0
+    robot: Robot,
+    activity: Activity,
+    cameras: Sources,
+    seconds: float = 5.0,
+    *,
+    folder: Path | None = None,
 ) -> list[Finding]:
     """Try every device of a robot that its profile says how to reach; nothing is moved.
 
@@ -75,14 +80,18 @@ def examine_robot(
         activity: what it is for.
         cameras: where its cameras' pictures come from, by device.
         seconds: for which is waited for a device at most.
+        folder: the data folder, which knows the tablets that are paired.
     """
+    from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.trial import try_robot
+
+    pairing = {} if folder is None else keep_pairing(folder).to_json()
 
     def label(device: str) -> str:
         known = robot.devices.get(device)
         return f"{robot.title}'s {known.label if known is not None else device}"
 
-    tried = asyncio.run(try_robot(robot, activity, cameras, seconds))
+    tried = asyncio.run(try_robot(robot, activity, cameras, seconds, pairing=pairing))
     return [Finding(label(one.device), one.ok, one.text, not one.absent) for one in tried]
 
 

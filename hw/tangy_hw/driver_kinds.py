@@ -97,6 +97,8 @@ class Wiring:
     clock: Clock
     links: dict[str, Rosbridge] = field(default_factory=dict)
     diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
+    pairing: Mapping[str, str] = field(default_factory=dict)
+    """By what tablets are paired (see `chest_pairing`); empty: by what is made for the occasion."""
 
     def link(self, at: str, ros: int, device: str) -> Rosbridge:
         """Return the link to a rosbridge server, one for all devices that ask for it."""
@@ -198,11 +200,15 @@ def _scip(wiring: Wiring, settings: Settings) -> Device:
 
 def _page(wiring: Wiring, settings: Settings) -> Device:
     from tangy_hw.drivers.chest import PORT, WebChestScreen
+    from tangy_hw.drivers.chest_pairing import Pairing
 
+    names = (name.strip().lower() for name in settings.text("names", "").split(","))
     return WebChestScreen(
         settings.text("host", "127.0.0.1"),
         int(settings.number("port", PORT)),
         name=settings.device,
+        names=[name for name in names if name],
+        pairing=Pairing.from_json(wiring.pairing) if wiring.pairing else None,
         stale_after=wiring.robot.devices[settings.device].stale_after,
     )
 

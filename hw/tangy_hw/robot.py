@@ -144,9 +144,13 @@ class LiveRobot:
         return self._watchdogs.health()
 
     @property
-    def screen_url(self) -> str:
-        """The address at which tablets open the chest screen, "" where it is no page."""
-        return str(getattr(self._body.screen, "url", ""))
+    def at_hand(self) -> dict[str, str]:
+        """What staff need once it is on: the address of the chest screen, and the code there.
+
+        Both are "" where the chest screen is no page.
+        """
+        screen = self._body.screen
+        return {"screen": getattr(screen, "url", ""), "code": getattr(screen, "code", "")}
 
     def state_of(self, reading: Reading) -> str:
         """Return the state of a device: STALE where its data is too old."""

@@ -372,7 +372,7 @@ async def _serve(lines: asyncio.StreamReader) -> int:
         return 2
     async with wired:
         process = RobotProcess(wired, out.write, stepped=setup.stepped)
-        out.write({"ready": True, "done": {"screen": wired.robot.screen_url}})
+        out.write({"ready": True, "done": wired.robot.at_hand})
         beating = asyncio.create_task(process.beat())
         try:
             while await _take_next(lines, process):

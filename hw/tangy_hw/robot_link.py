@@ -102,6 +102,8 @@ class RobotLink:
         self.setup = setup
         self.screen = ""
         """The address of the chest screen's page, where it is one."""
+        self.code = ""
+        """The code by which a tablet is paired there."""
         self._log = log
         self._process: subprocess.Popen[bytes] | None = None
         self._told = _Told()
@@ -154,7 +156,8 @@ class RobotLink:
         for thread in self._threads:
             thread.start()
         try:
-            self.screen = str(ready.result(START_SECONDS).get("screen", ""))
+            told = ready.result(START_SECONDS)
+            self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
         except TooLate:
             self.close()
             raise DeviceError("The robot process does not begin.") from None
@@ -184,6 +187,13 @@ class RobotLink:
                 thread.join()
 
     # ------------------------------------------------------------------------- what it says
+
+    @property
+    def tablet(self) -> str:
+        """How a tablet becomes the chest screen, in a sentence; "" where that is no page."""
+        if not self.screen:
+            return ""
+        return f"Chest screen: open {self.screen} on the tablet; the code there is {self.code}."
 
     @property
     def state(self) -> RobotState:

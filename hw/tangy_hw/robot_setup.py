@@ -20,7 +20,8 @@ class RobotSetup:
     Names of profiles are as `load_robot` and the like take them. `drivers` (device -> settings
     with their kind) and `cameras` (device -> source) go before those of the robot's profile.
     `requests` is a source of requests (see `perception.requests.sources`), `corners` the table's
-    in its picture. `faces` are rows of features by person, of the kind `face_kind`.
+    in its picture. `faces` are rows of features by person, of the kind `face_kind`. `pairing` is
+    what tablets are known by (see `drivers.chest_pairing`); without one they pair anew.
     """
 
     robot: str
@@ -38,6 +39,7 @@ class RobotSetup:
     faces: Mapping[str, list[list[float]]] = field(default_factory=dict)
     map: str = ""
     log: str = ""
+    pairing: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """Write it as a line."""

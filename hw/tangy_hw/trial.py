@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from tangy_hw.devices import Device, DeviceError, MachineClock
@@ -40,7 +41,12 @@ class Trial:
 
 
 async def try_robot(
-    robot: Robot, activity: Activity, cameras: Sources, seconds: float = SECONDS
+    robot: Robot,
+    activity: Activity,
+    cameras: Sources,
+    seconds: float = SECONDS,
+    *,
+    pairing: Mapping[str, str] = MappingProxyType({}),
 ) -> list[Trial]:
     """Open every driver and camera that a robot's profile names, and listen to what they say.
 
@@ -49,11 +55,12 @@ async def try_robot(
         activity: what it is for.
         cameras: where its cameras' pictures come from, by device.
         seconds: for which is waited for a device at most.
+        pairing: by what tablets are known, as `RobotSetup` has it.
 
     Returns:
         What was found, in the order of the profile.
     """
-    wiring = Wiring(robot, activity, MachineClock())
+    wiring = Wiring(robot, activity, MachineClock(), pairing=pairing)
     found: dict[str, Trial] = {}
     opened: dict[str, Device | Camera] = {
         name: Camera(source, device=name) for name, source in cameras.items()

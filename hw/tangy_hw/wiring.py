@@ -114,7 +114,7 @@ def wire(setup: RobotSetup) -> Wired:
     robot, activity = load_robot(setup.robot), load_activity(setup.activity)
     room = load_room(setup.room)
     clock: Clock = SteppedClock() if setup.stepped else MachineClock()
-    wiring = Wiring(robot, activity, clock)
+    wiring = Wiring(robot, activity, clock, pairing=setup.pairing)
     devices: dict[str, Any] = {
         name: open_device(wiring, name, values)
         for name, values in drivers_of(robot, setup.drivers).items()

@@ -80,8 +80,8 @@ class BenchedWorld(LiveWorld):
         """Open the page of the chest screen, another one after the robot process has begun anew."""
         if self._tablet is not None:
             self._tablet.close()
-        screen = self.link.screen
-        self._tablet = Tablet(screen, self._read) if screen else None
+        screen, code = self.link.screen, self.link.code
+        self._tablet = Tablet(screen, code, self._read) if screen else None
         self._switch_tablet()
 
     def _read(self, text: str) -> None:

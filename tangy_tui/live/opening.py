@@ -160,6 +160,7 @@ def open_robot(
             f"{house.robot.file.name} names no drivers, so there is no robot to be reached: "
             "try --bench, or name them as the README tells."
         )
+    from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.perception.faces.keeping import read_faces
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_hw.perception.requests.naming import requests_named
@@ -179,6 +180,7 @@ def open_robot(
         faces={p: rows.tolist() for p, rows in known.items() if p in house.names},
         map=map_,
         log=str(house.store.folder / LOG),
+        pairing=keep_pairing(house.store.folder).to_json(),
     )
     with _linked(LiveWorld, setup, house, seed=seed, pace=pace, book=book) as world:
         world.cards.dealt.deal(cards or {})

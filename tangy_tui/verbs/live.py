@@ -144,6 +144,8 @@ def live(
         if not as_json:
             print("Switching the robot on ...", file=sys.stderr)
         with opening(bench) as world:
+            if not (as_json or bench) and world.link.tablet:
+                print(plain(world.link.tablet), file=sys.stderr)
             asks = who == SCRIPTED
             supervision = house.supervision(learnt, number, asks=asks, world=world)
             to_their_end = _play(house, supervision, games, as_json, expert=bool(expert))

@@ -34,7 +34,8 @@ def doctor(
         from tangy_profiles.robot import load_robot
 
         body = load_robot(robot)
-        tried = examine_robot(body, load_activity(activity), camera_sources(body))
+        game, cameras = load_activity(activity), camera_sources(body)
+        tried = examine_robot(body, game, cameras, folder=data_folder(data))
         wanted |= {finding.part for finding in tried}
         findings += tried
     if as_json:

@@ -51,6 +51,7 @@ class FakeLink:
         self.done: list[tuple[str, dict[str, Any]]] = []
         self.told: list[str] = []
         self.silent = ""
+        self.tablet = ""
         self.cards: dict[str, LaidCard] = {}
         self.faces: dict[str, str | None] = {}
         self.place = "front"

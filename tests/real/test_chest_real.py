@@ -12,6 +12,7 @@ import pytest
 from tangy_hw.devices import Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
+from tangy_hw.drivers.chest_pairing import keep_pairing
 from tests.hw.waiting import until
 from tests.real.browser import CHROMIUM, Browser, Tab, chromium
 from tests.support.terminal import PATIENCE
@@ -22,6 +23,7 @@ pytestmark = [
     pytest.mark.xdist_group("chromium"),
 ]
 
+UNPAIRED = "(document.getElementById('pair') || {}).offsetHeight > 0"
 CALL = Picture("Next number", "B-12", ("N-40", "O-75", "I-17", "G-52", "B-3"))
 SMALL, LARGE = (800, 480), (1280, 800)
 LETTER = 0.35
@@ -57,11 +59,27 @@ async def browser(address: str) -> AsyncIterator[Browser]:
 
 
 async def opened(browser: Browser, screen: WebChestScreen, size: tuple[int, int]) -> Tab:
-    """Open the page, and wait until it has answered."""
+    """Open the page, pair the tablet if it is not, and wait until it has answered."""
     tab, pages = await browser.tab(), screen.pages
     await tab.open(screen.url, *size)
+    while screen.pages == pages:
+        if await tab.value(UNPAIRED):
+            await enter(tab, screen.code)
+            break
+        await asyncio.sleep(0.05)
     await until(lambda: screen.pages > pages, PATIENCE)
     return tab
+
+
+async def enter(tab: Tab, code: str) -> None:
+    """Type a code as a person does, and confirm it."""
+    await tab.until("document.activeElement.id === 'code'")
+    await tab.ask("Input.insertText", text=code)
+    for kind in ("keyDown", "keyUp"):
+        await tab.ask(
+            "Input.dispatchKeyEvent", type=kind, key="Enter", code="Enter", text="\r",
+            windowsVirtualKeyCode=13,
+        )  # fmt: skip
 
 
 async def read(tab: Tab, element: str) -> str:
@@ -159,7 +177,7 @@ async def test_it_says_that_the_link_is_lost_and_comes_back_by_itself(browser: B
     await tab.until("document.getElementById('lost').offsetHeight > 40")
     assert (await read(tab, "lost")).startswith("No link to the robot")
     assert await read(tab, "number") == "12"  # what was called stays, pale
-    again = WebChestScreen(port=port)
+    again = WebChestScreen(port=port, pairing=screen.pairing)
     await again.start()
     await until(lambda: again.pages == 1, PATIENCE)
     await again.show(Picture("", "O-75"))
@@ -177,3 +195,71 @@ async def test_a_tablet_that_hangs_is_noticed(screen: WebChestScreen, browser: B
     await until(lambda: screen.reading().state == "STALE", PATIENCE)
     await hanging
     await until(lambda: screen.reading().state == "OK", PATIENCE)
+
+
+async def test_a_tablet_is_paired_once_and_stays_so(browser: Browser, tmp_path: Path) -> None:
+    pairing = keep_pairing(tmp_path)
+    screen = WebChestScreen(port=0, pairing=pairing)
+    await screen.start()
+    await screen.show(CALL)
+    tab = await browser.tab()
+    await tab.open(screen.url, *SMALL)
+    await tab.until(UNPAIRED)
+    assert await read(tab, "number") == "" and screen.reading().state == "WARN"
+    wrong = "00000000" if pairing.code != "00000000" else "11111111"
+    await enter(tab, wrong)
+    await tab.until("document.getElementById('wrong').innerText.indexOf('not the code') > 0")
+    assert screen.reading().state == "WARN"
+    await enter(tab, screen.code)
+    await until(lambda: screen.reading().state == "OK", PATIENCE)
+    await tab.until("document.getElementById('number').innerText === '12'")
+    assert not await tab.value(UNPAIRED)
+    assert not await tab.value("document.cookie")  # no script of the page can read the token
+    # The robot process ends, and another one begins: nobody has to enter anything.
+    port = screen.port
+    await screen.close()
+    await tab.until("document.getElementById('lost').offsetHeight > 40")
+    assert not await tab.value(UNPAIRED)
+    again = WebChestScreen(port=port, pairing=keep_pairing(tmp_path))
+    await again.start()
+    await again.show(Picture("", "O-75"))
+    await until(lambda: again.reading().state == "OK", PATIENCE)
+    await tab.until("document.getElementById('number').innerText === '75'")
+    before = set(again._pages)
+    await tab.ask("Page.reload")
+    await until(lambda: bool(set(again._pages) - before) and again.why == "", PATIENCE)
+    await again.close()
+
+
+async def test_a_tablet_that_is_not_known_any_more_asks_for_the_code(browser: Browser) -> None:
+    screen = WebChestScreen(port=0)
+    await screen.start()
+    tab = await opened(browser, screen, SMALL)
+    await screen.show(CALL)
+    await screen.close()
+    other = WebChestScreen(port=screen.port)
+    await other.start()
+    await tab.until(UNPAIRED)
+    assert other.reading().state == "WARN"
+    hidden = "document.getElementById('number').offsetHeight === 0"
+    assert await tab.value(hidden)  # what was called before is not to be seen
+    await enter(tab, other.code)
+    await until(lambda: other.reading().state == "OK", PATIENCE)
+    await tab.until("document.body.className.indexOf('unpaired') < 0")
+    await other.close()
+
+
+@pytest.mark.parametrize("size", [SMALL, LARGE, (480, 800)])
+async def test_the_question_for_the_code_is_all_on_the_screen(
+    screen: WebChestScreen, browser: Browser, size: tuple[int, int]
+) -> None:
+    tab = await browser.tab()
+    await tab.open(screen.url, *size)
+    await tab.until(UNPAIRED)
+    await enter(tab, "123")
+    await tab.until("document.getElementById('wrong').innerText")
+    for element in ("code", "wrong", "pair"):
+        box = f"document.getElementById('{element}').getBoundingClientRect()"
+        assert await tab.value(f"{box}.bottom <= innerHeight && {box}.right <= innerWidth")
+    high = "document.getElementById('code').getBoundingClientRect().height"
+    assert await tab.value(high) >= 44  # a finger finds it

@@ -82,6 +82,7 @@ screen = {{ kind = "page", port = 0 }}
         assert found[f"Tangy's {part}"]["state"] == "ok", found
     assert "nobody answers at ws://127.0.0.1:9" in found["Tangy's wheels"]["text"]
     assert "no tablet has opened http://127.0.0.1:" in found["Tangy's chest screen"]["text"]
+    assert "the code that pairs it is " in found["Tangy's chest screen"]["text"]
     assert found["Tangy's chest screen"]["state"] == "missing"  # nobody looks yet
     assert found["Tangy's arms"]["state"] == "missing"
     working.cancel()

@@ -9,6 +9,7 @@ import pytest
 from tangy_hw.devices import Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
+from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_sim.bench.tablet import Tablet
 from tests.hw.waiting import PATIENCE, until
 
@@ -16,11 +17,10 @@ from tests.hw.waiting import PATIENCE, until
 async def test_it_shows_what_it_is_told_until_it_is_switched_off(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    for name, seconds in (("ALIVE_SECONDS", 0.02), ("GONE_SECONDS", 0.4)):
-        monkeypatch.setattr(chest, name, seconds)
-    screen = WebChestScreen(port=0, stale_after=0.2)
+    monkeypatch.setattr(chest, "GONE_SECONDS", 1.0)
+    screen = WebChestScreen(port=0, stale_after=0.9)
     await screen.start()
-    tablet = Tablet(screen.url)
+    tablet = Tablet(screen.url, screen.code)
     await until(lambda: screen.reading().state == "OK")
     async with asyncio.timeout(PATIENCE):
         await screen.show(Picture("Next \u2028\n", "B-12", ("N-40",), "Ana"))
@@ -30,10 +30,10 @@ async def test_it_shows_what_it_is_told_until_it_is_switched_off(
     await screen.show(Picture("for whoever comes"))
     tablet.on = True
     await until(lambda: tablet.picture["text"] == "for whoever comes")
-    # The robot's process ends, and begins anew.
+    # The robot's process ends, and begins anew; the tablet is still paired.
     port = screen.port
     await screen.close()
-    again = WebChestScreen(port=port)
+    again = WebChestScreen(port=port, pairing=Pairing(screen.pairing.key, "00000000"))
     await again.start()
     await until(lambda: again.reading().state == "OK")
     await asyncio.to_thread(tablet.close)

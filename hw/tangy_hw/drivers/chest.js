@@ -1,8 +1,10 @@
-// Draws what the robot says, as large as there is room, and answers that it was drawn.
+// Draws what the robot says, as large as there is room, and answers that it was drawn. A tablet
+// that is not paired yet asks for the code that stands on the robot's console.
 // Written for browsers of ten years ago: no framework, no build, nothing newer than EventSource.
 (function () {
   "use strict";
   var SILENT = 2000, AGAIN = 500;  // ms: without an event the link is lost; until it is tried again
+  var LOOK = 1000;  // ms: until a tablet that is not paired looks whether it is now
   var page = String(Math.random()).slice(2) + String(Date.now());
   var source = null, heard = Date.now(), waiting = null, dots = 0, picture = null;
 
@@ -50,6 +52,7 @@
   function draw() {
     var shown = picture, classes = [], called, i, chip, height = window.innerHeight;
     if (document.body.className.indexOf("lost") >= 0) { classes.push("lost"); }
+    if (document.body.className.indexOf("unpaired") >= 0) { classes.push("unpaired"); }
     if (shown.number) { classes.push("number"); } else { classes.push(shown.text ? "said" : "idle"); }
     if (shown.number && shown.text && shown.text !== shown.number) { classes.push("worded"); }
     if (shown.asks) { classes.push("asked"); }
@@ -88,12 +91,58 @@
     }
   }
 
-  function lost(so) {
-    var body = document.body, was = body.className.indexOf("lost") >= 0;
+  // Have the page be lost, or unpaired, or not so any more.
+  function mark(word, so) {
+    var body = document.body, was = body.className.indexOf(word) >= 0;
     if (so !== was) {
-      body.className = so ? body.className + " lost" : body.className.replace(/ ?lost/, "");
+      body.className = so ? body.className + " " + word : body.className.replace(word, "");
       if (picture) { draw(); }
     }
+    return so !== was;
+  }
+
+  function lost(so) { mark("lost", so); }
+
+  function unpaired(so) {
+    if (mark("unpaired", so)) {
+      put("wrong", "");
+      get("code").value = "";
+      if (so) { get("code").focus(); } else { get("code").blur(); }
+    }
+  }
+
+  // Ask for something, and tell what was answered: a status, 0 where nothing was.
+  function ask(method, path, body, told) {
+    var request = new XMLHttpRequest();
+    request.open(method, path);
+    request.timeout = SILENT;
+    request.onload = function () { told(request.status); };
+    request.onerror = request.ontimeout = function () { told(0); };
+    request.send(body);
+  }
+
+  function soon(milliseconds) {
+    if (!waiting) { waiting = window.setTimeout(connect, milliseconds); }
+  }
+
+  function pair() {
+    var code = get("code").value.replace(/\D/g, "");
+    if (code.length < 8) {
+      put("wrong", "The code has eight digits.");
+      return;
+    }
+    ask("POST", "pair", code, function (status) {
+      if (status === 204) {
+        put("wrong", "");
+        connect();
+        return;
+      }
+      put("wrong", status === 403 ? "That is not the code. Please look again." :
+        status === 429 ? "Too many wrong codes. Please wait a minute." :
+        "The robot does not answer. Please try again.");
+      get("code").value = "";
+      get("code").focus();
+    });
   }
 
   function answer(number) {
@@ -110,17 +159,34 @@
 
   function connect() {
     if (waiting) { window.clearTimeout(waiting); waiting = null; }
+    if (source) { source.close(); source = null; }
+    ask("GET", "paired", null, function (status) {
+      if (status === 204) {
+        listen();
+      } else if (status === 403) {
+        heard = Date.now();
+        unpaired(true);
+        lost(false);
+        soon(LOOK);
+      } else {
+        soon(AGAIN);
+      }
+    });
+  }
+
+  function listen() {
     if (source) { source.close(); }
     source = new EventSource("events?page=" + page);
     source.addEventListener("show", function (event) {
       picture = JSON.parse(event.data);
+      unpaired(false);
       draw();
       hear(picture.n);
     });
     source.addEventListener("alive", function (event) { hear(event.data); });
     source.onerror = function () {
-      source.close();
-      if (!waiting) { waiting = window.setTimeout(connect, AGAIN); }
+      this.close();
+      soon(AGAIN);
     };
   }
 
@@ -130,9 +196,13 @@
       lost(true);
       dots = (dots + 1) % 4;
       put("dots", "...".slice(0, dots));
-      if (!waiting && silent % (4 * SILENT) < 500) { waiting = window.setTimeout(connect, AGAIN); }
+      if (silent % (4 * SILENT) < 500) { soon(AGAIN); }
     }
   }, 500);
+  get("pair").addEventListener("submit", function (event) {
+    event.preventDefault();
+    pair();
+  });
   window.addEventListener("resize", function () { if (picture) { draw(); } });
   connect();
 }());

@@ -1,64 +1,48 @@
-"""The screen on the robot's chest: a page that any tablet's browser shows, told what by events.
+"""The screen on the robot's chest: a page that paired tablets show, told what by events.
 
-The page answers every event that it has drawn, so that it is known what people really see. It
-speaks with `chest.js`: events `show` (a number and a picture, as JSON) and `alive` (the number
-again), both answered with `POST /seen?page=P&number=N`.
+The page answers every event that it has drawn, so that it is known what people really see. It is
+served by a process of its own (`chest_child`): strangers can keep that busy, and nothing else.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import math
 import socket
+import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
 
 from tangy_hw.arrivals import Arrivals
 from tangy_hw.devices import DeviceError, Picture
-from tangy_hw.drivers.chest_http import (
-    LONGEST_HEAD,
-    BadRequest,
-    Request,
-    event,
-    read_request,
-    response,
-    stream_head,
-)
+from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
 
+CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.chest_child")
 PORT = 8765
 SHOW_SECONDS = 1.0  # in which a page draws what it is told; they take 10 to 50 ms
-ALIVE_SECONDS = 0.4  # between two events, and so two answers of each page
 GONE_SECONDS = 3.0  # without an answer: a page that is not there any more
-SEND_SECONDS = 2.0  # in which a page takes what is sent to it
-AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
-MOST_PAGES = 16
+START_SECONDS = 20.0  # until its process says whether it listens; 0.2 s when nothing else runs
+AGAIN_SECONDS = 1.0  # until a process that ended is started again
+END_SECONDS = 1.0
 NEVER = 3600.0
-
-FILES = {
-    "/": ("chest.html", "text/html; charset=utf-8"),
-    "/chest.css": ("chest.css", "text/css; charset=utf-8"),
-    "/chest.js": ("chest.js", "text/javascript; charset=utf-8"),
-}
 
 
 @dataclass(eq=False, slots=True)
 class _Page:
-    """A page that is open somewhere: what it has drawn, and when it last said so."""
+    """A page of a paired tablet: what it has drawn, and when it last said so."""
 
-    seen: int = 0
+    seen: int = -1
     heard: float = -math.inf
-    changed: asyncio.Event = field(default_factory=asyncio.Event)
-    over: bool = False
 
 
 class WebChestScreen:
-    """A page in the network; every tablet that opens its address shows the same.
+    """A page in the network; every paired tablet that opens its address shows the same.
 
     Whoever comes later is shown the picture that is on at once. It works in the time of the
     machine, also on a bench in a hurry: its pages do.
@@ -70,6 +54,8 @@ class WebChestScreen:
         port: int = PORT,
         *,
         name: str = "screen",
+        names: Sequence[str] = (),
+        pairing: Pairing | None = None,
         clock: Callable[[], float] = time.monotonic,
         stale_after: float = 1.0,
     ) -> None:
@@ -79,19 +65,23 @@ class WebChestScreen:
             host: where it listens: 127.0.0.1 for a screen of this machine, 0.0.0.0 for tablets.
             port: 0 for one that is free.
             name: what the robot's profile calls it.
+            names: by which tablets may call this machine, beside its addresses and its own name.
+            pairing: by which tablets are known; a new one where none is given.
             clock: gives the time in s.
             stale_after: s without an answer from any page after which nobody is thought to look.
         """
         self.name = name
         self.host, self.port = host, port
+        self.pairing = Pairing() if pairing is None else pairing
+        self._names = tuple(names)
         self._clock = clock
         self._stale_after = stale_after
-        self._server: asyncio.Server | None = None
         self._task: asyncio.Task[None] | None = None
-        self._serving: set[asyncio.Task[None]] = set()
+        self._process: asyncio.subprocess.Process | None = None
+        self._begun = asyncio.Event()
         self._pages: dict[str, _Page] = {}
         self._number = 0
-        self._shown = event("show", _drawn(0, Picture("")))
+        self._picture = Picture("")
         self._heard = -math.inf
         self._arrivals = Arrivals()
         self._taken = asyncio.Event()
@@ -103,37 +93,41 @@ class WebChestScreen:
         return f"http://{_reached_at(self.host)}:{self.port}/"
 
     @property
+    def code(self) -> str:
+        """The code that is entered there once, as people read it."""
+        return self.pairing.shown
+
+    @property
     def pages(self) -> int:
-        """How many pages are open and answer."""
+        """How many pages are open on paired tablets, and answer."""
         since = self._clock() - GONE_SECONDS
         return sum(page.heard > since for page in self._pages.values())
 
     @property
     def why(self) -> str:
         """What is wrong with it, in one sentence; "" if nothing is."""
-        if self._error or self._server is None:
+        if self._error or self._task is None:
             return self._error or f"{self.name} does not run."
         if self._heard == -math.inf:
-            return f"{self.name}: no tablet has opened {self.url} yet."
+            code = f"the code that pairs it is {self.code}"
+            return f"{self.name}: no tablet has opened {self.url} yet; {code}."
         return "" if self.pages else f"{self.name}: no tablet shows {self.url} any more."
 
     async def start(self) -> None:
         """Begin to listen; where the port is in use, as soon as it is free."""
-        if self._task is not None or await self._listen():
+        if self._task is not None:
             return
-        self._task = asyncio.create_task(self._listen_again(), name=f"screen {self.name}")
+        self._begun.clear()
+        self._task = asyncio.create_task(self._run(), name=f"screen {self.name}")
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._begun.wait(), START_SECONDS)
 
     async def close(self) -> None:
         """End for good; pages say that the link is lost."""
-        tasks = {*self._serving, *([self._task] if self._task else [])}
-        self._task = None
-        server, self._server = self._server, None
-        if server is not None:
-            server.close()
-        for task in tasks:
+        task, self._task = self._task, None
+        if task is not None:
             task.cancel()
-        if tasks:
-            await asyncio.wait(tasks)
+            await asyncio.wait([task])
 
     async def show(self, picture: Picture) -> None:
         """Show something, until the next; where no page is open, whoever opens one sees it.
@@ -143,9 +137,8 @@ class WebChestScreen:
         """
         self._number += 1
         mine = self._number
-        self._shown = event("show", _drawn(mine, picture))
-        for page in self._pages.values():
-            page.changed.set()
+        self._picture = picture
+        self._send_picture()
         if not self.pages:
             return
         try:
@@ -159,7 +152,7 @@ class WebChestScreen:
     def reading(self) -> Reading:
         """Return its state, and the age of the newest answer of a page.
 
-        WARN: no page was ever open; STALE: none answers any more; ERROR: its port is in use.
+        WARN: no paired page was ever open; STALE: none answers any more; ERROR: it cannot listen.
         """
         now = self._clock()
         age, rate = min(max(0.0, now - self._heard), NEVER), self._arrivals.rate(now)
@@ -169,100 +162,83 @@ class WebChestScreen:
             return Reading(self.name, age, WARN)
         return Reading(self.name, age, OK if age <= self._stale_after else STALE, rate=rate)
 
-    async def _listen(self) -> bool:
-        try:
-            self._server = await asyncio.start_server(
-                self._serve, self.host, self.port, limit=LONGEST_HEAD
-            )
-        except (OSError, OverflowError, UnicodeError) as error:  # or no such host or port can be
-            said = plain(getattr(error, "strerror", None) or str(error))
-            self._error = f"{self.name} cannot listen at {self.host}:{self.port} ({said})."
-            return False
-        self.port = self._server.sockets[0].getsockname()[1]
-        self._error = ""
-        return True
+    # ------------------------------------------------------------------------- its process
 
-    async def _listen_again(self) -> None:
+    async def _run(self) -> None:
+        """Keep a process that serves the page."""
         while True:
+            try:
+                await self._begin()
+                await self._listen()
+                self._error = f"{self.name}: the process of its page has ended."
+            except OSError as error:
+                self._error = plain(f"{self.name}: its page cannot be served ({error.strerror}).")
+            finally:
+                await self._end()
+            self._begun.set()
             await asyncio.sleep(AGAIN_SECONDS)
-            if await self._listen():
+
+    async def _begin(self) -> None:
+        self._process = await asyncio.create_subprocess_exec(
+            *CHILD,
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        pairing = self.pairing.to_json()
+        place = {"host": self.host, "port": self.port, "names": self._names}
+        self._send({**place, "pairing": pairing})
+        self._send_picture()
+
+    async def _listen(self) -> None:
+        """Take what the process says, until it ends."""
+        assert self._process is not None and self._process.stdout is not None  # noqa: S101
+        while line := await self._process.stdout.readline():
+            try:
+                self._take(json.loads(line))
+            except ValueError:
                 return
 
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        task = asyncio.current_task()
-        assert task is not None  # noqa: S101
-        self._serving.add(task)
-        try:
-            while request := await read_request(reader):
-                if request.path == "/events" and request.method == "GET":
-                    await self._tell(request, writer)
-                    return
-                writer.write(self._answer(request))
-                async with asyncio.timeout(SEND_SECONDS):
-                    await writer.drain()
-                if not request.stays:
-                    return
-        except BadRequest:
-            writer.write(response(400, b"No request that is answered here.\n"))
-        except (OSError, TimeoutError, asyncio.CancelledError):
-            pass  # it went, or we do
-        finally:
-            self._serving.discard(task)
-            with contextlib.suppress(OSError):
-                writer.close()
+    def _take(self, said: dict[str, Any]) -> None:
+        match said:
+            case {"port": int(port)}:
+                self.port, self._error = port, ""
+                self._begun.set()
+            case {"error": str(why)}:
+                place = f"{self.name} cannot listen at {self.host}:{self.port}"
+                self._error = f"{place} ({plain(why)})."
+                self._begun.set()
+            case {"page": str(name), "seen": int(number)}:
+                page = self._pages.setdefault(name, _Page())
+                page.heard = self._heard = self._clock()
+                page.seen = max(page.seen, min(number, self._number))
+                self._arrivals.count(self._heard)
+                self._taken.set()
+            case {"gone": str(name)}:
+                self._pages.pop(name, None)
 
-    def _answer(self, request: Request) -> bytes:
-        if request.path == "/seen":
-            if request.method != "POST":
-                return response(405)
-            return response(204 if self._was_seen(request) else 404)
-        if request.method not in ("GET", "HEAD"):
-            return response(405)
-        if request.path not in FILES:
-            return response(404, b"There is only one page here: /\n")
-        file, kind = FILES[request.path]
-        whole = response(200, (Path(__file__).parent / file).read_bytes(), kind)
-        return whole if request.method == "GET" else whole.partition(b"\r\n\r\n")[0] + b"\r\n\r\n"
+    def _send_picture(self) -> None:
+        self._send({"show": self._number, "picture": self._picture._asdict()})
 
-    def _was_seen(self, request: Request) -> bool:
-        """Take a page's answer; return whether the page is one that is told things."""
-        page = self._pages.get(request.query.get("page", ""))
-        number = request.query.get("number", "")
-        if page is None or not (number.isdecimal() and len(number) < 10):
-            return False
-        page.heard = self._heard = self._clock()
-        self._arrivals.count(self._heard)
-        page.seen = max(page.seen, min(int(number), self._number))
-        self._taken.set()
-        return True
+    def _send(self, told: dict[str, Any]) -> None:
+        process = self._process
+        if process is None or process.stdin is None or process.stdin.is_closing():
+            return  # it is told when it runs
+        process.stdin.write(json.dumps(told).encode() + b"\n")
 
-    async def _tell(self, request: Request, writer: asyncio.StreamWriter) -> None:
-        """Send events to a page until it has gone."""
-        name = request.query.get("page", "")
-        if not (0 < len(name) <= 40) or (
-            len(self._pages) >= MOST_PAGES and name not in self._pages
-        ):
-            writer.write(response(503, b"There are too many pages open.\n"))
+    async def _end(self) -> None:
+        process, self._process = self._process, None
+        self._pages.clear()
+        if process is None:
             return
-        page = _Page()
-        if (before := self._pages.get(name)) is not None:  # the same page, after a lost link
-            page.heard, before.over = before.heard, True
-            before.changed.set()
-        self._pages[name] = page
-        writer.write(stream_head())
-        sent = -1
+        if process.stdin is not None:
+            process.stdin.close()
         try:
-            while not page.over:
-                page.changed.clear()
-                writer.write(self._shown if sent != self._number else event("alive", str(sent)))
-                sent = self._number
-                async with asyncio.timeout(SEND_SECONDS):
-                    await writer.drain()
-                with contextlib.suppress(TimeoutError):
-                    await asyncio.wait_for(page.changed.wait(), ALIVE_SECONDS)
-        finally:
-            if self._pages.get(name) is page:
-                del self._pages[name]
+            await asyncio.wait_for(process.wait(), END_SECONDS)
+        except (TimeoutError, asyncio.CancelledError):
+            with suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
 
 
 def _reached_at(host: str) -> str:
@@ -276,8 +252,3 @@ def _reached_at(host: str) -> str:
             return str(probe.getsockname()[0])
         except OSError:
             return "127.0.0.1"
-
-
-def _drawn(number: int, picture: Picture) -> str:
-    """Write a picture as the page is told of it: JSON, in one line, of plain ASCII."""
-    return json.dumps({"n": number, **picture._asdict()})

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+import ipaddress
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from urllib.parse import parse_qs, urlsplit
 
-LONGEST_HEAD, LONGEST_BODY = 8192, 4096  # bytes
-IDLE_SECONDS = 30.0  # for which a connection is kept between two requests
+LONGEST_HEAD, LONGEST_BODY = 8192, 256  # bytes
 
 STATUSES = {
     200: "OK",
     204: "No Content",
     400: "Bad Request",
+    403: "Forbidden",
     404: "Not Found",
     405: "Method Not Allowed",
+    421: "Misdirected Request",
+    429: "Too Many Requests",
     503: "Service Unavailable",
 }
 
@@ -33,23 +36,64 @@ class BadRequest(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What a browser asks for: method, path, and what stands behind the question mark."""
+    """What a browser asks for: method, path, and what stands behind the question mark.
+
+    `headers` have lower-case names; `stays`: it will ask more over the same connection.
+    """
 
     method: str
     path: str
     query: Mapping[str, str] = field(default_factory=dict)
+    headers: Mapping[str, str] = field(default_factory=dict)
+    body: bytes = b""
     stays: bool = True
-    """Whether it will ask more over the same connection."""
+
+    def cookie(self, name: str) -> str:
+        """Return the value of a cookie, "" where there is none."""
+        for one in self.headers.get("cookie", "").split(";"):
+            key, _, value = one.strip().partition("=")
+            if key == name:
+                return value
+        return ""
+
+    def meant_for(self, names: Collection[str]) -> bool:
+        """Say whether it was sent to this machine by an address, or by one of its names.
+
+        A page of the wide web whose name is made to lead here (DNS rebinding) still says its own
+        name as Host, and a page of another address says that as Origin.
+        """
+        host = self.headers.get("host", "")
+        origin = self.headers.get("origin", "")
+        if origin and origin.partition("://")[2] != host:
+            return False
+        try:
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:
+            return False
+        name = name.rstrip(".")
+        return name in names or _is_address(name)
 
 
-async def read_request(reader: asyncio.StreamReader) -> Request | None:
-    """Read the next request, and pass over its body; None: there is none any more.
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name.partition("%")[0])
+    except ValueError:
+        return False
+    return True
+
+
+async def read_request(reader: asyncio.StreamReader, seconds: float) -> Request | None:
+    """Read the next request; None: there is none any more.
+
+    Args:
+        reader: where it comes from.
+        seconds: in which all of it has to be there, however slowly it comes.
 
     Raises:
         BadRequest: it is none, or too long.
         TimeoutError: it did not come to its end in time.
     """
-    async with asyncio.timeout(IDLE_SECONDS):
+    async with asyncio.timeout(seconds):
         try:
             head = await reader.readuntil(b"\r\n\r\n")
         except asyncio.LimitOverrunError:
@@ -66,12 +110,12 @@ async def read_request(reader: asyncio.StreamReader) -> Request | None:
             if colon
         }
         length = headers.get("content-length", "0")
-        if not length.isdecimal() or int(length) > LONGEST_BODY:
+        if not (length.isascii() and length.isdecimal()) or len(length) > 9:
             raise BadRequest
-        if "transfer-encoding" in headers:
+        if int(length) > LONGEST_BODY or "transfer-encoding" in headers:
             raise BadRequest
         try:
-            await reader.readexactly(int(length))
+            body = await reader.readexactly(int(length))
         except (asyncio.IncompleteReadError, OSError):
             return None
     try:
@@ -80,15 +124,24 @@ async def read_request(reader: asyncio.StreamReader) -> Request | None:
     except ValueError:
         raise BadRequest from None
     stays = words[2] != "HTTP/1.0" and headers.get("connection", "").lower() != "close"
-    return Request(words[0], asked.path, {name: one[-1] for name, one in query.items()}, stays)
+    last = {name: one[-1] for name, one in query.items()}
+    return Request(words[0], asked.path, last, headers, body, stays)
 
 
-def response(status: int, body: bytes = b"", kind: str = "text/plain; charset=utf-8") -> bytes:
-    """Write an answer with its body."""
+def response(
+    status: int, body: bytes = b"", kind: str = "text/plain; charset=utf-8", *, more: str = ""
+) -> bytes:
+    """Write an answer with its body; `more` are whole lines of its head."""
     return (
-        f"HTTP/1.1 {status} {STATUSES[status]}\r\n{SAFE}"
+        f"HTTP/1.1 {status} {STATUSES[status]}\r\n{SAFE}{more}"
         f"Content-Type: {kind}\r\nContent-Length: {len(body)}\r\n\r\n"
     ).encode() + body
+
+
+def cookie_line(name: str, value: str) -> str:
+    """Write the line that has a browser keep a cookie for as long as browsers do (400 days)."""
+    kept = f"Max-Age={400 * 86_400}; Path=/; HttpOnly; SameSite=Strict"
+    return f"Set-Cookie: {name}={value}; {kept}\r\n"
 
 
 def stream_head() -> bytes:

@@ -1,7 +1,7 @@
 """A tablet on the bench: it opens the page of the chest screen and answers what it is shown.
 
-It does in a thread what a browser does that has the page open: it takes the events of the page and
-says of each that it was drawn.
+It does in a thread what a browser does that has the page open: it is paired by the code, once,
+takes the events of the page, and says of each that it was drawn.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import json
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from http.client import HTTPConnection, HTTPException
+from http.client import OK, HTTPConnection, HTTPException
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -20,9 +20,14 @@ SECONDS = 2.0  # without an event after which the page is opened again
 class Tablet:
     """A tablet that shows a page until it is closed; `picture` is what it shows."""
 
-    def __init__(self, url: str, shown: Callable[[str], object] = str) -> None:
-        """Open the page at an address; `shown` is told what is written there, once it is drawn."""
+    def __init__(self, url: str, code: str, shown: Callable[[str], object] = str) -> None:
+        """Open the page at an address, and pair by a code.
+
+        `shown` is told what is written there, once it is drawn.
+        """
         self._shown = shown
+        self._code = code
+        self._cookie = ""
         self._number = 0
         parts = urlsplit(url)
         self._place = (parts.hostname or "127.0.0.1", parts.port or 80)
@@ -48,8 +53,12 @@ class Tablet:
         page = HTTPConnection(*self._place, timeout=SECONDS)
         answers = HTTPConnection(*self._place, timeout=SECONDS)
         try:
-            page.request("GET", "/events?page=bench")
+            if not self._paired(answers):
+                return
+            page.request("GET", "/events?page=bench", headers={"Cookie": self._cookie})
             told, kind = page.getresponse(), ""
+            if told.status != OK:
+                return
             while self.on and not self._over.is_set():
                 line = told.readline().decode()
                 if not line:
@@ -62,12 +71,22 @@ class Tablet:
             page.close()
             answers.close()
 
+    def _paired(self, asks: HTTPConnection) -> bool:
+        """Pair if that has not been done yet; return whether it is paired."""
+        if not self._cookie:
+            asks.request("POST", "/pair", body=self._code)
+            said = asks.getresponse()
+            said.read()
+            self._cookie = (said.getheader("Set-Cookie") or "").partition(";")[0]
+        return bool(self._cookie)
+
     def _answer(self, answers: HTTPConnection, kind: str, data: str) -> None:
         number = data
         if kind == "show":
             self.picture = json.loads(data)
             number = str(self.picture["n"])
-        answers.request("POST", f"/seen?page=bench&number={number}")
+        head = {"Cookie": self._cookie}
+        answers.request("POST", f"/seen?page=bench&number={number}", headers=head)
         answers.getresponse().read()
         if kind == "show" and int(number) > self._number:  # and not the same once more
             self._number = int(number)

@@ -86,6 +86,8 @@ class LiveScreen(PlayScreen):
     def on_mount(self) -> None:
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
         self._show_status()
+        if self._world.link.tablet:
+            self._write(self._world.link.tablet, "text")
         self.set_interval(TRACK_SECONDS, self._track)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

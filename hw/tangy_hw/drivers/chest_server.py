@@ -1,0 +1,278 @@
+"""The server of the chest screen's page: who may see it, and how much strangers may ask of it.
+
+It speaks with `chest.js`. A tablet is paired once (`POST /pair` with the code of the console) and
+keeps a token as a cookie. A paired page gets events, `show` (a number and a picture, as JSON) and
+`alive` (the number again), and answers both with `POST /seen?page=P&number=N`. Whoever is not
+paired gets the page that asks for the code, and nothing else.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import socket
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tangy_hw.drivers.chest_http import (
+    LONGEST_HEAD,
+    BadRequest,
+    Request,
+    cookie_line,
+    event,
+    read_request,
+    response,
+    stream_head,
+)
+from tangy_hw.drivers.chest_pairing import CodeCheck, Pairing, TooManyCodes
+
+ALIVE_SECONDS = 0.4  # between two events, and so two answers of each page
+SEND_SECONDS = 2.0  # in which a page takes what is sent to it
+ASK_SECONDS = 3.0  # in which a request of a stranger is there, from its connection on
+IDLE_SECONDS = 30.0  # for which the connection of a paired tablet is kept between two requests
+GONE_SECONDS = 5.0  # without an answer: a page that makes room for another
+MOST_PAGES = 16
+MOST_CONNECTIONS = 64
+
+FILES = {
+    "/": ("chest.html", "text/html; charset=utf-8"),
+    "/chest.css": ("chest.css", "text/css; charset=utf-8"),
+    "/chest.js": ("chest.js", "text/javascript; charset=utf-8"),
+}
+
+Said = dict[str, Any]
+
+
+@dataclass(eq=False, slots=True)
+class _Connection:
+    """A connection: from where, and whether a paired tablet has spoken over it."""
+
+    writer: asyncio.StreamWriter
+    task: asyncio.Task[None]
+    address: str
+    paired: bool = False
+    told: bool = False
+    """Whether it is told events; it asks nothing any more."""
+
+
+@dataclass(eq=False, slots=True)
+class _Page:
+    """A page that is open on a paired tablet, and when it last said what it has drawn."""
+
+    heard: float
+    changed: asyncio.Event = field(default_factory=asyncio.Event)
+    over: bool = False
+
+
+class ChestServer:
+    """Serves the page; `tell` hears of what pages have drawn, and of those that have gone.
+
+    It tells {"page": its name, "seen": the number} and {"gone": its name}.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        pairing: Pairing,
+        tell: Callable[[Said], None],
+        names: Sequence[str] = (),
+    ) -> None:
+        """Prepare it; `names` are those by which tablets may call this machine, too."""
+        self.host, self.port = host, port
+        self._pairing = pairing
+        self._codes = CodeCheck(pairing.code)
+        self._tell = tell
+        own = socket.gethostname().lower()
+        self._names = {host.lower(), "localhost", own, f"{own.partition('.')[0]}.local", *names}
+        self._server: asyncio.Server | None = None
+        self._connections: dict[_Connection, None] = {}  # the oldest first
+        self._pages: dict[str, _Page] = {}
+        self._number = -1
+        self._shown = b""
+
+    async def start(self) -> None:
+        """Begin to listen.
+
+        Raises:
+            OSError, OverflowError, UnicodeError: it cannot, there.
+        """
+        self._server = await asyncio.start_server(
+            self._serve, self.host, self.port, limit=LONGEST_HEAD
+        )
+        self.port = self._server.sockets[0].getsockname()[1]
+
+    async def close(self) -> None:
+        """End for good; pages say that the link is lost."""
+        server, self._server = self._server, None
+        if server is not None:
+            server.close()
+        tasks = [connection.task for connection in self._connections]
+        for task in tasks:
+            task.cancel()
+        if tasks:
+            await asyncio.wait(tasks)
+
+    def show(self, number: int, picture: Mapping[str, Any]) -> None:
+        """Show a picture on all pages; whoever comes later is shown it, too."""
+        self._number = number
+        self._shown = event("show", json.dumps({"n": number, **picture}))
+        for page in self._pages.values():
+            page.changed.set()
+
+    @property
+    def connections(self) -> int:
+        """How many connections are open."""
+        return len(self._connections)
+
+    # ------------------------------------------------------------------------- connections
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        task = asyncio.current_task()
+        assert task is not None  # noqa: S101
+        address = str((writer.get_extra_info("peername") or ("",))[0])
+        mine = _Connection(writer, task, address)
+        self._connections[mine] = None
+        self._make_room(mine)
+        try:
+            await self._serve_requests(reader, mine)
+        except BadRequest:
+            writer.write(response(400, b"No request that is answered here.\n"))
+        except (OSError, TimeoutError, asyncio.CancelledError):
+            pass  # it went, or was too slow, or made room, or we go
+        finally:
+            self._connections.pop(mine, None)
+            with contextlib.suppress(OSError):
+                writer.close()
+
+    def _make_room(self, newest: _Connection) -> None:
+        """Drop a connection where there are too many.
+
+        It is one of a stranger as long as there are any: the oldest from the address that has most
+        of them. A paired tablet gets in, then, however many strangers there are.
+        """
+        if len(self._connections) <= MOST_CONNECTIONS:
+            return
+        strangers = [one for one in self._connections if not one.paired and one is not newest]
+        if strangers:
+            counts = Counter(one.address for one in strangers)
+            dropped = max(strangers, key=lambda one: counts[one.address])  # of equals the first
+        else:
+            asking = (one for one in self._connections if not one.told)
+            dropped = next(asking, newest)
+        self._connections.pop(dropped, None)
+        dropped.writer.transport.abort()
+        dropped.task.cancel()
+
+    async def _serve_requests(self, reader: asyncio.StreamReader, mine: _Connection) -> None:
+        writer = mine.writer
+        while request := await read_request(reader, IDLE_SECONDS if mine.paired else ASK_SECONDS):
+            mine.paired = self._pairing.knows(request.cookie(self._pairing.cookie))
+            if not request.meant_for(self._names):
+                writer.write(response(421, b"Open this page by its address in numbers.\n"))
+                return
+            if mine.paired and request.path == "/events" and request.method == "GET":
+                mine.told = True
+                await self._tell_events(request, writer)
+                return
+            writer.write(self._answer(request, mine))
+            async with asyncio.timeout(SEND_SECONDS):
+                await writer.drain()
+            if not request.stays:
+                return
+
+    # ------------------------------------------------------------------------- requests
+
+    def _answer(self, request: Request, asker: _Connection) -> bytes:
+        if request.path in ("/seen", "/pair"):
+            if request.method != "POST":
+                return response(405)
+            return (
+                self._seen(request, asker)
+                if request.path == "/seen"
+                else self._pair(request, asker)
+            )
+        if request.method not in ("GET", "HEAD"):
+            return response(405)
+        if request.path in ("/paired", "/events"):
+            return response(204 if asker.paired else 403)
+        if request.path not in FILES:
+            return response(404, b"There is only one page here: /\n")
+        file, kind = FILES[request.path]
+        whole = response(200, (Path(__file__).parent / file).read_bytes(), kind)
+        return whole if request.method == "GET" else whole.partition(b"\r\n\r\n")[0] + b"\r\n\r\n"
+
+    def _pair(self, request: Request, asker: _Connection) -> bytes:
+        try:
+            right = self._codes.right(request.body.decode("ascii", "replace"), asker.address)
+        except TooManyCodes:
+            return response(429)
+        if not right:
+            return response(403)
+        return response(204, more=cookie_line(self._pairing.cookie, self._pairing.token()))
+
+    def _seen(self, request: Request, asker: _Connection) -> bytes:
+        """Take a paired page's answer to an event."""
+        name, number = request.query.get("page", ""), request.query.get("number", "")
+        if not asker.paired:
+            return response(403)
+        page = self._pages.get(name)
+        if page is None or not (number.isascii() and number.isdecimal() and len(number) < 10):
+            return response(404)
+        page.heard = time.monotonic()
+        self._tell({"page": name, "seen": min(int(number), self._number)})
+        return response(204)
+
+    # ------------------------------------------------------------------------- events
+
+    def _may_open(self, name: str) -> bool:
+        """Say whether there is room for a page; one that answers no more makes room."""
+        if not (0 < len(name) <= 40):
+            return False
+        if len(self._pages) < MOST_PAGES or name in self._pages:
+            return True
+        quiet = min(self._pages, key=lambda name: self._pages[name].heard)
+        if self._pages[quiet].heard > time.monotonic() - GONE_SECONDS:
+            return False
+        self._end(quiet)
+        return True
+
+    def _end(self, name: str) -> None:
+        page = self._pages.pop(name)
+        page.over = True
+        page.changed.set()
+
+    async def _tell_events(self, request: Request, writer: asyncio.StreamWriter) -> None:
+        """Send events to a page until it has gone."""
+        name = request.query.get("page", "")
+        if not self._may_open(name):
+            writer.write(response(503, b"There are too many pages open.\n"))
+            return
+        page = _Page(time.monotonic())
+        if (before := self._pages.get(name)) is not None:  # the same page, after a lost link
+            page.heard = before.heard
+            self._end(name)
+        self._pages[name] = page
+        writer.write(stream_head())
+        try:
+            await self._events(page, writer)
+        finally:
+            if self._pages.get(name) is page:
+                del self._pages[name]
+                self._tell({"gone": name})
+
+    async def _events(self, page: _Page, writer: asyncio.StreamWriter) -> None:
+        sent = -2
+        while not page.over:
+            page.changed.clear()
+            writer.write(self._shown if sent != self._number else event("alive", str(sent)))
+            sent = self._number
+            async with asyncio.timeout(SEND_SECONDS):
+                await writer.drain()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(page.changed.wait(), ALIVE_SECONDS)

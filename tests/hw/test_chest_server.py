@@ -1,0 +1,289 @@
+"""The chest screen's page trusts paired tablets alone, and strangers cannot keep it from them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import stat
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.drivers import chest_server
+from tangy_hw.drivers.chest_pairing import (
+    FILE,
+    MOST_WRONG,
+    MOST_WRONG_OF_ALL,
+    WINDOW_SECONDS,
+    CodeCheck,
+    Pairing,
+    TooManyCodes,
+    keep_pairing,
+)
+from tangy_hw.drivers.chest_server import ChestServer
+from tests.hw.chest_pages import ask, paired
+from tests.hw.waiting import PATIENCE, until
+
+PAIRING = Pairing(bytes(32), "12345678")
+COOKIE = paired(PAIRING)
+
+
+class Served(ChestServer):
+    """A server that keeps what it tells."""
+
+    def __init__(self) -> None:
+        self.told: list[dict[str, Any]] = []
+        super().__init__("127.0.0.1", 0, PAIRING, self.told.append, ["tangy.example"])
+
+
+@pytest.fixture
+async def server() -> AsyncIterator[Served]:
+    made = Served()
+    made.show(0, {"text": "here"})
+    await made.start()
+    yield made
+    await made.close()
+
+
+async def events(
+    server: Served, page: str, cookie: bytes = COOKIE
+) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+    """Open the events of a page."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+    head = f"GET /events?page={page} HTTP/1.1\r\nHost: localhost\r\n".encode()
+    writer.write(head + cookie + b"\r\n")
+    return reader, writer
+
+
+async def status(reader: asyncio.StreamReader) -> int:
+    """Read the head of an answer, and return its status."""
+    async with asyncio.timeout(PATIENCE):
+        return int((await reader.readuntil(b"\r\n\r\n")).split(b" ")[1])
+
+
+async def half_sent(server: Served) -> asyncio.StreamWriter:
+    """Send half a request."""
+    _, writer = await asyncio.open_connection("127.0.0.1", server.port)
+    writer.write(b"GET / HTTP/1.1\r\nHost: 127")
+    return writer
+
+
+class TestRequests:
+    @pytest.mark.parametrize(
+        ("path", "kind"),
+        [("/", b"text/html"), ("/chest.css", b"text/css"), ("/chest.js", b"text/j")],
+    )
+    async def test_the_page_is_whole_and_loads_nothing_from_elsewhere(
+        self, server: Served, path: str, kind: bytes
+    ) -> None:
+        head, _, body = (await ask(server.port, "GET", path)).partition(b"\r\n\r\n")
+        assert head.startswith(b"HTTP/1.1 200 OK") and b"Content-Type: " + kind in head
+        assert b"default-src 'none'" in head
+        assert f"Content-Length: {len(body)}".encode() in head
+        assert b"://" not in body and b"@import" not in body
+
+    @pytest.mark.parametrize(
+        ("method", "target", "status"),
+        [
+            ("GET", "/../devices.py", 404), ("GET", "/seen?page=x&number=1", 405),
+            ("POST", "/seen?page=nobody&number=1", 404), ("POST", "/seen", 404),
+            ("POST", "/", 405), ("PUT", "/seen", 405), ("GET", "/events", 503),
+            ("GET", "/pair", 405), ("POST", "/paired", 405), ("GET", "/paired", 204),
+            ("GET", "/events?page=" + "x" * 41, 503), ("GET", "/?" + "&" * 20, 400),
+            ("GET", "/" + "x" * 9000, 400), ("GET", "http://[", 400),
+        ],
+    )  # fmt: skip
+    async def test_anything_else_is_refused(
+        self, server: Served, method: str, target: str, status: int
+    ) -> None:
+        answer = await ask(server.port, method, target, COOKIE)
+        assert answer.startswith(f"HTTP/1.1 {status} ".encode())
+
+    @pytest.mark.parametrize(
+        "line",
+        [b"Content-Length: 257\r\n", b"Content-Length: x\r\n", b"Transfer-Encoding: a\r\n",
+         b"Content-Length: " + b"9" * 5000 + b"\r\n"],
+    )  # fmt: skip
+    async def test_bodies_that_are_no_use_are_refused(self, server: Served, line: bytes) -> None:
+        answer = await ask(server.port, "POST", "/seen", line)
+        assert answer.startswith(b"HTTP/1.1 400 ")
+
+    async def test_one_connection_serves_many_requests(self, server: Served) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+        for _ in range(3):
+            writer.write(b"HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            assert await status(reader) == 200
+        writer.close()
+
+    @given(st.text(max_size=40))
+    def test_an_event_is_one_line_of_plain_signs_and_comes_back(self, text: str) -> None:
+        server = Served()
+        server.show(7, {"text": text})
+        kind, line, *rest = server._shown.decode().split("\n")
+        assert kind == "event: show" and rest == ["", ""]
+        assert line.isascii() and line.isprintable()
+        assert json.loads(line.removeprefix("data: ")) == {"n": 7, "text": text}
+
+
+class TestStrangers:
+    @pytest.mark.parametrize(
+        ("method", "target"),
+        [("GET", "/events?page=one"), ("POST", "/seen?page=one&number=0"), ("GET", "/paired")],
+    )
+    @pytest.mark.parametrize(
+        "cookie",
+        [
+            b"", paired(Pairing()), f"Cookie: {PAIRING.cookie}=\r\n".encode(),
+            f"Cookie: {PAIRING.cookie}={'0' * 16}.{'0' * 64}\r\n".encode(),
+        ],
+    )  # fmt: skip
+    async def test_who_is_not_paired_sees_nothing_and_says_nothing(
+        self, server: Served, method: str, target: str, cookie: bytes
+    ) -> None:
+        _, writer = await events(server, "one")  # a paired one is open under that name
+        await until(lambda: "one" in server._pages)
+        answer = await ask(server.port, method, target, cookie)
+        assert answer.startswith(b"HTTP/1.1 403 ") and answer.endswith(b"\r\n\r\n")
+        assert server.told == []
+        writer.close()
+
+    @pytest.mark.parametrize(
+        ("host", "more", "status"),
+        [
+            ("localhost", b"", 200), ("192.168.1.5:8765", b"", 200), ("[fe80::1]:8765", b"", 200),
+            ("Tangy.Example:80", b"", 200), ("tangy.example.", b"", 200),
+            ("evil.example", b"", 421), ("127.0.0.1.evil.example", b"", 421), ("", b"", 421),
+            ("[", b"", 421), ("a@evil.example", b"", 421),
+            ("127.0.0.1:80", b"Origin: http://127.0.0.1:80\r\n", 200),
+            ("127.0.0.1:80", b"Origin: http://evil.example\r\n", 421),
+            ("127.0.0.1:80", b"Origin: null\r\n", 421),
+        ],
+    )  # fmt: skip
+    async def test_a_page_that_is_called_by_another_name_is_refused(
+        self, server: Served, host: str, more: bytes, status: int
+    ) -> None:
+        answer = await ask(server.port, "GET", "/", COOKIE + more, host=host)
+        assert answer.startswith(f"HTTP/1.1 {status} ".encode())
+
+    async def test_half_sent_requests_are_dropped_and_a_paired_tablet_gets_in(
+        self, server: Served
+    ) -> None:
+        writers = [await half_sent(server) for _ in range(3 * chest_server.MOST_CONNECTIONS)]
+        await until(lambda: server.connections == chest_server.MOST_CONNECTIONS)
+        reader, writer = await events(server, "mine")
+        assert await status(reader) == 200
+        writers += [await half_sent(server) for _ in range(3 * chest_server.MOST_CONNECTIONS)]
+        for number in range(3):
+            target = f"/seen?page=mine&number={number}"
+            assert (await ask(server.port, "POST", target, COOKIE)).startswith(b"HTTP/1.1 204 ")
+        async with asyncio.timeout(PATIENCE):
+            await reader.readuntil(b"event: alive")  # its events go on
+        assert server.connections <= chest_server.MOST_CONNECTIONS
+        for one in (*writers, writer):
+            one.transport.abort()
+
+    async def test_a_request_that_comes_in_drops_has_no_longer_than_others(
+        self, server: Served, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(chest_server, "ASK_SECONDS", 0.2)
+        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+        ended = asyncio.ensure_future(reader.read())
+        sent = 0
+        while not ended.done() and sent < 100 * PATIENCE:
+            writer.write(b"G")
+            sent += 1
+            await asyncio.wait([ended], timeout=0.02)
+        assert ended.done() and ended.result() == b""
+        await until(lambda: server.connections == 0)
+        writer.close()
+
+    async def test_pages_that_hang_make_room_for_a_paired_tablet(
+        self, server: Served, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        opened = [await events(server, f"p{n}") for n in range(chest_server.MOST_PAGES)]
+        for reader, _ in opened:
+            assert await status(reader) == 200
+        reader, late = await events(server, "late")
+        assert await status(reader) == 503
+        monkeypatch.setattr(chest_server, "GONE_SECONDS", 0.0)
+        reader, another = await events(server, "another")
+        assert await status(reader) == 200
+        assert "p0" not in server._pages and len(server._pages) == chest_server.MOST_PAGES
+        for one in (*(writer for _, writer in opened), late, another):
+            one.close()
+
+    async def test_a_page_that_goes_is_told(self, server: Served) -> None:
+        reader, writer = await events(server, "one")
+        assert await status(reader) == 200
+        writer.transport.abort()
+        await until(lambda: server.told == [{"gone": "one"}])
+
+    async def test_no_page_says_that_it_has_drawn_what_was_never_shown(
+        self, server: Served
+    ) -> None:
+        reader, writer = await events(server, "one")
+        assert await status(reader) == 200
+        await ask(server.port, "POST", "/seen?page=one&number=99999", COOKIE)
+        assert server.told == [{"page": "one", "seen": 0}]
+        writer.close()
+
+
+class TestPairing:
+    async def test_the_code_is_given_once_for_a_token_that_holds(self, server: Served) -> None:
+        answer = await ask(server.port, "POST", "/pair", body=b"1234 5678")
+        assert answer.startswith(b"HTTP/1.1 204 ")
+        (line,) = (line for line in answer.decode().split("\r\n") if line.startswith("Set-Cookie"))
+        assert "HttpOnly" in line and "SameSite=Strict" in line
+        cookie = line.removeprefix("Set-Cookie: ").partition(";")[0]
+        head = f"Cookie: {cookie}\r\n".encode()
+        assert (await ask(server.port, "GET", "/paired", head)).startswith(b"HTTP/1.1 204 ")
+        # Another process with the same key and another code knows it, too.
+        assert Pairing(PAIRING.key, "00000000").knows(cookie.partition("=")[2])
+        assert not Pairing().knows(cookie.partition("=")[2])
+
+    @pytest.mark.parametrize("body", [b"", b"12345679", b"123456789", b"\xff" * 8, b"x" * 256])
+    async def test_another_code_pairs_nothing(self, server: Served, body: bytes) -> None:
+        answer = await ask(server.port, "POST", "/pair", body=body)
+        assert answer.startswith(b"HTTP/1.1 403 ") and b"Set-Cookie" not in answer
+
+    async def test_after_too_many_wrong_codes_the_right_one_waits_too(self, server: Served) -> None:
+        for _ in range(MOST_WRONG):
+            await ask(server.port, "POST", "/pair", body=b"00000000")
+        answer = await ask(server.port, "POST", "/pair", body=b"12345678")
+        assert answer.startswith(b"HTTP/1.1 429 ")
+
+    def test_wrong_codes_are_limited_for_an_address_and_for_all_and_forgotten(self) -> None:
+        now = 0.0
+        check = CodeCheck("12345678", lambda: now)
+        for _ in range(MOST_WRONG):
+            assert not check.right("0", "a")
+        with pytest.raises(TooManyCodes):
+            check.right("12345678", "a")
+        assert check.right("1234-5678", "b")  # another address is another matter
+        for number in range(MOST_WRONG_OF_ALL - MOST_WRONG):
+            assert not check.right("0", f"many-{number}")
+        with pytest.raises(TooManyCodes):
+            check.right("12345678", "c")
+        now += WINDOW_SECONDS
+        assert check.right("12345678", "a") and check.right("12345678", "c")
+
+    def test_the_data_folder_keeps_it_for_its_owner_alone(self, tmp_path: Path) -> None:
+        first = keep_pairing(tmp_path)
+        assert keep_pairing(tmp_path) == first
+        assert stat.S_IMODE((tmp_path / FILE).stat().st_mode) == 0o600
+        assert [path.name for path in tmp_path.iterdir()] == [FILE]
+        assert first.key.hex() not in repr(first) and first.code not in repr(first)
+
+    @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"key": "00", "code": "1"}', b"\xff"])
+    def test_one_that_is_damaged_is_made_anew(self, tmp_path: Path, content: bytes) -> None:
+        (tmp_path / FILE).write_bytes(content)
+        made = keep_pairing(tmp_path)
+        assert keep_pairing(tmp_path) == made
+
+    def test_where_nothing_can_be_kept_it_is_new_each_time(self, tmp_path: Path) -> None:
+        assert keep_pairing(tmp_path / "none") != keep_pairing(tmp_path / "none")
+        assert not (tmp_path / "none").exists()
