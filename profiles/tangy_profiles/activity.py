@@ -68,6 +68,8 @@ class Activity:
     """How words of the phrases are pronounced, in place of what the dictionary says of them."""
     listening: str = LISTENING[0]
     """How spoken words are matched, one of LISTENING."""
+    pressing: tuple[str, ...] = ()
+    """The strategies that are not used any more in a visit in which a person has refused."""
 
     @cached_property
     def unread(self) -> str:
@@ -234,6 +236,7 @@ def read_activity(path: Path) -> Activity:
             read_pronunciations(top.table("pronunciations", optional=True))
         ),
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
+        pressing=_pressing(top, strategies),
     )
     listening.close()
     top.close()
@@ -248,6 +251,13 @@ def _strategies(table: Table) -> dict[str, str]:
     if not strategies:
         raise table.wrong("", "must name at least one persuasive strategy.")
     return strategies
+
+
+def _pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
+    pressing = top.words("pressing_strategies", strategies, ())
+    if set(pressing) == set(strategies):
+        raise top.wrong("pressing_strategies", "must leave a strategy for people who refuse.")
+    return pressing
 
 
 def _user_states(top: Table) -> tuple[CardState, ...]:

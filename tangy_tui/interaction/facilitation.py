@@ -118,6 +118,22 @@ class GameEnded:
     stopped: str | None
 
 
+def refused(
+    behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
+) -> bool:
+    """Say whether the attended person did not do what a behaviour asked for.
+
+    Where that cannot be seen, nothing that changed is as good as a refusal: people are not asked
+    again and again because their card is out of sight.
+    """
+    if not behaviour.persuades or before.attended is None or not outcome.completed:
+        return False
+    if outcome.response is not None:
+        return not outcome.response.followed
+    person = before.attended
+    return behaviour.effect != "none" and after.user(person) == before.user(person)
+
+
 Permits: TypeAlias = Callable[[Decision, str | None], bool]
 """Says whether what was decided, for whom, may be done."""
 
@@ -165,6 +181,8 @@ class Facilitation:
         self._people = {person.id: person for person in people}
         self._seed = seed
         self._game = ""
+        self._refused: str | None = None
+        """Who has refused a request in the present visit."""
 
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
@@ -174,6 +192,7 @@ class Facilitation:
         self.steps = 0
         self.over = False
         self.question = None
+        self._refused = None
         self._store.append(
             BEGUN,
             {
@@ -233,6 +252,10 @@ class Facilitation:
         decision = self.policy.decide(state.situation)
         self.question = Unsure(state, decision, reason, remedy, fault)
         return [self.question]
+
+    def refused(self, person: str | None) -> None:
+        """Take note that a person did not do what was asked of them beside the behaviours."""
+        self._refused = person
 
     def withdraw(self) -> None:
         """Ask no more: it has turned out that there is nothing to answer."""
@@ -321,11 +344,16 @@ class Facilitation:
         activity = self._activity
         choice = None
         if behaviour.persuades and target is not None:
-            choice = self.persuasion.choose(self.world.who(target))
+            without = activity.pressing if self._refused == target else ()
+            choice = self.persuasion.choose(self.world.who(target), without)
         action = activity.action(behaviour, target, choice.strategy if choice else None)
         outcome = self.world.execute(action)
         after = self.world.observe()
         self.steps += 1
+        if state.place != after.place:
+            self._refused = None
+        elif refused(behaviour, state, outcome, after):
+            self._refused = target
         expected = activity.expected.get(state.situation, behaviour.name)
         name = self._names.get(target, target) if target is not None else ""
         return Acted(

@@ -5,7 +5,7 @@ The paper's method is Thompson sampling over Beta posteriors; `methods` has the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from random import Random
@@ -76,14 +76,20 @@ class Persuasion:
             self.beliefs[person] = known.beliefs
         return self.beliefs[person]
 
-    def choose(self, person: str) -> Choice:
-        """Choose the strategy to persuade a person with, among those that are switched on."""
+    def choose(self, person: str, without: Collection[str] = ()) -> Choice:
+        """Choose the strategy to persuade a person with, among those that are switched on.
+
+        Args:
+            person: who is to be persuaded.
+            without: strategies that are out of place now, whatever is switched on.
+        """
         known = self._known[person]
         self._fade(person, known)
         beliefs = self.beliefs[person]
         usable = beliefs
-        if known.off:  # an activity may share no strategy with those that are left on
-            usable = {s: b for s, b in beliefs.items() if s not in known.off} or beliefs
+        if known.off or without:  # an activity may share no strategy with those that are left on
+            fitting = {s: b for s, b in beliefs.items() if s not in without} or beliefs
+            usable = {s: b for s, b in fitting.items() if s not in known.off} or fitting
         draws = known.method.scores(usable, self._rng)
         return Choice(person, self._highest(draws), draws, beliefs, known.method.words)
 

@@ -15,7 +15,7 @@ from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.facilitation import Acted, refused
 from tangy_tui.learning.effects import Effects, Mismatch
 
 OWED_BY_PEOPLE = ("what was asked about", "request")
@@ -46,6 +46,15 @@ class Detector:
         self._fruitless = 0
         self._last = None
 
+    def refused(self, person: str) -> int:
+        """Count that a person did not do what Tangy asked for aloud; return how often in a row."""
+        self._refusals[person] += 1
+        return self._refusals[person]
+
+    def refusals(self, person: str) -> int:
+        """Return how often in a row a person did not do what they were asked."""
+        return self._refusals[person]
+
     def forgive(self, person: str | None) -> None:
         """Begin anew to count what a person does not do."""
         self._fruitless = 0
@@ -70,10 +79,17 @@ class Detector:
         state, label = max(states, key=lambda one: STATES.index(one[0]), default=(OK, ""))
         return state, label if state != OK else ""
 
-    def compare(self, acted: Acted) -> tuple[dict[str, Fact], list[Mismatch]]:
+    def compare(
+        self, acted: Acted, *, explained: bool = False
+    ) -> tuple[dict[str, Fact], list[Mismatch]]:
         """Compare what followed a behaviour with its learnt effects.
 
         Where nothing at all is known of a behaviour's effects, nothing can be unexpected.
+
+        Args:
+            acted: the behaviour, and what was observed before and after it.
+            explained: a fault of a device explains what cannot be seen, so that it says nothing
+                of a person.
 
         Returns:
             The evidence of the execution, and what was not as expected.
@@ -92,7 +108,7 @@ class Detector:
             found += self._between(behaviour.name, acted.state, found)
         self._last = acted.after
         evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
-        self._count(acted.state, acted.after, outcome)
+        self._count(acted, explained)
         person = acted.state.attended
         if person is not None and self._refusals[person]:
             evidence["person.refusals"] = self._refusals[person]
@@ -119,14 +135,17 @@ class Detector:
         )
         return [Mismatch(behaviour, OTHERS, tuple(sorted(expected)), FEWER)] if gone else []
 
-    def _count(self, before: ActivityState, after: ActivityState, outcome: Outcome) -> None:
+    def _count(self, acted: Acted, explained: bool) -> None:
         """Count requests that a person did not follow, and behaviours that changed nothing."""
+        before, after, outcome = acted.state, acted.after, acted.outcome
         if outcome.response is not None:
             person = before.attended or outcome.response.person  # whose place it is
             if outcome.response.followed:
                 self._refusals.pop(person, None)
             else:
                 self._refusals[person] += 1
+        elif not explained and refused(acted.action.behaviour, before, outcome, after):
+            self._refusals[str(before.attended)] += 1
         alike = after._replace(step=before.step, closed=before.closed) == before
         moved_on = before.attended is None and bool(outcome.numbers)  # a number was called
         self._fruitless = self._fruitless + 1 if alike and not moved_on else 0

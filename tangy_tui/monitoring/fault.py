@@ -42,12 +42,13 @@ MOVES: Mapping[str, str] = {
     "accepted": "the teacher said that this is all right",
     "cleared": "was cleared",
     "ended": "ended by itself",
+    "left": "Tangy left it at that",
     "given up": "the game was given up",
     "left open": "was left open at the end of the game",
 }
 """What can be done about a fault, in words."""
 
-ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended"))
+ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
 """The moves after which a fault is over."""
 
 

@@ -22,6 +22,7 @@ from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import Diagnosis
 from tangy_tui.monitoring.fault import (
     BORNE,
+    ENDINGS,
     FAULT,
     NAME,
     OPEN,
@@ -41,6 +42,9 @@ Event: TypeAlias = GameEvent | FaultEvent
 
 AGAIN = 3
 """A recovery that was needed so often in a game begins one rung further from then on."""
+
+DONE = ENDINGS - {"taught", "left"}
+"""The moves after which it is counted anew what a person does not do."""
 
 TO_TEACH = "Say what to do here, or look at what happened at the table."
 
@@ -171,6 +175,9 @@ class Recovery:
         move = Move("asked", self.seconds, attempt=attempt, speech=speech, image=image)
         told = self.move(fault, move)
         self.remedy(fault, "ask", move.called(fault.called))
+        if fault.person is not None and not self.solved(fault):
+            self._game.refused(fault.person)
+            self._detector.refused(fault.person)
         return told + self._judge(fault, rule, attempt)
 
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
@@ -203,6 +210,18 @@ class Recovery:
         if rule.bearable and self._rung_of(fault) == "continue":
             return self.move(fault, Move("went on", self.seconds))
         return self._escalate(fault) + self.halt_if_critical()
+
+    def supersede(self, fault: Fault) -> list[Event]:
+        """Leave the faults at that which a newer one with the same person speaks for as well."""
+        told: list[Event] = []
+        spoken_for = self._rules[fault.id].symptoms
+        for other in list(self._there):
+            mine = {f"mismatch.{one.variable}" for one in other.mismatches}
+            if other is fault or other.critical or fault.person is None:
+                continue
+            if other.person == fault.person and mine and mine <= spoken_for:
+                told += self.move(other, Move("left", self.seconds))
+        return told
 
     def _ask_teacher(self, fault: Fault) -> list[Event]:
         asked = self._game.ask(fault.console, TO_TEACH, fault.id)
@@ -271,5 +290,6 @@ class Recovery:
         fault.add(told)
         if fault.status == OVER:
             self._there.remove(fault)
-            self._detector.forgive(fault.person)
+            if move.kind in DONE:
+                self._detector.forgive(fault.person)
         return [Moved(fault, told)]

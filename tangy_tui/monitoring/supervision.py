@@ -172,6 +172,7 @@ class Supervision:
             if self._idle > MOST_MOVES:
                 return told + self._stop(f"{MOST_MOVES} moves against faults led nowhere.")
             told += self._recovery.go_further(fault)
+            told += self._watch.refused(fault)
             return told + self._end_if_hopeless()
         self._idle = 0
         if self.steps >= MOST_STEPS:

@@ -13,7 +13,7 @@ from tangy_profiles.faults import Evidence, FaultBook
 from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent, Unsure
 from tangy_tui.monitoring.detection import Detector, together
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
-from tangy_tui.monitoring.fault import BORNE, Move
+from tangy_tui.monitoring.fault import BORNE, Fault, Move
 from tangy_tui.monitoring.recovery import Event, Recovery
 
 NOT_SHOWN: Evidence = {"situation.shown": False}
@@ -77,6 +77,14 @@ class Watch:
             told += self._recovery.leave_open() + list(self._game.finish())
         return told
 
+    def refused(self, fault: Fault) -> list[Event]:
+        """See, after a person was asked for help, whether they are to be asked no more."""
+        person = fault.person
+        if person is None or self._game.over:
+            return []
+        times = self._detector.refusals(person)
+        return self._take(diagnose(self.book, {"person.refusals": times}), None, person)
+
     def foresee(self) -> list[Event]:
         """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
         decision = self._game.policy.decide(self._game.world.observe().situation)
@@ -86,19 +94,28 @@ class Watch:
 
     def _compare(self, acted: Acted) -> list[Event]:
         self._recovery.seconds += acted.outcome.seconds
-        execution, mismatches = self._detector.compare(acted)
         known, self._seen = self._seen, self.devices
+        explained = any(one.rule.device for one in diagnose(self.book, self._seen))
+        execution, mismatches = self._detector.compare(acted, explained=explained)
         if not execution and self._seen is known:
             return []
         evidence = together(self._seen, execution)
         return self._take(diagnose(self.book, evidence, mismatches), acted)
 
-    def _take(self, found: Sequence[Diagnosis], acted: Acted | None) -> list[Event]:
-        """Keep the diagnoses that are new; halt at once if one is critical."""
+    def _take(
+        self, found: Sequence[Diagnosis], acted: Acted | None, whose: str | None = None
+    ) -> list[Event]:
+        """Keep the diagnoses that are new; halt at once if one is critical.
+
+        Args:
+            found: the diagnoses.
+            acted: the behaviour that they were noticed after.
+            whose: the person whom they are about, where that is not whom the behaviour attended.
+        """
         told: list[Event] = []
+        attended = acted.state.attended if acted is not None else whose
         for diagnosis in found:
-            by_device = bool(diagnosis.rule.device)
-            person = acted.state.attended if acted is not None and not by_device else None
+            person = None if diagnosis.rule.device else attended
             if self._recovery.knows(diagnosis, person):
                 continue
             try:
@@ -106,6 +123,7 @@ class Watch:
             except TangyError:
                 self._seen = None  # so that the next look finds it again
                 raise
+            told += self._recovery.supersede(self._recovery.faults[-1])
             if acted is not None and diagnosis.mismatches:
                 self.acted[self._recovery.faults[-1].id] = acted
         if told and not self._recovery.ended:

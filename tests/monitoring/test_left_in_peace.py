@@ -1,0 +1,97 @@
+"""People who do not do what they are asked, seen or unseen, are left in peace."""
+
+from __future__ import annotations
+
+from collections import Counter
+from random import Random
+
+import pytest
+
+from tangy_profiles.state import FRONT
+from tangy_sim import faulty
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.persuasion import Persuasion
+from tangy_tui.monitoring.fault import Moved
+from tangy_tui.monitoring.supervision import Event
+from tests.monitoring.conftest import Supervise, codes, ended, play
+
+MOST = 3
+"""Requests that a person who refuses hears in a visit."""
+
+
+def in_vain(events: list[Event]) -> list[tuple[int, str]]:
+    """Return each request that was not followed: in which visit, and by which way of speaking."""
+    found: list[tuple[int, str]] = []
+    visit = 0
+    for event in events:
+        if isinstance(event, Acted):
+            visit += event.state.place != event.after.place
+            response = event.outcome.response
+            asks = event.action.behaviour.persuades and event.action.behaviour.effect != "none"
+            if asks and event.after.place != FRONT and not (response and response.followed):
+                found.append((visit, str(event.action.strategy)))
+        elif isinstance(event, Moved) and event.move.kind == "asked" and event.fault.person:
+            found.append((visit, "aloud"))
+    return found
+
+
+@pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
+@pytest.mark.parametrize("seed", range(1, 9))
+def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str, seed: int
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    events = play(supervise(kind, seed=seed))
+    visits = Counter(visit for visit, _ in in_vain(events))
+    assert max(visits.values(), default=0) <= MOST
+    assert ended(events).stopped is None
+
+
+@pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
+def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    pressed, refusals = [], 0
+    for seed in range(1, 25):
+        game = supervise(kind, seed=seed)
+        refused: set[int] = set()
+        for visit, strategy in in_vain(play(game)):
+            refusals += visit in refused
+            pressed += [strategy] if visit in refused else []
+            refused.add(visit)
+    assert refusals > 20
+    assert not set(pressed) & set(game.world.activity.pressing)
+
+
+@pytest.mark.parametrize("seed", [2, 7, 9])
+def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    events = play(supervise("card-out-of-sight~1", seed=seed))
+    assert "never-complies" in codes(events)
+
+
+def test_a_covered_camera_says_nothing_of_a_person(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    for seed in range(1, 13):
+        assert "never-complies" not in codes(play(supervise("camera-occluded@3", seed=seed)))
+
+
+def test_the_others_game_goes_on_after_a_person_was_left_in_peace(supervise: Supervise) -> None:
+    events = play(supervise("never-complies@8", seed=5))
+    last = max(n for n, e in enumerate(events) if isinstance(e, Moved) and e.move.speech)
+    assert any(isinstance(e, Acted) and e.outcome.numbers for e in events[last:])
+    said = [
+        e.move.speech for e in events if isinstance(e, Moved) and e.fault.code == "never-complies"
+    ]
+    assert any("all right" in words for words in said)
+
+
+def test_a_choice_can_leave_out_strategies_that_are_out_of_place() -> None:
+    people = Persuasion(["a"], ["calm", "pressing"], Random(1))
+    assert {people.choose("a", ["pressing"]).strategy for _ in range(50)} == {"calm"}
+    assert {people.choose("a").strategy for _ in range(50)} == {"calm", "pressing"}
