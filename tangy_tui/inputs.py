@@ -10,6 +10,8 @@ from pathlib import Path
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 
+LARGEST_SCRIPT = 4_000_000  # bytes: a hundred thousand lines
+
 
 def line_reader(script: Path | None) -> Callable[[], str | None]:
     """Return where lines come from: the script, or standard input."""
@@ -17,7 +19,11 @@ def line_reader(script: Path | None) -> Callable[[], str | None]:
         lines_in = sys.stdin  # None where it was closed
         return lambda: lines_in.readline() or None if lines_in is not None else None
     try:
-        lines = iter(script.read_text(encoding="utf-8").splitlines())
+        with script.open("rb") as file:  # which may be a pipe: `--script <(...)`, /dev/stdin
+            content = file.read(LARGEST_SCRIPT + 1)
+        if len(content) > LARGEST_SCRIPT:
+            raise TangyError(plain(f"{script}: is larger than {LARGEST_SCRIPT:,} bytes."))
+        lines = iter(content.decode().splitlines())
     except FileNotFoundError:
         raise TangyError(plain(f"{script}: there is no such file.")) from None
     except (OSError, UnicodeDecodeError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
+import os
 import reprlib
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.given_file import lines_of, read_given
+from tangy_profiles.plain_text import plain as plain  # it is taken from here
 
 LARGEST_PROFILE = 1_000_000  # bytes; ours have some 20 kB
 
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxlong, _SHORT.maxother = 2, 100, 40, 40
-
-_UNPRINTABLE = re.compile(
-    "[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
-)
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
@@ -32,15 +30,6 @@ def nearest(word: str, words: Iterable[str]) -> str:
     if not known:
         return "there is none to choose from."
     return "choose one of: " + ", ".join(known) + "."
-
-
-def plain(text: str) -> str:
-    """Replace what would act on a terminal instead of being read on it (controls, bidi marks).
-
-    Bytes that were no text come from the command line as lone surrogates, which no file and no
-    terminal takes: they are replaced as well.
-    """
-    return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def _short(text: str, most: int = 60) -> str:
@@ -88,7 +77,7 @@ class Table:
         value: str = self._take(key, str, "text in quotes", default)
         if not value.strip() and value != default:
             raise self.wrong(key, "must not be empty.")
-        if _UNPRINTABLE.search(value):
+        if plain(value) != value:
             raise self.wrong(key, "holds a character that cannot be shown.")
         return value
 
@@ -144,7 +133,7 @@ class Table:
         values = self._take(key, list, "a list of texts", default)
         allowed = None if known is None else set(known)
         for value in values:
-            if not isinstance(value, str) or not value.strip() or _UNPRINTABLE.search(value):
+            if not isinstance(value, str) or not value.strip() or plain(value) != value:
                 raise self.wrong(key, "must be a list of texts, none of them empty.")
             if allowed is not None and value not in allowed:
                 raise self.wrong(key, f"{value!r} is not known; {nearest(value, allowed)}")
@@ -208,16 +197,11 @@ def read_toml(path: Path) -> Table:
         ProfileError: the file is missing, a folder, unreadable, empty, too large or not TOML.
     """
     name = plain(path.name)
+    if os.path.isdir(path):  # noqa: PTH112 - of a name that cannot be it says no
+        raise ProfileError(plain(f"{path}: is a folder; name the TOML file in it."))
+    content = read_given(path, LARGEST_PROFILE, ProfileError, called=name)
     try:
-        if path.stat().st_size > LARGEST_PROFILE:
-            raise ProfileError(f"{name}: is larger than {LARGEST_PROFILE:,} bytes.")
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise ProfileError(plain(f"{path}: there is no such file.")) from None
-    except IsADirectoryError:
-        raise ProfileError(plain(f"{path}: is a folder; name the TOML file in it.")) from None
-    except OSError as error:
-        raise ProfileError(plain(f"{path}: cannot be read ({error.strerror}).")) from None
+        values = tomllib.loads(lines_of(content))
     except UnicodeDecodeError:
         raise ProfileError(f"{name}: is not UTF-8 text.") from None
     except tomllib.TOMLDecodeError as error:

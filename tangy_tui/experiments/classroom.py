@@ -19,7 +19,9 @@ from typing import Any, Protocol
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import read_given_text
 from tangy_profiles.person import load_people
+from tangy_profiles.reading import LARGEST_PROFILE
 from tangy_profiles.store import Store
 from tangy_sim.guide import GuidedWorld
 from tangy_sim.users import load_users
@@ -106,7 +108,7 @@ def about(name: str) -> dict[str, Any]:
         )
     if not name.endswith(".toml"):
         return {"activity": name}
-    return {"activity": name, "content": digest_of(Path(name).read_text(encoding="utf-8"))}
+    return {"activity": name, "content": digest_of(read_given_text(Path(name), LARGEST_PROFILE))}
 
 
 def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Iterator[Demonstration]:

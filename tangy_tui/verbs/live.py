@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
 from tangy_tui.verbs.opening import full_screen, open_house
@@ -164,13 +166,10 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
     found: list[Injection] = []
     for text in given:
         path = Path(text)
-        if not path.is_file():
+        if not os.path.exists(text) or os.path.isdir(text):  # noqa: PTH110, PTH112 - names too long
             found.append(read_injection(text))
             continue
-        try:
-            lines = path.read_bytes()[:LARGEST_LIST].decode().splitlines()
-        except (OSError, ValueError):
-            raise TangyError(plain(f"--inject {text}: is no list of faults.")) from None
+        lines = read_given_text(path, LARGEST_LIST).split("\n")
         for number, line in enumerate(lines, start=1):
             if line.strip() and not line.startswith("#"):
                 try:

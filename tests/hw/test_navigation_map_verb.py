@@ -72,8 +72,8 @@ class TestMap:
         [
             ([], "Say what to draw"),
             (["a.log", "--room", "common-room"], "Say what to draw"),
-            (["nowhere.log"], "cannot be read"),
-            (["nowhere.yaml"], "cannot be read"),
+            (["nowhere.log"], "there is no such file"),
+            (["nowhere.yaml"], "there is no such file"),
             (["--room", "comon-room"], "did you mean 'common-room'"),
             (["--room", "common-room", "--yaml", "room.txt"], "name it .yaml"),
             (["--room", "common-room", "--png", "room.gif"], "name it .png"),

@@ -124,7 +124,7 @@ class TestFiles:
             (YAML + "freethresh: 1\n", "did you mean 'free_thresh'"),
             (YAML + "free_thresh: 0.9\n", "must not be above"),
             (YAML.replace("[-1.0, 2.0, 0.0]", "3"), "origin must be"),
-            (YAML.replace("a.pgm", "b.pgm"), "there is no such picture"),
+            (YAML.replace("a.pgm", "b.pgm"), "there is no such file"),
             (YAML.replace("a.pgm", "a.yaml"), "is not a picture"),
         ],
     )
@@ -238,7 +238,11 @@ class TestLogs:
     def test_what_is_no_log_is_refused(self, tmp_path: Path) -> None:
         (tmp_path / "a.log").write_bytes(bytes(range(128, 256)))
         (tmp_path / "b.log").write_bytes(gzip.compress(FLASER.encode())[:-12])
-        for name, told in (("a.log", "no text"), ("b.log", "breaks off"), ("c.log", "read")):
+        for name, told in (
+            ("a.log", "no text"),
+            ("b.log", "breaks off"),
+            ("c.log", "no such file"),
+        ):
             with pytest.raises(LogError, match=told):
                 read_log(tmp_path / name)
 

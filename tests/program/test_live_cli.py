@@ -36,7 +36,9 @@ def test_a_map_on_which_the_robot_can_stand_everywhere_is_taken(
 
 
 def test_what_is_no_map_is_refused_by_its_name(house: House, tmp_path: Path) -> None:
-    assert refusal(house, tmp_path / "none.yaml").startswith(f"{tmp_path / 'none.yaml'}: cannot")
+    assert refusal(house, tmp_path / "none.yaml").startswith(
+        f"{tmp_path / 'none.yaml'}: there is no"
+    )
     (tmp_path / "words.yaml").write_text("some: words\n", encoding="utf-8")
     assert "words.yaml, line 1: 'some' is not known" in refusal(house, tmp_path / "words.yaml")
 

@@ -76,7 +76,7 @@ screen = {{ kind = "page", port = 0 }}
     )  # fmt: skip
     async with asyncio.timeout(2 * PATIENCE):
         said, problem = await doctor.communicate()
-    assert doctor.returncode == 0, problem
+    assert doctor.returncode == 1, problem  # its wheels do not answer
     found = {one["part"]: one for one in json.loads(said)}
     for part in ("laser scanner", "head camera", "voice"):
         assert found[f"Tangy's {part}"]["state"] == "ok", found

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_hw.drivers.camera_source import CameraError, CameraSource, pictures_in
+from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import read_given
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
@@ -16,6 +18,7 @@ OPEN_SECONDS = 1.5  # for a stream to answer
 READ_SECONDS = 1.5  # for its next picture
 FILE_RATE = 10.0  # pictures a second of a video that does not say
 MOST_PIXELS = 50_000_000  # of a picture in a folder
+LARGEST_FILE = 200_000_000  # bytes
 LOWEST, ALIKE = 8, 12  # rows, and of 255: what is filled in for what did not come
 UNUSABLE = "it holds no pictures that can be read"
 
@@ -173,9 +176,9 @@ def _read_picture(path: Path) -> Image | None:
 
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))
     try:
-        content = np.frombuffer(path.read_bytes(), np.uint8)
+        content = np.frombuffer(read_given(path, LARGEST_FILE), np.uint8)
         return cv2.imdecode(content, cv2.IMREAD_COLOR)  # type: ignore[return-value]
-    except (OSError, cv2.error):
+    except (TangyError, cv2.error):
         return None
 
 

@@ -17,12 +17,15 @@ from PIL import Image, UnidentifiedImageError
 
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, Cells, OccupancyMap
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import open_given, read_given_text
 from tangy_profiles.reading import nearest, plain
 
 BLACK, GREY, WHITE = 0, 205, 254
 FREE_BELOW, OCCUPIED_ABOVE = 0.196, 0.65  # grey (205) is darker than .196 by a hair: unknown
 MOST_PIXELS = 40_000_000
 LARGEST = 100_000  # bytes of a YAML
+LARGEST_PICTURE = 200_000_000  # bytes
+FORMATS = ("PPM", "PNG", "BMP", "TIFF", "JPEG")  # by what is in a file, whatever it is named
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 KEEP_OUT = "-keep-out"  # ends the name of the files that say what is kept out of
 
@@ -118,7 +121,10 @@ def _picture(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of its size, which is asked about here
-            with Image.open(path) as file:
+            with (
+                open_given(path, LARGEST_PICTURE, MapFileError) as given,
+                Image.open(given, formats=FORMATS) as file,
+            ):
                 if file.width * file.height > MOST_PIXELS:
                     raise MapFileError(
                         f"{name}: has more than {MOST_PIXELS // 10**6} million pixels."
@@ -126,8 +132,6 @@ def _picture(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
                 if file.mode not in ("L", "RGB", "1", "P", "RGBA", "LA"):
                     raise MapFileError(f"{name}: has more than 255 shades; save it with 8 bits.")
                 return np.asarray(file.convert("L"), dtype=np.float64)
-    except FileNotFoundError:
-        raise MapFileError(f"{name}: there is no such picture.") from None
     except (UnidentifiedImageError, Image.DecompressionBombError):
         raise MapFileError(f"{name}: is not a picture of a map (PGM or PNG).") from None
     except (OSError, SyntaxError, ValueError, EOFError) as error:
@@ -138,14 +142,7 @@ def _picture(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
 
 def _settings(path: Path) -> _Settings:
     name = plain(str(path))
-    try:
-        if path.stat().st_size > LARGEST:
-            raise MapFileError(f"{name}: is too large for the YAML of a map.")
-        values = _yaml(path.read_text(encoding="utf-8"), name)
-    except OSError as error:
-        raise MapFileError(f"{name}: cannot be read ({error.strerror}).") from None
-    except UnicodeDecodeError:
-        raise MapFileError(f"{name}: is no text; give the YAML of the map.") from None
+    values = _yaml(read_given_text(path, LARGEST, MapFileError), name)
     image = _one(values, "image", name)
     mode = _one(values, "mode", name, "trinary")
     if mode != "trinary":

@@ -8,6 +8,7 @@ wheels alone). In a log that a mapping program has gone over, the pose of the la
 from __future__ import annotations
 
 import gzip
+import io
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,10 +19,14 @@ import numpy as np
 
 from tangy_hw.devices import Pose, Scan
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import open_given
 from tangy_profiles.reading import plain
 
 FARTHEST = 80.0  # metres; an old FLASER does not say how far its scanner sees: SICK's say 81.91
-LARGEST = 500_000_000  # bytes, unpacked
+LARGEST_FILE, LARGEST = 200_000_000, 500_000_000  # bytes, as it is and unpacked
+LONGEST_LINE = 1_000_000  # signs
+MOST_SCANS = 200_000  # five hours and a half, ten a second
+MOST_READINGS = 40_000_000  # of all scans: they take 320 MB
 BEAMS = 10_000  # no scanner has more
 
 
@@ -53,7 +58,7 @@ def read_log(path: Path) -> list[LoggedScan]:
     name = plain(str(path))
     found: list[LoggedScan] = []
     wheels: Pose | None = None
-    number = 0
+    number = readings = 0
     try:
         for line in _lines(path):
             number += 1
@@ -66,6 +71,12 @@ def read_log(path: Path) -> list[LoggedScan]:
                 found.append(_flaser(words, wheels))
             elif words[0] == "ROBOTLASER1":
                 found.append(_robot_laser(words, wheels))
+            else:
+                continue
+            if words[0] != "ODOM":
+                readings += len(found[-1].scan.ranges)
+            if len(found) > MOST_SCANS or readings > MOST_READINGS:
+                raise ValueError("there are more scans than a map needs; cut the log into pieces.")
     except OSError as error:
         why = error.strerror or "it is damaged"
         raise LogError(f"{name}: cannot be read ({why}).") from None
@@ -81,15 +92,19 @@ def read_log(path: Path) -> list[LoggedScan]:
 
 
 def _lines(path: Path) -> Iterator[str]:
-    with path.open("rb") as file:
-        packed = file.read(2) == b"\x1f\x8b"
     size = 0
-    with gzip.open(path, "rt", encoding="utf-8") if packed else path.open(encoding="utf-8") as log:
-        for line in log:
-            size += len(line)
-            if size > LARGEST:
-                raise ValueError(f"the log has more than {LARGEST // 1_000_000} MB.")
-            yield line
+    with open_given(path, LARGEST_FILE, LogError) as file:
+        packed = file.read(2) == b"\x1f\x8b"
+        file.seek(0)
+        unpacked = gzip.GzipFile(fileobj=file) if packed else file
+        with io.TextIOWrapper(unpacked, encoding="utf-8") as log:
+            while line := log.readline(LONGEST_LINE):
+                size += len(line)
+                if size > LARGEST:
+                    raise ValueError(f"the log has more than {LARGEST // 1_000_000} MB.")
+                if len(line) == LONGEST_LINE:
+                    raise ValueError("the line has no end.")
+                yield line
 
 
 def _numbers(words: Sequence[str], count: int) -> list[float]:
@@ -107,7 +122,7 @@ def _numbers(words: Sequence[str], count: int) -> list[float]:
 
 
 def _count(word: str) -> int:
-    if not word.isdigit() or not 0 < int(word) <= BEAMS:
+    if not word.isdigit() or not 1 < int(word) <= BEAMS:
         raise ValueError(f"{word[:20]!r} is no number of readings.")
     return int(word)
 

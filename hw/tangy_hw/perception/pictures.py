@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import open_given
 from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 SMALLEST = 60  # pixels to a side
 LARGEST = 50_000_000  # pixels
+LARGEST_FILE = 200_000_000  # bytes: so many pixels that are not packed have 150 million
 ENDINGS = {
     "PNG": (".png",),
     "JPEG": (".jpg", ".jpeg", ".jpe", ".jfif"),
@@ -27,6 +29,7 @@ ENDINGS = {
     "TIFF": (".tif", ".tiff"),
     "PPM": (".ppm", ".pnm"),
 }
+FORMATS = tuple(kind for kind in ENDINGS if kind != "MPO")  # which begins as a JPEG does
 
 
 class PictureError(TangyError):
@@ -49,11 +52,12 @@ def read_picture(path: Path, *, colours: bool = False) -> Picture:
 
     name = plain(str(path))
     try:
-        if not path.is_file():
-            raise PictureError(f"{name}: is not a file." if path.exists() else _missing(name))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of its size, which is asked about here
-            with Image.open(path) as file:
+            with (
+                open_given(path, LARGEST_FILE, PictureError) as given,
+                Image.open(given, formats=FORMATS) as file,
+            ):
                 _check(file.format or "", file.size, name)
                 if colours:
                     _check_colours(file, path)
@@ -68,10 +72,6 @@ def read_picture(path: Path, *, colours: bool = False) -> Picture:
         told = f"cannot be read ({reason})" if reason else "breaks off or is damaged"
         raise PictureError(f"{name}: {told}.") from None
     return np.ascontiguousarray(np.asarray(turned, dtype=np.uint8)[..., ::-1])
-
-
-def _missing(name: str) -> str:
-    return f"{name}: there is no such file."
 
 
 def _too_large(name: str) -> str:

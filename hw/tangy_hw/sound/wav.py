@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import stat
 import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import open_given, read_given
 from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
@@ -52,18 +52,7 @@ def read_wav(path: Path) -> bytes:
         SoundError: the file is missing, too large, not a WAV, or of a kind that is not read.
     """
     name = plain(str(path))
-    try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise SoundError(f"{name}: is not a file.")
-        if path.stat().st_size > LARGEST_WAV:
-            raise SoundError(f"{name}: is larger than {LARGEST_WAV:,} bytes.")
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise SoundError(f"{name}: there is no such file.") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "the name is not valid"
-        raise SoundError(f"{name}: cannot be read ({reason}).") from None
-    return decode_wav(content, name)
+    return decode_wav(read_given(path, LARGEST_WAV, SoundError), name)
 
 
 def decode_wav(content: bytes, name: str) -> bytes:
@@ -94,7 +83,7 @@ def seconds_cut_off(path: Path) -> float:
     """
     name = plain(str(path))
     try:
-        with path.open("rb") as file:
+        with open_given(path, LARGEST_WAV, SoundError) as file:
             found = read_header(file.read(HEADER), name)
             size = file.seek(0, os.SEEK_END)
     except (OSError, ValueError, SoundError):

@@ -12,12 +12,14 @@ from tangy_hw.perception.cards.reader import CardReading
 from tangy_hw.perception.pictures import read_picture
 from tangy_profiles.cards import Deck
 from tangy_profiles.errors import TangyError
+from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LABELS = "labels.json"
+LARGEST_JSON = 20_000_000  # bytes: a hundred thousand pictures
 
 
 @dataclass(frozen=True)
@@ -109,11 +111,10 @@ def labelled(folder: Path, deck: Deck) -> list[Label]:
 
 def _json(path: Path) -> Any:
     name = plain(str(path))
+    text = read_given_text(path, LARGEST_JSON)
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise TangyError(f"{name}: cannot be read ({error.strerror}).") from None
-    except ValueError:
+        return json.loads(text)
+    except (ValueError, RecursionError):
         raise TangyError(f"{name}: is not JSON.") from None
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_hw.perception.faces.finding import FaceError
 from tangy_hw.perception.faces.quality import Limits
 from tangy_hw.perception.faces.reader import NO_EYES, Face
+from tangy_profiles.given_file import read_given
 from tangy_profiles.reading import plain
 
 if TYPE_CHECKING:
@@ -94,14 +95,12 @@ class OnnxReader:
 def _check(path: Path) -> int:
     """Return a check sum of a file that is there and can be read."""
     shown = plain(str(path))
-    try:
-        if not path.is_file():
-            raise FaceError(f"{shown}: there is no such file, and the robot's profile names it.")
-        if not 0 < path.stat().st_size <= LARGEST_FILE:
-            raise FaceError(f"{shown}: is no ONNX model, by its size.")
-        return zlib.crc32(path.read_bytes())
-    except OSError as error:
-        raise FaceError(f"{shown}: cannot be read ({error.strerror}).") from None
+    if not path.exists():
+        raise FaceError(f"{shown}: there is no such file, and the robot's profile names it.")
+    content = read_given(path, LARGEST_FILE, FaceError)
+    if not content:
+        raise FaceError(f"{shown}: is no ONNX model: it is empty.")
+    return zlib.crc32(content)
 
 
 def _load(path: Path, does: str, load: Callable[[], object]) -> object:
