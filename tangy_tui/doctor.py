@@ -21,6 +21,7 @@ from tangy_hw.sound.wav import SoundError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
+from tangy_tui.monitoring.log_check import log_problems
 
 if TYPE_CHECKING:
     from tangy_hw.sensors import Sources
@@ -152,11 +153,13 @@ def _store(folder: Path) -> Finding:
     if not problem:
         try:
             with Store.open(folder, write=False) as store:
-                problems = store.check()
+                problems = log_problems(store)
         except TangyError as error:
             problem = str(error)
         else:
             problem = plain(f"{folder}: {problems[0]}") if problems else ""
+            if len(problems) > 1:
+                problem += f" And {len(problems) - 1} more: `tangy store check` names them."
     if problem:
         return Finding("data folder", False, problem, broken=True)
     is_so = "is sound" if folder.exists() else "is made as soon as there is something to keep"

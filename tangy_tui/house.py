@@ -301,7 +301,7 @@ class House:
         if seed is not None:
             return seed
         games = self.store.events(facilitation.BEGUN)
-        return 1 + max((int(game.body["seed"]) for game in games), default=0)
+        return 1 + max((int(game.body.get("seed", 0)) for game in games), default=0)
 
     def _facilitation(self, world: World, policy: Policy, seed: int, asks: bool) -> Facilitation:
         from tangy_tui.interaction.facilitation import Facilitation

@@ -12,6 +12,7 @@ from io import FileIO
 from itertools import count
 from pathlib import Path
 
+from tangy_profiles import seal
 from tangy_profiles.errors import StoreBusy, StoreError
 from tangy_profiles.reading import plain
 
@@ -226,6 +227,8 @@ class LogFile:
         for end in ("-wal", "-shm", ""):
             with suppress(FileNotFoundError):
                 (self.folder / (FILE + end)).rename(self.folder / (aside.name + end))
+        with suppress(OSError):  # what it counts is not in the new log
+            (self.folder / seal.FILE).rename(self.folder / aside.name.replace(FILE, seal.FILE, 1))
         notice = f"The log was damaged: it is kept as {aside}, and a new one was begun."
         self.notices.append(plain(notice))
 

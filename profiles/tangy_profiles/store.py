@@ -11,63 +11,35 @@ import json
 import sqlite3
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
-from tangy_profiles.errors import StoreError, TangyError
+from tangy_profiles.errors import ProfileError, StoreError, TangyError
+from tangy_profiles.events import wrong_with
 from tangy_profiles.log_file import FILE, NAMING, LogFile
 from tangy_profiles.phones import read_name_phones
+from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, RESPONSES, fetch
 from tangy_profiles.reading import plain
+from tangy_profiles.rows import BadRow, left_out, read_row
+from tangy_profiles.rows import Event as Event
+from tangy_profiles.seal import Seal
 from tangy_profiles.voice import VoicePreference
 
 LONGEST_NAME = 40  # characters
 WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up a checkpoint
 
-_READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event"
-_ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
-    VALUES (?, ?, ?, ?, ?, ?, ?, ?)"""
 VOID, TAKEN_BACK = "void", "taken back"
 """The kinds of event whose body names another event `of` (by uuid) that no longer holds, and whose
 person and strategy are that one's. A void that was taken back does not hold itself."""
 
-# The responses that do not hold are few: they are looked up and subtracted, so that the index
-# alone still counts what may be half a million. One query with the counts, as below.
-_RESPONSES = """WITH
-    back AS (SELECT json_extract(body, '$.of') AS uuid, person, strategy FROM event
-        WHERE kind = 'taken back' AND json_extract(body, '$.of') IS NOT NULL),
-    gone AS (SELECT * FROM back UNION ALL
-        SELECT json_extract(body, '$.of'), person, strategy FROM event
-        WHERE kind = 'void' AND uuid NOT IN (SELECT uuid FROM back))
-    SELECT person, strategy, sum(yes), sum(no) FROM (
-    SELECT person, strategy, sum(complied) AS yes, count(*) - sum(complied) AS no FROM event
-        WHERE complied IS NOT NULL GROUP BY person, strategy
-    UNION ALL SELECT person, strategy, -complied, complied - 1 FROM event
-        WHERE complied IS NOT NULL AND uuid IN (SELECT uuid FROM gone)
-        AND (person, strategy) IN (SELECT person, strategy FROM gone)
-    ) GROUP BY person, strategy HAVING sum(yes) + sum(no) > 0"""
-# One query, so that what a writer appends meanwhile is in all of the counts or in none.
-_COUNTS = """SELECT count(*), coalesce(max(seq), 0), count(DISTINCT uuid), count(complied),
-    (SELECT count(*) FROM event INDEXED BY event_response WHERE complied IS NOT NULL),
-    (SELECT count(*) FROM sqlite_master WHERE type = 'trigger') FROM event"""
+LOST = "events lost"
+"""The kind of event that says which newest ones were gone when the log was opened."""
+
 _to_json = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":")).encode
-
-
-class Event(NamedTuple):
-    """One thing that happened, at a UTC time in ISO 8601; `complied` answers `strategy`."""
-
-    seq: int
-    uuid: str
-    robot: str
-    at: str
-    kind: str
-    person: str | None
-    strategy: str | None
-    complied: bool | None
-    body: dict[str, Any]
 
 
 class Store:
@@ -84,7 +56,11 @@ class Store:
         self._lock = RLock()
         self._file = LogFile(folder, writable, now)
         self.notices = self._file.notices
+        self.aside: dict[int, str] = {}
+        """What was met in the log that is left out: a sentence for each such event, by seq."""
         self._robot = ""
+        self._seal = Seal(folder)
+        self._newest = 0  # the newest event of the transaction that is going on
         self._closed = self._within = self._spoilt = False
 
     @classmethod
@@ -105,6 +81,8 @@ class Store:
         try:
             with store._file.in_words():
                 store._begin() if write else store._file.reading()
+            with nullcontext() if write else suppress(StoreError):  # a reader's queries will say it
+                store._tell_lost()
         except BaseException:
             store._file.damaged = True  # so that closing does not vouch for it
             store.close()
@@ -125,8 +103,9 @@ class Store:
         `body` is JSON with text keys; `complied` says whether `person` followed `strategy`.
 
         Raises:
-            ValueError, TypeError: the caller's mistake: a body that is not JSON (NaN, too deep),
-                no kind, or `complied` without person and strategy.
+            ValueError, TypeError: the caller's mistake: a body that is not JSON (NaN, too deep) or
+                not that of its kind (see `events`), no kind, or `complied` without person and
+                strategy.
             StoreError: it could not be kept, and nothing of it was.
         """
         if not kind or (complied is not None and (person is None or strategy is None)):
@@ -135,11 +114,14 @@ class Store:
             text = _to_json(dict(body))
         except RecursionError:
             raise ValueError("The body of an event is nested too deeply.") from None
+        if wrong := wrong_with(kind, person, strategy, json.loads(text)):
+            raise ValueError(f"An event of the kind {kind!r} {wrong}.")
         at = self._now().astimezone(UTC).isoformat(timespec="microseconds")
         answer = None if complied is None else int(complied)
         with self.transaction():
             row = (str(uuid.uuid4()), self._robot, at, kind, person, strategy, answer, text)
-            return self._write(_ADD, row)
+            self._newest = self._write(ADD, row)
+            return self._newest
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
@@ -159,12 +141,15 @@ class Store:
                 yield
                 if outermost:
                     self._write("COMMIT")
+                    if self._newest:
+                        self._seal.write(self._robot, self._newest)
             except BaseException:
                 self._spoilt = True
                 raise
             finally:
                 if outermost:
                     self._within = self._spoilt = False
+                    self._newest = 0
                     if self._file.db is not None:
                         with suppress(sqlite3.Error):
                             self._file.db.rollback()  # after a commit: nothing
@@ -172,32 +157,52 @@ class Store:
     def events(self, *kinds: str, after: int = 0) -> Iterator[Event]:
         """Yield the events of these kinds (of all, if none is named) with seq > `after`, by seq.
 
-        They are those logged when the iteration begins; appending meanwhile is allowed.
+        They are those logged when the iteration begins; appending meanwhile is allowed. One that
+        cannot be read is left out, and `aside` says so.
         """
         newest = self._rows("SELECT coalesce(max(seq), 0) FROM event")
         until = newest[0][0] if newest else 0
         chosen = f"AND kind IN ({', '.join('?' * len(kinds))})" if kinds else ""
-        sql = f"{_READ} WHERE seq > ? AND seq <= ? {chosen} ORDER BY seq"
-        for low in range(max(after, 0), until, WINDOW):
-            yield from map(self._event, self._rows(sql, low, min(low + WINDOW, until), *kinds))
+        sql = f"{READ} WHERE seq > ? AND seq <= ? {chosen} ORDER BY seq"
+        low = max(after, 0)
+        while low < until:
+            high = min(low + WINDOW, until)
+            rows = self._rows(sql, low, high, *kinds)
+            yield from self._events(rows)
+            # a damaged seq may lie far beyond all others
+            low = high if rows else self._rows(NEXT, high, high)[0][0]
 
     def last(self, kind: str) -> Event | None:
-        """Return the newest event of a kind."""
-        rows = self._rows(f"{_READ} WHERE kind = ? ORDER BY seq DESC LIMIT 1", kind)
-        return self._event(rows[0]) if rows else None
+        """Return the newest event of a kind that can be read."""
+        sql = f"{READ} WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
+        rows = self._rows(sql, kind, LARGEST_SEQ)
+        while rows:
+            if found := list(self._events(rows)):
+                return found[0]
+            rows = self._rows(sql, kind, rows[0][0])
+        return None
+
+    def kinds(self) -> dict[str, int]:
+        """Return how many events there are of each kind; one that is not text is shown as such."""
+        rows = self._rows("SELECT kind, count(*) FROM event GROUP BY kind ORDER BY kind")
+        return {kind if isinstance(kind, str) else repr(kind): count for kind, count in rows}
+
+    def set_aside(self, event: Event, why: str) -> None:
+        """Say of an event that it makes no sense where it stands, so that it is left out."""
+        self.aside.setdefault(event.seq, left_out(event.seq, event.kind, why))
 
     def responses(self) -> dict[tuple[str, str], tuple[int, int]]:
         """Count the responses that hold by (person, strategy): (complied, did not).
 
         One more than each is the posterior's alpha and beta (Eq. 2).
         """
-        rows = self._rows(_RESPONSES)
+        rows = self._rows(RESPONSES)
         return {(person, strategy): (yes, no) for person, strategy, yes, no in rows}
 
     def answers(self, person: str) -> Iterator[Event]:
         """Yield every response of one person, also those that do not hold, by seq."""
-        sql = f"{_READ} WHERE complied IS NOT NULL AND person = ? ORDER BY seq"
-        return map(self._event, self._rows(sql, person))
+        sql = f"{READ} WHERE complied IS NOT NULL AND person = ? ORDER BY seq"
+        return self._events(self._rows(sql, person))
 
     def now(self) -> datetime:
         """Return the time by the clock that events are stamped with."""
@@ -205,7 +210,8 @@ class Store:
 
     def names(self) -> dict[str, str]:
         """Return the name of every person who has one, by id."""
-        return dict(self._rows("SELECT person, name FROM name ORDER BY person"))
+        rows = self._rows("SELECT person, name FROM name ORDER BY person")
+        return {person: name for person, name in rows if _are_text(person, name)}
 
     def rename(self, person: str, name: str) -> None:
         """Give a person a name, and log that ("renamed"), but not the name.
@@ -230,7 +236,7 @@ class Store:
     def pronunciations(self) -> dict[str, str]:
         """Return how the names of people are pronounced, by id, of those who have that noted."""
         rows = self._rows("SELECT person, pronunciation FROM speech ORDER BY person")
-        return {person: phones for person, phones in rows if phones is not None}
+        return {person: phones for person, phones in rows if _are_text(person, phones)}
 
     def pronounce(self, person: str, phones: str | None) -> None:
         """Note how a person's name is pronounced (None: no more), and log that, but not how.
@@ -243,7 +249,11 @@ class Store:
     def voices(self) -> dict[str, VoicePreference]:
         """Return how people like to be spoken to, by id, of those who have that noted."""
         rows = self._rows("SELECT person, rate, voice FROM speech ORDER BY person")
-        return {person: VoicePreference(rate, voice) for person, rate, voice in rows}
+        found = {}
+        for person, rate, voice in rows:
+            with suppress(ProfileError):  # what nobody can have chosen is as nothing noted
+                found[person] = VoicePreference(rate, voice)
+        return found
 
     def prefer_voice(self, person: str, preference: VoicePreference) -> None:
         """Note how a person likes to be spoken to, and log that, but not how."""
@@ -283,7 +293,7 @@ class Store:
         try:
             found = [" ".join(row.split()) for (row,) in self._rows("PRAGMA quick_check")]
             wrong += [f"{FILE}: {words}." for words in found if words != "ok"]
-            for events, newest, different, answers, indexed, guards in self._rows(_COUNTS):
+            for events, newest, different, answers, indexed, guards in self._rows(COUNTS):
                 if not events == different == newest:
                     sums = f"{newest} events were logged, {events} stand, {different} different"
                     wrong.append(f"{FILE}: {sums}.")
@@ -291,15 +301,18 @@ class Store:
                     wrong.append(f"{FILE}: {indexed} of {answers} responses are in the index.")
                 if guards < 2:
                     wrong.append(f"{FILE}: the guard against changing events is gone.")
+            if lost := self._lost():
+                wrong.append(_lost_words(*lost))
             deque(self.events(), maxlen=0)
         except StoreError as error:
             wrong.append(str(error))
-        return wrong
+        return wrong + [self.aside[seq] for seq in sorted(self.aside)]
 
     def close(self) -> None:
         """Close the log and let another writer in; may be repeated."""
         with self._lock:
             self._closed = True
+            self._seal.close()
             self._file.close()
 
     def __enter__(self) -> Self:
@@ -308,10 +321,28 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def _tell_lost(self) -> None:
+        """Say if the newest events are gone; a writer notes it, and counts from there on."""
+        if lost := self._lost():
+            self.notices.append(_lost_words(*lost))
+            if self.writable:
+                self.append(LOST, {"first": lost[0], "last": lost[1]})
+
+    def _lost(self) -> tuple[int, int] | None:
+        """Return the first and the last of the newest events that were kept and are gone."""
+        sealed = self._seal.read()  # before the events: so it never leads
+        robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")
+        if sealed is None or (robot and robot[0][0] != sealed[0]):
+            return None  # there is no count, or it is another log's
+        newest = self._rows("SELECT coalesce(max(seq), 0) FROM event") or [(0,)]
+        return (newest[0][0] + 1, sealed[1]) if newest[0][0] < sealed[1] else None
+
     def _begin(self) -> None:
         """Become the writer, and learn which robot's folder this is."""
         db = self._file.begin()
-        db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (str(uuid.uuid4()),))
+        sealed = self._seal.read()  # of a log whose very beginning is gone
+        robot = sealed[0] if sealed else str(uuid.uuid4())
+        db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (robot,))
         self._robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
 
     def _rows(self, sql: str, *values: object) -> list[Any]:
@@ -320,7 +351,7 @@ class Store:
             if self._closed:
                 raise self._file.wrong("is closed")
             db = self._file.db if self.writable else self._file.reading()
-            return [] if db is None else db.execute(sql, values).fetchall()
+            return [] if db is None else fetch(db, sql, values)
 
     def _write(self, sql: str, values: tuple[object, ...] = ()) -> int:
         """Run one statement of the writer and return the seq it made."""
@@ -332,9 +363,27 @@ class Store:
         with self._file.in_words():
             return db.execute(sql, values).lastrowid or 0
 
-    def _event(self, row: tuple[Any, ...]) -> Event:
-        try:
-            complied = None if row[7] is None else bool(row[7])
-            return Event._make((*row[:7], complied, json.loads(row[8])))
-        except ValueError:
-            raise self._file.wrong(f"event {row[0]} cannot be read") from None
+    def _events(self, rows: Iterable[Sequence[Any]]) -> Iterator[Event]:
+        """Yield the events of rows; of an answer whose body cannot be read, the answer stays."""
+        for row in rows:
+            try:
+                yield read_row(row)
+            except BadRow as bad:
+                stays = bad.event if bad.event and bad.event.complied is not None else None
+                rest = ", but for the answer" if stays else ""
+                self.aside.setdefault(row[0], left_out(row[0], row[4], str(bad), rest))
+                if stays:
+                    yield stays
+
+
+def _lost_words(first: int, last: int) -> str:
+    which = f"event {first}" if first == last else f"events {first} to {last}"
+    return (
+        f"tangy.db: {which} had been kept and {'is' if first == last else 'are'} gone: the end of "
+        "the log was lost, or this is a copy that was made while Tangy was writing."
+    )
+
+
+def _are_text(*words: object) -> bool:
+    """Say whether all of these are texts that can be shown."""
+    return all(isinstance(word, str) and word.isprintable() for word in words)

@@ -7,7 +7,7 @@ again like typing, the latest first, by events of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,10 @@ EDIT_REDONE = "demonstrations edit redone"
 
 SHORTEST_PREFIX = 3
 """Characters of an id that are enough to name a demonstration, if only one begins so."""
+
+
+class OutOfPlace(Exception):
+    """An event makes no sense where it stands in the log."""
 
 
 class NoDemonstration(TangyError):
@@ -152,36 +156,45 @@ class Library:
 
 
 def read_library(store: Store, activity: str) -> Library:
-    """Read the library of an activity from the log."""
+    """Read the library of an activity from the log.
+
+    An event that makes no sense where it stands, because one before it is damaged, is set aside.
+    """
     library = Library(activity)
-    edits: list[Edit] = []
+    edits: list[tuple[Edit, Event]] = []
     made: dict[str, int] = {}
     for event in store.events(
         BEGUN, STEP, UNDONE, REDONE, FINISHED, EDITED, EDIT_UNDONE, EDIT_REDONE
     ):
         body = event.body
-        if event.kind == BEGUN:
-            if body["activity"] == activity:
-                _begin(library, event)
-                made[str(body["demonstration"])] = event.seq
-        elif event.kind in (STEP, UNDONE, REDONE, FINISHED):
-            entry = library.entries.get(str(body["demonstration"]))
-            if entry is not None:
-                changed = replace(_stepped(entry, event), last=event.at)
-                library.entries[entry.demonstration.id] = changed
-        elif body["activity"] == activity:
-            if event.kind == EDITED:
-                edits.append(_edit(library, event))
-                library.done.append(edits[-1])
-                library.undone.clear()
-                made.update((str(id), event.seq) for id in body.get("made", ()))
-            elif event.kind == EDIT_UNDONE:
-                library.undone.append(library.done.pop())
-            else:
-                library.done.append(library.undone.pop())
+        try:
+            if event.kind == BEGUN:
+                if body["activity"] == activity:
+                    _begin(library, event)
+                    made[str(body["demonstration"])] = event.seq
+            elif event.kind in (STEP, UNDONE, REDONE, FINISHED):
+                entry = library.entries.get(str(body["demonstration"]))
+                if entry is not None:
+                    changed = replace(_stepped(entry, event, store.aside), last=event.at)
+                    library.entries[entry.demonstration.id] = changed
+            elif body["activity"] == activity:
+                if event.kind == EDITED:
+                    edits.append((_edit(library, event), event))
+                    library.done.append(edits[-1][0])
+                    library.undone.clear()
+                    made.update((str(id), event.seq) for id in body.get("made", ()))
+                elif event.kind == EDIT_UNDONE:
+                    library.undone.append(_taken(library.done, event))
+                else:
+                    library.done.append(_taken(library.undone, event))
+        except OutOfPlace as why:
+            store.set_aside(event, str(why))
     in_force = {edit.seq for edit in library.done}
-    for edit in edits:
-        _APPLY[edit.what](library, edit, edit.seq in in_force)
+    for edit, event in edits:
+        if edit.what in ("merge", "split") and not _sources_of(edit) <= library.entries.keys():
+            store.set_aside(event, "a demonstration that it was done to is not there")
+        else:
+            _APPLY[edit.what](library, edit, edit.seq in in_force)
     in_order = sorted(library.entries.items(), key=lambda entry: made[entry[0]])
     library.entries = dict(in_order)  # so that nobody's number changes when more is shown
     _replace_repeated(library)
@@ -208,6 +221,8 @@ def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
 def _begin(library: Library, event: Event) -> None:
     body = event.body
     id = str(body["demonstration"])
+    if id in library.entries:
+        raise OutOfPlace("a demonstration of this id was begun before")
     of = tuple(body.get("of", ()))
     steps: tuple[Step, ...] = ()
     if body.get("origin") == "again" and of[0] in library.entries:
@@ -226,24 +241,41 @@ def _begin(library: Library, event: Event) -> None:
     library.entries[id] = Entry(made, event.at, event.at)
 
 
-def _stepped(entry: Entry, event: Event) -> Entry:
+def _stepped(entry: Entry, event: Event, aside: Collection[int]) -> Entry:
+    """Return a demonstration after one more event; `aside` are the events that are left out."""
     shown = entry.demonstration
     match event.kind:
         case "demonstration step":
             step = Step.from_json(event.body, event.seq, shown.teacher)
             return replace(entry, demonstration=shown.with_step(step), undone=())
         case "demonstration step undone":
-            return replace(
-                entry,
-                demonstration=shown.without_last(),
-                undone=(*entry.undone, shown.steps[-1]),
-                taken_back=entry.taken_back + 1,
-            )
+            return _step_undone(entry, event, aside)
         case "demonstration step redone":
+            if not entry.undone:
+                raise OutOfPlace("there is no step to do again")
             again = shown.with_step(entry.undone[-1])
             return replace(entry, demonstration=again, undone=entry.undone[:-1])
         case _:
             return replace(entry, demonstration=replace(shown, finished=True))
+
+
+def _step_undone(entry: Entry, event: Event, aside: Collection[int]) -> Entry:
+    """Take back the step that the event means, whose number tells where others are left out."""
+    steps = entry.demonstration.steps
+    number = int(event.body.get("step", len(steps)))
+    newest = steps[-1].id if steps else 0
+    if number > len(steps) and any(newest < seq < event.seq for seq in aside):
+        # The one that was taken back is left out itself.
+        return replace(entry, undone=(), taken_back=entry.taken_back + 1)
+    if not steps or number < 1:
+        raise OutOfPlace("there is no step to take back")
+    kept = steps[: min(number, len(steps))]  # those beyond were taken back by what is left out
+    return replace(
+        entry,
+        demonstration=replace(entry.demonstration, steps=kept[:-1], finished=False),
+        undone=(*entry.undone, kept[-1]),
+        taken_back=entry.taken_back + 1,
+    )
 
 
 # --------------------------------------------------------------------------------- the edits
@@ -254,6 +286,19 @@ def _edit(library: Library, event: Event) -> Edit:
     entries = library.entries
     found = {id: entries[id].demonstration for id in ids if id in entries}
     return Edit(event.seq, event.at, str(event.body["what"]), event.body, found)
+
+
+def _taken(edits: list[Edit], event: Event) -> Edit:
+    """Take the edit that an undo or a redo means out of those that it can mean."""
+    for place, edit in enumerate(edits):
+        if edit.seq == event.body["edit"]:
+            return edits.pop(place)
+    raise OutOfPlace("the change that it is about is not there")
+
+
+def _sources_of(edit: Edit) -> set[str]:
+    """Return the demonstrations that an edit was done to and of which it kept no copy."""
+    return set(edit.ids) - set(edit.found)
 
 
 def _as_it_was(library: Library, edit: Edit, id: str) -> Demonstration:

@@ -249,32 +249,36 @@ def fold_faults(events: Iterable[Event], names: Mapping[str, str]) -> list[Fault
     known = {**{person.id: person.name for person in load_people(MOST_PEOPLE)}, **names}
     found: dict[str, Fault] = {}
     for event in events:
-        body = event.body
+        id = event.body["fault"]
         if event.kind == FAULT:
-            found[body["fault"]] = Fault(
-                id=body["fault"],
-                game=body["game"],
-                code=body["code"],
-                critical=body["criticality"] == "critical",
-                recovery=body["recovery"],
-                step=int(body["step"]),
-                seconds=float(body["seconds"]),
-                behaviour=body["behaviour"],
-                person=event.person,
-                called=known.get(event.person, event.person) if event.person else SOMEBODY,
-                texts=(body["name"], body["console"], *body["advice"]),
-                why=body["why"],
-                evidence=body["evidence"],
-                mismatches=tuple(
-                    replace(Mismatch(**one), expected=tuple(one["expected"]))
-                    for one in body["mismatches"]
-                ),
-                at=event.at,
-            )
-        elif body["fault"] in found:
-            fault = found[body["fault"]]
-            fault.add(Move.from_json(body).called(fault.called))
+            found.setdefault(id, _read_fault(event, known))
+        elif id in found:
+            fault = found[id]
+            fault.add(Move.from_json(event.body).called(fault.called))
     return list(found.values())
+
+
+def _read_fault(event: Event, known: Mapping[str, str]) -> Fault:
+    body = event.body
+    return Fault(
+        id=body["fault"],
+        game=body["game"],
+        code=body["code"],
+        critical=body["criticality"] == "critical",
+        recovery=body["recovery"],
+        step=int(body["step"]),
+        seconds=float(body["seconds"]),
+        behaviour=body["behaviour"],
+        person=event.person,
+        called=known.get(event.person, event.person) if event.person else SOMEBODY,
+        texts=(body["name"], body["console"], *body["advice"]),
+        why=body["why"],
+        evidence=body["evidence"],
+        mismatches=tuple(
+            replace(Mismatch(**one), expected=tuple(one["expected"])) for one in body["mismatches"]
+        ),
+        at=event.at,
+    )
 
 
 def rule_texts(rule: FaultRule, object: str, why: str) -> tuple[str, ...]:

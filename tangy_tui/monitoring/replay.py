@@ -183,7 +183,7 @@ def _replay(
     told = (event for event in events if event.kind in (FAULT, RECOVERY))
     replay = Replay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
-    moved: dict[str, int] = dict.fromkeys(faults, 0)
+    moved: dict[str, int] = {}  # of the faults that were told of so far
     step = 0
     for event in events:
         what: What
@@ -198,11 +198,12 @@ def _replay(
         elif event.kind == STAFF:
             what = Noted(str(event.body["what"]), str(event.body["by"]))
         elif event.kind in (FAULT, RECOVERY):
-            fault = faults.get(str(event.body.get("fault")))
-            if fault is None:
-                continue
+            fault = faults.get(event.body["fault"])
+            if fault is None or (event.kind == FAULT) == (fault.id in moved):
+                continue  # told of before, or done about a fault that is left out
             replay.seconds = max(replay.seconds, float(event.body.get("seconds") or 0.0))
             if event.kind == FAULT:
+                moved[fault.id] = 0
                 what = Diagnosed(fault)
             else:
                 what = Moved(fault, fault.moves[moved[fault.id]])
@@ -230,7 +231,7 @@ def _done(
     said = ""
     if activity is not None and behaviour is not None:
         speech = behaviour.speech.get(strategy or activity.plain_strategy, "")
-        numbers = tuple(n for n in body.get("numbers", ()) if isinstance(n, int))
+        numbers = tuple(n for n in body.get("numbers", ()) if n in activity.deck.numbers)
         said = activity.fill(speech, names.get(target or "", target or ""), numbers)
     return Done(
         number=number,

@@ -67,6 +67,7 @@ VERBS = {
     "cards": Verb("cards"),
     "faces": Verb("faces", below=(("enrol", "faces_enrol", "faces_enrol"),)),
     "log": Verb("log"),
+    "store": Verb("store"),
 }
 """In the order in which help lists them."""
 

@@ -12,7 +12,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
-from tangy_tui.verbs.opening import say_notices
+from tangy_tui.verbs.opening import say_aside, say_notices
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
@@ -129,7 +129,10 @@ def _open(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
     with Store.open(data_folder(data), write=False) as store:
         say_notices(store.notices)
         names = {person.id: person.name for person in load_people(MOST_PEOPLE)}
-        yield store, names | store.names()
+        try:
+            yield store, names | store.names()
+        finally:
+            say_aside(store)
 
 
 def _activities(games: Sequence[Game], file: str) -> dict[str, Activity]:

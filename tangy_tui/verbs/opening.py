@@ -12,7 +12,11 @@ from tangy_profiles.reading import plain
 from tangy_tui.ui.terminal import terminal_kind
 
 if TYPE_CHECKING:
+    from tangy_profiles.store import Store
     from tangy_tui.house import House
+
+MOST_TOLD = 5
+"""Events that are named one by one where they were left out."""
 
 
 @contextmanager
@@ -31,6 +35,7 @@ def open_house(
         say_notices(house.store.notices)
         yield house
     finally:
+        say_aside(house.store)
         house.close()
 
 
@@ -49,6 +54,14 @@ def open_program(
 def full_screen() -> bool:
     """Return whether input and output are a terminal on which screens can be drawn."""
     return terminal_kind().full_screen
+
+
+def say_aside(store: Store) -> None:
+    """Say which events of the log were left out of what was just done with it."""
+    told = [store.aside[seq] for seq in sorted(store.aside)]
+    if (more := len(told) - MOST_TOLD) > 0:
+        told[MOST_TOLD:] = [f"{more} more are left out: `tangy store check` names them."]
+    say_notices(told)
 
 
 def say_notices(notices: list[str]) -> None:

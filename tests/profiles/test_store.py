@@ -64,13 +64,13 @@ people = st.sampled_from(["p1", "p2", "Ω"])
 strategies = st.sampled_from(["praise", "logic"])
 facts = st.fixed_dictionaries(
     {
-        "kind": st.sampled_from(["behaviour", "state", "response"]),
+        "kind": st.sampled_from(["behaviour", "state", "answer"]),
         "body": st.dictionaries(texts, values, max_size=3),
     },
     optional={"person": people | st.none(), "strategy": strategies | st.none()},
 )
 answers = st.builds(
-    lambda **words: {"kind": "response", "body": {}, **words},
+    lambda **words: {"kind": "answer", "body": {}, **words},
     person=people,
     strategy=strategies,
     complied=st.booleans(),
@@ -122,7 +122,7 @@ def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any
         with store:
             found = list(store.events())
             counts = store.responses()
-            by_kind = list(store.events("state", "response"))
+            by_kind = list(store.events("state", "answer"))
             assert store.check() == []
             with Store.open(Path(name), write=False) as console:
                 assert list(console.events()) == found
@@ -133,7 +133,7 @@ def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any
     ]
     assert [event.seq for event in found] == list(range(1, len(kept) + 1))
     assert len({event.uuid for event in found}) == len(found)
-    assert by_kind == [event for event in found if event.kind in ("state", "response")]
+    assert by_kind == [event for event in found if event.kind in ("state", "answer")]
     folded: dict[tuple[str, str], tuple[int, int]] = {}
     for event in found:
         if event.complied is not None and event.person and event.strategy:
@@ -310,7 +310,7 @@ def test_nobody_else_can_look_whatever_the_umask(tmp_path: Path, umask: int) -> 
             store.append("greeting", {})
             assert mode_of(folder) == 0o700
             assert {path.name: mode_of(path) for path in folder.iterdir()} == dict.fromkeys(
-                ["tangy.db", "tangy.db-wal", "tangy.db-shm", "tangy.lock"], 0o600
+                ["tangy.db", "tangy.db-wal", "tangy.db-shm", "tangy.lock", "tangy.seal"], 0o600
             )
     finally:
         os.umask(before)
@@ -468,6 +468,7 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
         assert str(aside[-1]) in notice and notice.endswith(".")
         assert aside[-1].read_bytes() == damaged
         log_of(tmp_path).unlink()
+        (tmp_path / "tangy.seal").unlink()  # else that the log is gone would be said
     with Store.open(tmp_path) as store:
         assert store.notices == []
 

@@ -1,0 +1,49 @@
+"""The queries of the log, and how their rows are fetched."""
+
+from __future__ import annotations
+
+import sqlite3
+from typing import Any
+
+READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM event"
+ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
+    VALUES (?, ?, ?, ?, ?, ?, ?, ?)"""
+# The responses that do not hold are few: they are looked up and subtracted, so that the index
+# alone still counts what may be half a million. One query with the counts, as below.
+# What is no answer (neither 0 nor 1, nobody's) or no JSON is left out, as `rows` has it.
+OF = "CASE WHEN json_valid(body) THEN json_extract(body, '$.of') END"
+RESPONSES = f"""WITH
+    back AS (SELECT {OF} AS uuid, person, strategy FROM event
+        WHERE kind = 'taken back' AND {OF} IS NOT NULL),
+    gone AS (SELECT * FROM back UNION ALL
+        SELECT {OF}, person, strategy FROM event
+        WHERE kind = 'void' AND uuid NOT IN (SELECT uuid FROM back)),
+    answer AS (SELECT uuid, person, strategy, complied FROM event WHERE complied IN (0, 1)
+        AND typeof(person) = 'text' AND typeof(strategy) = 'text')
+    SELECT person, strategy, sum(yes), sum(no) FROM (
+    SELECT person, strategy, sum(complied) AS yes, count(*) - sum(complied) AS no FROM answer
+        GROUP BY person, strategy
+    UNION ALL SELECT person, strategy, -complied, complied - 1 FROM answer
+        WHERE uuid IN (SELECT uuid FROM gone)
+        AND (person, strategy) IN (SELECT person, strategy FROM gone)
+    ) GROUP BY person, strategy HAVING sum(yes) + sum(no) > 0"""  # noqa: S608
+# One query, so that what a writer appends meanwhile is in all of the counts or in none.
+COUNTS = """SELECT count(*), coalesce(max(seq), 0), count(DISTINCT uuid), count(complied),
+    (SELECT count(*) FROM event INDEXED BY event_response WHERE complied IS NOT NULL),
+    (SELECT count(*) FROM sqlite_master WHERE type = 'trigger') FROM event"""
+NEXT = "SELECT coalesce(min(seq) - 1, ?) FROM event WHERE seq > ?"
+LARGEST_SEQ = 2**63 - 1
+
+
+def fetch(db: sqlite3.Connection, sql: str, values: tuple[object, ...]) -> list[Any]:
+    """Return all rows of a query, also where a text in them holds bytes that are no text."""
+    try:
+        return db.execute(sql, values).fetchall()
+    except sqlite3.OperationalError as error:
+        if "decode" not in str(error):
+            raise
+    try:
+        db.text_factory = lambda raw: raw.decode(errors="surrogateescape")
+        return db.execute(sql, values).fetchall()
+    finally:
+        db.text_factory = str

@@ -1,0 +1,96 @@
+"""Reading rows of the log as events: a row that is not as Tangy writes it is told from one that is.
+
+What SQLite's check of a file does not see (a changed byte in a text, a row that another program
+wrote) is met here, row by row, so that it costs that row and no other.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any, NamedTuple, NoReturn
+
+from tangy_profiles.events import wrong_with
+from tangy_profiles.reading import plain
+
+
+class Event(NamedTuple):
+    """One thing that happened, at a UTC time in ISO 8601; `complied` answers `strategy`."""
+
+    seq: int
+    uuid: str
+    robot: str
+    at: str
+    kind: str
+    person: str | None
+    strategy: str | None
+    complied: bool | None
+    body: dict[str, Any]
+
+
+class BadRow(Exception):
+    """A row that is not as Tangy writes it; the text says why.
+
+    `event` is the event with an empty body where all but the body can be read, and None where
+    the row says nothing that can be relied on.
+    """
+
+    def __init__(self, why: str, event: Event | None = None) -> None:
+        super().__init__(why)
+        self.event = event
+
+
+def read_row(row: Sequence[Any]) -> Event:
+    """Return the event of a row: seq, uuid, robot, at, kind, person, strategy, complied, body.
+
+    Raises:
+        BadRow: it is not as Tangy writes it.
+    """
+    _, uuid, robot, at, kind, person, strategy, complied, text = row
+    words = (uuid, robot, at, kind, text)
+    if not all(isinstance(word, str) for word in words):
+        raise BadRow("it holds something else than text")
+    if not isinstance(person, str | None) or not isinstance(strategy, str | None):
+        raise BadRow("its person or strategy is not text")
+    if complied is not None and (complied not in (0, 1) or person is None or strategy is None):
+        raise BadRow("its answer is neither yes nor no, or nobody's")
+    try:
+        "".join((*words, person or "", strategy or "")).encode()
+        if datetime.fromisoformat(at).tzinfo is None:
+            raise BadRow("its time says no zone")
+    except UnicodeEncodeError:
+        raise BadRow("it holds bytes that are not text") from None
+    except ValueError:
+        raise BadRow("its time is not a time") from None
+    event = Event(row[0], uuid, robot, at, kind, person, strategy, complied and bool(complied), {})
+    body, wrong = _read_body(text)
+    if not wrong and (found := wrong_with(kind, person, strategy, body)):
+        wrong = f"it {found}"
+    if wrong:
+        raise BadRow(wrong, event)
+    return event._replace(body=body)
+
+
+def left_out(seq: int, kind: object, why: str, rest: str = "") -> str:
+    """Say in a sentence which row is left out (but for the `rest`), and why."""
+    of = f" ({kind[:40]})" if isinstance(kind, str) else ""
+    said = f"tangy.db: event {seq}{of} is damaged and left out{rest}: {why}."
+    return plain(said.encode(errors="replace").decode())
+
+
+def _read_body(text: str) -> tuple[dict[str, Any], str]:
+    try:
+        body = _from_json(text)
+        if "\\u" in text:  # half of a character can be written so
+            json.dumps(body, ensure_ascii=False).encode()
+    except (ValueError, RecursionError):
+        return {}, "its body is not JSON"
+    return (body, "") if isinstance(body, dict) else ({}, "its body is not a table")
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(constant)
+
+
+_from_json = json.JSONDecoder(parse_constant=_refuse).decode

@@ -1,0 +1,69 @@
+"""The kinds of event are a closed set: what writes or reads one that is not in it is named."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.events import ABOUT_PEOPLE, BODIES, MOVES, WITH_STRATEGY, wrong_with
+from tangy_tui.monitoring import fault
+
+ROOT = Path(__file__).parents[2]
+FLOORS = {"tangy_tui": ROOT, "tangy_hw": ROOT / "hw", "tangy_sim": ROOT / "sim"}
+FLOORS["tangy_profiles"] = ROOT / "profiles"
+
+
+def kinds_written() -> dict[str, set[str]]:
+    """Return the kinds of event that the program's code appends, and where."""
+    found: dict[str, set[str]] = {}
+    for package, above in FLOORS.items():
+        for path in sorted((above / package).rglob("*.py")):
+            text = path.read_text()
+            if "store" not in text.casefold():
+                continue
+            module = ".".join(path.relative_to(above).with_suffix("").parts)
+            for call in ast.walk(ast.parse(text)):
+                if isinstance(call, ast.Call) and _appends(call, module):
+                    for kind in _named(call.args[0], module):
+                        found.setdefault(kind, set()).add(module)
+    return found
+
+
+def _appends(call: ast.Call, module: str) -> bool:
+    if not isinstance(call.func, ast.Attribute) or call.func.attr != "append":
+        return False
+    receiver = ast.unparse(call.func.value)
+    return len(call.args) == 2 and (
+        receiver.endswith("store") or (receiver == "self" and module.endswith(".store"))
+    )
+
+
+def _named(kind: ast.expr, module: str) -> list[str]:
+    if isinstance(kind, ast.Constant):
+        return [str(kind.value)]
+    assert isinstance(kind, ast.Name), f"{module}: name the kind by a constant"
+    return [str(getattr(importlib.import_module(module), kind.id))]
+
+
+def test_every_kind_that_is_written_has_a_body_that_is_known_and_none_is_left_over() -> None:
+    written = kinds_written()
+    assert {kind: where for kind, where in written.items() if kind not in BODIES} == {}
+    assert BODIES.keys() - written.keys() == set()
+
+
+def test_what_is_about_people_and_strategies_are_kinds() -> None:
+    assert WITH_STRATEGY < ABOUT_PEOPLE < BODIES.keys()
+
+
+def test_what_can_be_done_about_a_fault_is_said_in_words_and_taken_from_the_log() -> None:
+    assert set(MOVES) == set(fault.MOVES)
+
+
+@pytest.mark.parametrize("kind", sorted(BODIES.keys() - ABOUT_PEOPLE))
+def test_a_body_of_nothing_is_that_of_a_kind_only_where_nothing_is_needed(kind: str) -> None:
+    empty = wrong_with(kind, None, None, {})
+    assert (empty == "") == (kind == "recordings forgotten")
+    assert wrong_with(kind, None, None, []) != ""  # type: ignore[arg-type]

@@ -1,0 +1,200 @@
+"""The count beside the log: newest events that are gone are said, and nothing else is."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tangy_profiles.seal import Seal
+from tangy_profiles.store import LOST, Store
+
+NOON = datetime(2026, 3, 4, 12, tzinfo=UTC)
+
+
+class Mishap(Exception):
+    """Something went wrong inside a transaction."""
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    with Store.open(tmp_path / "log") as opened:
+        yield opened
+
+
+def killed(store: Store, folder: Path, *, but: str = "") -> Path:
+    """Copy the files as they lie when the program is killed now, all `but` one."""
+    folder.mkdir(exist_ok=True)
+    for name in ("tangy.db", "tangy.db-wal", "tangy.lock", "tangy.seal"):
+        if name != but:
+            shutil.copy(store.folder / name, folder / name)
+    return folder
+
+
+def said(folder: Path) -> list[str]:
+    """Return what a console says of a log when it opens it, which `check` says as well."""
+    with Store.open(folder, write=False) as console:
+        assert [s for s in console.check() if "gone" in s] == console.notices
+        return console.notices
+
+
+def test_a_program_that_was_killed_leaves_nothing_to_say(store: Store, tmp_path: Path) -> None:
+    for number in range(1, 8):
+        store.append("joke", {"n": number})
+        folder = killed(store, tmp_path / f"after-{number}")
+        assert said(folder) == []
+        with Store.open(folder) as again:
+            assert (again.notices, again.append("joke", {})) == ([], number + 1)
+
+
+def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path) -> None:
+    """Damage that leaves all events says nothing; each that takes some says which."""
+    for number in range(40):
+        store.append("joke", {"n": number, "text": "x" * 300})
+    random, lost = Random(5), 0
+    for number in range(80):
+        folder = killed(store, tmp_path / "damaged")
+        tail = folder / "tangy.db-wal"
+        content = bytearray(tail.read_bytes())
+        at = random.randrange(len(content))
+        if number % 2:
+            content[at] ^= 1 << random.randrange(8)
+        else:
+            del content[at:]
+        tail.write_bytes(content)
+        with Store.open(folder, write=False) as console:
+            there = len(list(console.events()))
+            words = console.notices
+        if there < 40:
+            lost += 1
+            which = f"events {there + 1} to 40" if there < 39 else "event 40"
+            assert len(words) == 1 and which in words[0], (there, words)
+        else:
+            assert words == []
+        shutil.rmtree(folder)
+    assert lost > 40, "most of the damage takes something"
+
+
+def test_a_tail_that_was_deleted_is_said_once_and_noted(store: Store, tmp_path: Path) -> None:
+    Store.open(tmp_path / "first").close()
+    store.append("joke", {})
+    store._file.reading()
+    assert store._file.db is not None
+    store._file.db.execute("PRAGMA wal_checkpoint").fetchall()
+    for _ in range(3):
+        store.append("joke", {})
+    folder = killed(store, tmp_path / "killed", but="tangy.db-wal")
+    for _ in range(2):
+        assert "events 2 to 4 had been kept and are gone" in said(folder)[0]
+    with Store.open(folder) as again:
+        assert "events 2 to 4" in again.notices[0]
+        (noted,) = again.events(LOST)
+        assert noted.body == {"first": 2, "last": 4}
+    with Store.open(folder) as again:
+        assert (again.notices, again.check()) == ([], [])
+
+
+def test_a_copy_made_while_tangy_writes_says_what_it_lacks(store: Store, tmp_path: Path) -> None:
+    store.append("joke", {})
+    folder = killed(store, tmp_path / "copy")
+    store.append("joke", {})
+    shutil.copy(store.folder / "tangy.seal", folder / "tangy.seal")  # the last one to be copied
+    assert "event 2 had been kept and is gone" in said(folder)[0]
+    assert "a copy that was made while Tangy was writing" in said(folder)[0]
+
+
+def test_a_copy_of_a_closed_folder_has_all(store: Store, tmp_path: Path) -> None:
+    store.append("joke", {})
+    store.close()
+    shutil.copytree(store.folder, tmp_path / "copy")
+    assert said(tmp_path / "copy") == []
+
+
+@pytest.mark.parametrize("kept", ["", "none", "lagging", "torn", "bits", "folder"])
+def test_a_count_that_says_nothing_sure_gives_no_alarm(store: Store, kept: str) -> None:
+    seal = store.folder / "tangy.seal"
+    store.append("joke", {})
+    early = seal.read_bytes()
+    store.append("joke", {})
+    store.close()
+    late = seal.read_bytes()
+    seal.unlink()
+    if kept == "folder":
+        seal.mkdir()
+    elif kept != "none":
+        contents = {"lagging": early, "torn": late[:30], "bits": late.replace(b"02 ", b"92 ")}
+        seal.write_bytes(contents.get(kept, b""))
+        assert kept != "bits" or seal.read_bytes() != late
+    assert said(store.folder) == []
+    with Store.open(store.folder) as again:
+        assert (again.notices, again.append("joke", {})) == ([], 3)
+    assert said(store.folder) == []
+
+
+def test_the_count_of_another_log_is_not_taken_for_this_one(store: Store, tmp_path: Path) -> None:
+    for _ in range(5):
+        store.append("joke", {})
+    other = tmp_path / "other"
+    Store.open(other).close()
+    shutil.copy(store.folder / "tangy.seal", other / "tangy.seal")
+    assert said(other) == []
+
+
+def test_a_damaged_log_that_is_set_aside_is_said_once(store: Store) -> None:
+    for number in range(50):
+        store.append("joke", {"n": number, "text": "x" * 500})
+    store.close()
+    log = store.folder / "tangy.db"
+    log.write_bytes(log.read_bytes()[:8192] + b"\xff" * 4096)
+    with Store.open(store.folder) as again:
+        assert len(again.notices) == 1 and "set aside" not in again.notices[0]
+        assert "was damaged: it is kept as" in again.notices[0]
+
+
+def test_what_was_taken_back_is_not_counted(store: Store, tmp_path: Path) -> None:
+    store.append("joke", {})
+    with suppress(Mishap), store.transaction():
+        store.append("joke", {})
+        raise Mishap
+    assert said(killed(store, tmp_path / "killed")) == []
+
+
+def test_a_console_beside_a_busy_writer_is_never_alarmed(store: Store) -> None:
+    done = threading.Event()
+
+    def write() -> None:
+        while not done.is_set():
+            store.append("joke", {})
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    try:
+        for _ in range(100):
+            with Store.open(store.folder, write=False) as console:
+                assert console.notices == []
+    finally:
+        done.set()
+        writer.join()
+
+
+def test_a_clock_that_goes_back_changes_nothing(tmp_path: Path) -> None:
+    for days in (0, -400, 400):
+        with Store.open(tmp_path, now=lambda days=days: NOON + timedelta(days)) as store:  # type: ignore[misc]
+            store.append("joke", {})
+            assert store.notices == []
+
+
+def test_the_count_never_leads(tmp_path: Path) -> None:
+    """It is written after the commit, so that a program killed in between leaves it behind."""
+    with Store.open(tmp_path) as store:
+        seal = Seal(tmp_path)
+        with store.transaction():
+            store.append("joke", {})
+            assert seal.read() is None
+        assert seal.read() == (store._robot, 1)
