@@ -20,6 +20,11 @@ class World(Protocol):
     over: bool
     """Whether the game that was begun last has ended."""
 
+    @property
+    def seconds(self) -> float:
+        """The world's own time, in s; where it began to count is its own matter."""
+        ...
+
     def begin(self) -> ActivityState:
         """Begin a new game and return its first state."""
         ...

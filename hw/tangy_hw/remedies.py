@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import suppress
 from math import hypot
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 SLIPPED = "wheels-slip"  # the fault for which a robot that knows its place no more is stopped
 AWAY = 0.5  # metres from where it should be at which the robot drives there
+BACK_SECONDS = 3.0  # of real time, in which all is back that a lost link had taken along
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
 
 
@@ -101,6 +103,16 @@ class Remedies:
                 if remedy.fault in commands.diagnosed(link.health()):
                     link.stop(remedy.fault, by=FAULT)
         link.beat()
+        self._await_others(remedy)
+
+    def _await_others(self, remedy: Remedy) -> None:
+        """Wait a moment for what comes back later than what halted the robot, as cameras do."""
+        link, until = self._world.link, time.monotonic() + BACK_SECONDS
+        while time.monotonic() < until and not link.setup.stepped:
+            found = self._world.commands.diagnosed(link.health())
+            if remedy.fault in found or not any(found.values()):
+                return
+            link.beat()
 
     def _await_help(self, remedy: Remedy) -> None:
         """Give people time to help, and see whether they have."""

@@ -379,6 +379,11 @@ class LiveWorld:
             view if view is not None and view.person == tracker.place else None,
         )
 
+    @property
+    def seconds(self) -> float:
+        """The robot's time, in s."""
+        return self.link.time
+
     def health(self) -> Health:
         """Return what the robot's devices report."""
         return self.link.health()

@@ -79,11 +79,6 @@ class FaultyWorld(SimulatedWorld):
         return state
 
     @property
-    def seconds(self) -> float:
-        """The time in this game, in s."""
-        return self._now * self.users.call_seconds
-
-    @property
     def still_to_come(self) -> list[str]:
         """The injections that have not come about in this game, but for those by chance."""
         return self._to_come.words

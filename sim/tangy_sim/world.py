@@ -108,6 +108,11 @@ class SimulatedWorld:
             self._read_card()  # the person beside the robot asks again, the card still there
         return Outcome(succeeded, calls * self.users.call_seconds, numbers, response)
 
+    @property
+    def seconds(self) -> float:
+        """The time in this game, in s."""
+        return self._now * self.users.call_seconds
+
     def who(self, place: str) -> str:
         """Return who sits at somebody's place, which here is always theirs."""
         return place

@@ -61,6 +61,11 @@ class Detector:
         if person is not None:
             self._refusals.pop(person, None)
 
+    @property
+    def devices(self) -> tuple[str, ...]:
+        """The names of the robot's devices."""
+        return tuple(self._robot.devices)
+
     def state(self, reading: Reading) -> str:
         """Return the state of a device of the robot, as `state_of` does."""
         return state_of(self._robot.devices.get(reading.device), reading)

@@ -245,6 +245,7 @@ class Supervision:
         self._recovery.remedy(fault, "look again")
         if not self._recovery.solved(fault):
             return told + self._recovery.move(fault, Move("still there", self.seconds, by=by))
+        told += self._watch.look_after(fault)
         told += self._recovery.move(fault, Move("cleared", self.seconds, by=by))
         self._recovery.remedy(fault, "resume")
         self._recovery.halted = None

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence, FaultBook
 from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent, Unsure
+from tangy_tui.learning.effects import Mismatch
+from tangy_tui.monitoring.aftermath import Aftermath
 from tangy_tui.monitoring.detection import Detector, together
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
 from tangy_tui.monitoring.fault import BORNE, Fault, Move
@@ -33,11 +35,13 @@ class Watch:
         self._detector = detector
         self._recovery = recovery
         self._seen: Evidence | None = None
+        self._aftermath = Aftermath(book, detector.devices)
 
     def begin(self) -> None:
         """Forget what was seen in the last game."""
         self.acted.clear()
         self._seen = None
+        self._aftermath.begin()
         self._detector.begin()
 
     @property
@@ -58,7 +62,13 @@ class Watch:
             reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
             if reported and self._recovery.rule(fault).matched(evidence) is None:
                 told += self._recovery.move(fault, Move("ended", self._recovery.seconds))
-        return told + self._take(diagnose(self.book, evidence), None)
+        return told + self._take(self._diagnose(evidence), None)
+
+    def look_after(self, fault: Fault) -> list[Event]:
+        """Look at what a fault had explained, now that staff say that it is over."""
+        if self._aftermath.end(fault.code):
+            self._seen = None
+        return self.look()
 
     def after(self, events: Sequence[GameEvent]) -> list[Event]:
         """Hold what was done against what was to be expected; end a game that came to its end."""
@@ -100,7 +110,14 @@ class Watch:
         if not execution and self._seen is known:
             return []
         evidence = together(self._seen, execution)
-        return self._take(diagnose(self.book, evidence, mismatches), acted)
+        return self._take(self._diagnose(evidence, mismatches), acted)
+
+    def _diagnose(self, evidence: Evidence, mismatches: Sequence[Mismatch] = ()) -> list[Diagnosis]:
+        """Explain what no fault explains that was there before."""
+        unexplained = self._aftermath.without(evidence, self._game.world.seconds)
+        found = diagnose(self.book, unexplained, mismatches)
+        self._aftermath.take(found, unexplained)
+        return found
 
     def _take(
         self, found: Sequence[Diagnosis], acted: Acted | None, whose: str | None = None

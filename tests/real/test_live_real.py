@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,7 +19,7 @@ from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.live.benched import BenchedWorld
 from tangy_tui.live.opening import open_bench
-from tangy_tui.monitoring.fault import Diagnosed
+from tangy_tui.monitoring.fault import Diagnosed, read_faults
 from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tests.support.terminal import TANGY, Terminal
@@ -102,6 +105,53 @@ def test_a_game_can_be_watched_and_stepped_into_on_a_terminal(folder: Path) -> N
         terminal.settle()  # a key from before the question was there does not answer it
         terminal.type("y")
         assert terminal.wait() == 0
+    finally:
+        terminal.end()
+
+
+def robot_process_of(program: int) -> int:
+    """Return the id of the robot process that a program has started."""
+    listed = subprocess.run(
+        ["ps", "-eo", "pid,ppid,args"],  # noqa: S607
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    rows = (line.split(None, 2) for line in listed.stdout.splitlines()[1:])
+    (found,) = (int(pid) for pid, of, args in rows if int(of) == program and "robot_child" in args)
+    return found
+
+
+def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path) -> None:
+    command = [TANGY, "live", "--bench", "--pace", "3", "--seed", "6", "--data", str(folder)]
+    terminal = Terminal(command, columns=100, lines=40)
+    try:
+        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+            terminal.type("y")
+        terminal.until("call number")
+        robot = robot_process_of(terminal.process.pid)
+        os.kill(robot, signal.SIGSTOP)
+        try:
+            terminal.until("Link to the robot lost")
+            ends = time.monotonic() + 4.0
+            while time.monotonic() < ends:
+                terminal.read(0.1)
+        finally:
+            os.kill(robot, signal.SIGCONT)
+        terminal.until("It is gone now")
+        assert "Also wrong" not in terminal.text
+        terminal.settle()
+        terminal.type("a")
+        terminal.until("c to clear")
+        terminal.type("c")
+        terminal.until("5 facilitate")  # the game has gone on
+        house = House(folder)
+        try:
+            assert [fault.code for fault in read_faults(house.store)[-1:]] == ["link-lost"]
+            last = read_faults(house.store)[-1].game
+            assert len(read_faults(house.store, last)) == 1
+        finally:
+            house.close()
     finally:
         terminal.end()
 

@@ -1,0 +1,148 @@
+"""One cause, one fault: what a lost link took along says nothing new until it was well once."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import Evidence, FaultBook
+from tangy_profiles.health import Health, Reading
+from tangy_profiles.robot import load_robot
+from tangy_sim.body import WELL
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
+from tangy_tui.monitoring.detection import device_evidence
+from tangy_tui.monitoring.diagnosis import diagnose
+from tangy_tui.monitoring.supervision import Supervision
+from tests.monitoring.conftest import codes, moves
+
+ROBOT = load_robot()
+LONG = 4.0  # s for which nothing was heard
+NOT_THE_LINK = tuple(name for name in ROBOT.devices if name != "link")
+
+
+def silent(*devices: str) -> Health:
+    """Return readings in which nothing was heard from these devices for long."""
+    return tuple(r._replace(age=LONG) if r.device in devices else r for r in WELL)
+
+
+class Seen:
+    """The faults that an aftermath lets be seen, as devices come and go."""
+
+    def __init__(self) -> None:
+        self.book: FaultBook = load_faults(ROBOT)
+        self.aftermath = Aftermath(self.book, ROBOT.devices)
+
+    def at(self, now: float, health: Health) -> list[str]:
+        evidence: Evidence = self.aftermath.without(device_evidence(ROBOT, health), now)
+        found = diagnose(self.book, evidence)
+        self.aftermath.take(found, evidence)
+        return [one.rule.code for one in found]
+
+
+@pytest.mark.parametrize("device", NOT_THE_LINK)
+def test_a_device_that_comes_back_after_the_link_is_no_fault_of_its_own(device: str) -> None:
+    seen = Seen()
+    assert seen.at(0.0, silent(*ROBOT.devices)) == ["link-lost"]
+    assert seen.at(4.0, silent(device)) == []
+    assert seen.at(4.0 + GRACE_SECONDS / 2, silent(device)) == []
+    assert seen.at(4.0 + GRACE_SECONDS, WELL) == []
+
+
+@pytest.mark.parametrize("device", NOT_THE_LINK)
+def test_a_device_that_stays_silent_after_its_grace_is_a_fault_of_its_own(device: str) -> None:
+    seen = Seen()
+    seen.at(0.0, silent(*ROBOT.devices))
+    assert seen.at(4.0, silent(device)) == []
+    (code,) = seen.at(4.0 + GRACE_SECONDS + 0.1, silent(device))
+    assert code != "link-lost"
+
+
+@pytest.mark.parametrize("device", NOT_THE_LINK)
+def test_a_device_that_was_well_once_and_falls_silent_again_is_a_fault(device: str) -> None:
+    seen = Seen()
+    seen.at(0.0, silent(*ROBOT.devices))
+    assert seen.at(4.0, WELL) == []
+    assert len(seen.at(4.2, silent(device))) == 1
+
+
+def test_a_link_that_is_lost_again_and_again_explains_no_less_the_last_time() -> None:
+    seen = Seen()
+    for began in range(0, 20, 4):
+        assert seen.at(began, silent(*ROBOT.devices)) == ["link-lost"]
+        assert seen.at(began + 2.0, silent("laser", "camera")) == []
+
+
+def test_an_emergency_stop_is_told_whatever_a_lost_link_explains() -> None:
+    seen = Seen()
+    seen.at(0.0, silent(*ROBOT.devices))
+    latched = Reading("stop_button", 0.0, "OK", {"latched": True})
+    back = tuple(latched if r.device == "stop_button" else r for r in silent("laser"))
+    assert seen.at(4.0, back) == ["emergency-stop"]
+
+
+def test_what_was_well_while_the_link_was_lost_is_not_explained_by_it() -> None:
+    seen = Seen()
+    assert seen.at(0.0, silent("link")) == ["link-lost"]
+    assert seen.at(1.0, silent("voice")) == ["voice-dead"]
+
+
+class Robot:
+    """Devices that are as the test says."""
+
+    def __init__(self) -> None:
+        self.readings: Health = WELL
+
+    def health(self) -> Health:
+        return self.readings
+
+
+@pytest.fixture
+def robot(monkeypatch: pytest.MonkeyPatch) -> Robot:
+    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", -1.0)
+    return Robot()
+
+
+@pytest.fixture
+def game(house: House, learnt: Policy, robot: Robot) -> Supervision:
+    game = house.supervision(learnt, 3, live=robot.health)
+    game.begin()
+    return game
+
+
+def stalled(game: Supervision, robot: Robot) -> list[str]:
+    """Let a robot fall silent, and come back but for two devices; return the faults told."""
+    robot.readings = silent(*ROBOT.devices)
+    told = game.look()
+    robot.readings = silent("laser", "camera")
+    return codes(told + game.look())
+
+
+def test_a_stall_of_the_robot_is_one_fault_and_over_when_it_is_cleared(
+    game: Supervision, robot: Robot
+) -> None:
+    assert stalled(game, robot) == ["link-lost"]
+    robot.readings = WELL
+    game.acknowledge("Ada")
+    told = game.clear("Ada") + game.look()
+    assert moves(told) == ["cleared"] and game.halted is None
+    assert [fault.code for fault in game.faults] == ["link-lost"]
+
+
+def test_what_has_not_come_back_when_staff_clear_the_cause_halts_the_robot_again(
+    game: Supervision, robot: Robot
+) -> None:
+    assert stalled(game, robot) == ["link-lost"]
+    robot.readings = silent("laser")
+    game.acknowledge("Ada")
+    told = game.clear("Ada")
+    assert codes(told) == ["laser-disconnected"]
+    assert game.halted is not None and game.halted.code == "laser-disconnected"
+
+
+def test_nothing_of_the_last_game_is_explained_in_the_next(game: Supervision, robot: Robot) -> None:
+    stalled(game, robot)
+    game.leave()
+    game.begin()
+    assert codes(game.look()) == ["laser-disconnected", "camera-disconnected"]
