@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -13,11 +16,18 @@ KEPT = 1 << 18  # bytes of its end that are left then
 def open_log(path: Path) -> BinaryIO:
     """Open a log to append to; one that has become too long keeps just its last lines.
 
+    Its owner alone may read it: what goes wrong may name people.
+
     Raises:
         OSError: it cannot be written.
     """
-    log = path.open("ab")
+    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
+    log = os.fdopen(os.open(path, flags, 0o600), "ab")
     try:
+        if not stat.S_ISREG(os.fstat(log.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "is no file")
+        with suppress(PermissionError):  # it is another user's
+            os.fchmod(log.fileno(), 0o600)  # whatever the umask, and whoever began it
         if os.fstat(log.fileno()).st_size > MOST:
             _cut(path)
     except BaseException:

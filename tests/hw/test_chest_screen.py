@@ -208,6 +208,14 @@ class TestReading:
         await screen.close()
 
 
+FILES_OF_A_PAGE = 4  # that the test itself has open while a page answers
+
+
+def files() -> int:
+    """Say how many files this process has open."""
+    return sum(1 for _ in Path("/proc/self/fd").iterdir())
+
+
 def runs(pid: int) -> bool:
     """Say whether a process runs."""
     return Path(f"/proc/{pid}").exists()
@@ -252,3 +260,21 @@ class TestItsProcess:
         parent.kill()
         await parent.wait()
         await until(lambda: not runs(pid))
+
+    async def test_strangers_take_no_file_of_the_process_that_drives(
+        self, screen: WebChestScreen
+    ) -> None:
+        (page,) = await opened(screen, "mine")
+        before = files()
+        strangers = [await asyncio.open_connection("127.0.0.1", screen.port) for _ in range(200)]
+        for _, writer in strangers:
+            writer.write(b"GET / HTTP/1.1\r\nHost: 127")
+        # The paired page goes on to be shown things, and to say so.
+        await screen.show(CALL)
+        alive = page.alive
+        await until(lambda: page.alive > alive + 1)
+        assert screen.reading().state == "OK"
+        assert files() <= before + len(strangers) + FILES_OF_A_PAGE
+        for _, writer in strangers:
+            writer.transport.abort()
+        page.go()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import stat
 from pathlib import Path
 
 import pytest
@@ -43,3 +45,25 @@ def test_one_line_without_an_end_is_cut_as_well(tmp_path: Path) -> None:
 def test_where_it_cannot_be_written_the_reason_is_given(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="No such file"):
         open_log(tmp_path / "none" / "worker.log")
+
+
+def test_its_owner_alone_may_read_it(tmp_path: Path) -> None:
+    old, new = tmp_path / "old.log", tmp_path / "new.log"
+    old.touch(0o644)
+    old.chmod(0o644)
+    before = os.umask(0)
+    try:
+        for path in (old, new):
+            with open_log(path) as log:
+                log.write(b"one\n")
+            assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    finally:
+        os.umask(before)
+
+
+def test_a_pipe_that_nobody_reads_is_no_log(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.log")
+    (tmp_path / "null.log").symlink_to("/dev/null")
+    for name in ("pipe.log", "null.log"):
+        with pytest.raises(OSError):
+            open_log(tmp_path / name)
