@@ -6,6 +6,7 @@ Every verb prints one JSON document with `--json`. The exit status is 0 when don
 
 from __future__ import annotations
 
+import gc
 import sys
 
 from tangy_profiles.errors import TangyError
@@ -27,6 +28,7 @@ def main() -> None:
         status = 1
     except KeyboardInterrupt:
         status = 130
+    gc.freeze()  # or Python looks through all that was loaded once more, for .4 s
     sys.exit(status if isinstance(status, int) else 0)
 
 

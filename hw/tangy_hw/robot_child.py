@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import json
+import gc
 import os
+import signal
 import sys
 import time
 from collections.abc import Awaitable, Callable
@@ -23,6 +24,7 @@ from dataclasses import astuple
 from typing import Any
 
 from tangy_hw.devices import DeviceError, Twist
+from tangy_hw.program_pipe import Answers, end_with, open_lines
 from tangy_hw.robot import LiveRobot
 from tangy_hw.robot_beat import beat_of
 from tangy_hw.robot_lines import (
@@ -35,6 +37,7 @@ from tangy_hw.robot_lines import (
     read_line,
     text_of,
 )
+from tangy_hw.robot_opening import switched_on
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.senses import MOST_PICTURES, CardSeen, Senses
 from tangy_hw.stopping import STAFF, BrokenOff
@@ -47,10 +50,6 @@ SILENT_SECONDS = 0.15
 stand then, and stands when it has braked; it does not drive on when that takes longer."""
 SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
-LONGEST_LINE = 1 << 22
-LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
-END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
-MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 
 Answer = dict[str, Any]
@@ -91,6 +90,30 @@ class RobotProcess:
         }
 
     # ---------------------------------------------------------------------- the lines
+
+    async def live(self, said: list[bytes], lines: asyncio.StreamReader) -> None:
+        """Do what the program says and has said until it ends, and stop the robot then."""
+        self._say({"ready": True, "done": self.robot.at_hand})
+        beating = asyncio.create_task(self.beat())
+        try:
+            for line in said:
+                await self.take(line)
+            while await self._take_next(lines):
+                pass
+        finally:
+            beating.cancel()
+            await self.robot.stop("the program has ended")
+
+    async def _take_next(self, lines: asyncio.StreamReader) -> bool:
+        """Take the next line; return whether there was one."""
+        try:
+            line = await lines.readline()
+        except ValueError:
+            self.refuse("That line is too long.")
+            return True
+        if line:
+            await self.take(line)
+        return bool(line)
 
     async def take(self, line: bytes) -> None:
         """Take a line of the program; what is wrong with one is answered, and ends nothing."""
@@ -314,90 +337,40 @@ def _aged(seen: tuple[CardSeen, float] | None) -> Answer | None:
     return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
 
 
-async def _lines() -> asyncio.StreamReader:
-    reader = asyncio.StreamReader(limit=LONGEST_LINE)
-    await asyncio.get_running_loop().connect_read_pipe(
-        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
-    )
-    return reader
-
-
-async def _end_with(program: int, lines: asyncio.StreamReader) -> None:
-    """End once the program has ended, whatever is waited for; first let what it does be stopped."""
-    while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - nobody tells
-        await asyncio.sleep(LOOK_SECONDS)
-    await asyncio.sleep(END_SECONDS)
-    os._exit(1)
-
-
-class _Lines(asyncio.Protocol):
-    """Lines to the program; where it takes none, beats are left out and nothing waits."""
-
-    transport: asyncio.WriteTransport | None = None
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take what is written to."""
-        assert isinstance(transport, asyncio.WriteTransport)  # noqa: S101 - it is a pipe
-        self.transport = transport
-
-    def write(self, answer: Answer) -> None:
-        """Write a line."""
-        transport = self.transport
-        if transport is None or transport.is_closing():
-            return
-        if "beat" in answer and transport.get_write_buffer_size() > MOST_UNREAD:
-            return
-        transport.write(json.dumps(answer, separators=(",", ":")).encode() + b"\n")
-
-
 async def run() -> int:
     """Be the robot process until the program ends."""
-    lines = await _lines()
+    lines, pipe = await open_lines()
     program = int(sys.argv[1]) if sys.argv[1:] else os.getppid()
-    ending = asyncio.create_task(_end_with(program, lines))
+    ending = asyncio.create_task(end_with(program, lines))
     try:
-        return await _serve(lines)
+        return await _serve(lines, pipe)
     finally:
         ending.cancel()
 
 
-async def _serve(lines: asyncio.StreamReader) -> int:
-    _, out = await asyncio.get_running_loop().connect_write_pipe(_Lines, sys.stdout)
+async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> int:
+    _, out = await asyncio.get_running_loop().connect_write_pipe(Answers, sys.stdout)
     try:
         setup = RobotSetup.from_json(await lines.readline())
         wired = wire(setup)
+        # Told to end, it does what it does when its pipe closes; before this, nothing is open.
+        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
+        async with switched_on(wired, lines) as said:
+            if said is None:
+                return 1
+            await RobotProcess(wired, out.write, stepped=setup.stepped).live(said, lines)
     except TangyError as error:
         out.write({"failed": str(error)})
         await asyncio.sleep(0.1)  # until it is written
         return 2
-    async with wired:
-        process = RobotProcess(wired, out.write, stepped=setup.stepped)
-        out.write({"ready": True, "done": wired.robot.at_hand})
-        beating = asyncio.create_task(process.beat())
-        try:
-            while await _take_next(lines, process):
-                pass
-        finally:
-            beating.cancel()
-            await wired.robot.stop("the program has ended")
     return 0
-
-
-async def _take_next(lines: asyncio.StreamReader, process: RobotProcess) -> bool:
-    """Take the next line; return whether there was one."""
-    try:
-        line = await lines.readline()
-    except ValueError:
-        process.refuse("That line is too long.")
-        return True
-    if line:
-        await process.take(line)
-    return bool(line)
 
 
 def main() -> None:
     """Run it."""
-    sys.exit(asyncio.run(run()))
+    status = asyncio.run(run())
+    gc.freeze()  # or Python looks through all that was loaded once more
+    sys.exit(status)
 
 
 if __name__ == "__main__":

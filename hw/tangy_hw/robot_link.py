@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
+from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.devices import DeviceError, Pose
 from tangy_hw.outbox import Outbox
 from tangy_hw.robot_setup import RobotSetup
@@ -38,7 +39,8 @@ HANGS_SECONDS = 2.0
 START_SECONDS = 30.0
 ANSWER_SECONDS = 240.0  # the longest that anything takes; a drive ends by itself before
 END_SECONDS = 3.0
-
+CALLED_OFF_SECONDS = 1.0
+"""In which a process that was still switching the robot on lets go of what it has opened."""
 
 ENDED = "the robot process has ended"
 NOWHERE = Pose(0.0, 0.0, 0.0)
@@ -97,14 +99,29 @@ class _Told:
 class RobotLink:
     """A robot process. `start` it, `ask` it for things, `stop` the robot, and `close` it."""
 
-    def __init__(self, setup: RobotSetup, *, log: Path | None = None) -> None:
-        """Prepare it; `log` takes what it writes beside its lines."""
+    def __init__(
+        self,
+        setup: RobotSetup,
+        *,
+        log: Path | None = None,
+        cancellation: Cancellation | None = None,
+    ) -> None:
+        """Prepare it.
+
+        Args:
+            setup: what robot it is.
+            log: takes what the process writes beside its lines.
+            cancellation: of the opening that it is part of.
+        """
         self.setup = setup
         self.screen = ""
         """The address of the chest screen's page, where it is one."""
         self.code = ""
         """The code by which a tablet is paired there."""
         self._log = log
+        self._cancellation = cancellation or Cancellation()
+        self._starting = threading.Lock()
+        self._over = False  # it is closed for good
         self._process: subprocess.Popen[bytes] | None = None
         self._told = _Told()
         self._outbox: Outbox | None = None
@@ -124,6 +141,21 @@ class RobotLink:
         Raises:
             DeviceError: it cannot be started, or says what is wrong with its setup.
         """
+        with self._starting:
+            self._cancellation.check()
+            if self._over:
+                raise DeviceError("The robot is switched off.")
+            ready = self._begin()
+        self._cancellation.register(self._call_off)
+        try:
+            told = ready.result(START_SECONDS)
+            self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
+        except TooLate:
+            self._end()
+            raise DeviceError("The robot process does not begin.") from None
+
+    def _begin(self) -> Future[dict[str, Any]]:
+        """Start the process and the threads; return what is done when the robot is switched on."""
         self._closing.clear()
         self._told = _Told()
         log: IO[bytes] | int = subprocess.DEVNULL
@@ -131,7 +163,7 @@ class RobotLink:
             with suppress(OSError):
                 log = open_log(self._log)
         try:
-            self._process = subprocess.Popen(  # noqa: S603 - it is our own program
+            process = self._process = subprocess.Popen(  # noqa: S603 - it is our own program
                 [*CHILD, str(os.getpid())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -145,40 +177,55 @@ class RobotLink:
                 log.close()
         ready: Future[dict[str, Any]] = Future()
         self._asked[0] = ready
-        assert self._process.stdin is not None  # noqa: S101 - it was asked for
-        outbox = self._outbox = Outbox(self._process.stdin)
+        assert process.stdin is not None  # noqa: S101 - it was asked for
+        outbox = self._outbox = Outbox(process.stdin)
         outbox.put(self.setup.to_json())
         self._threads = [
             threading.Thread(target=outbox.run, daemon=True),
-            threading.Thread(target=self._listen, args=(self._process,), daemon=True),
-            threading.Thread(target=self._beat, args=(self._process, outbox), daemon=True),
+            threading.Thread(target=self._listen, args=(process,), daemon=True),
+            threading.Thread(target=self._beat, args=(process, outbox), daemon=True),
         ]
         for thread in self._threads:
             thread.start()
-        try:
-            told = ready.result(START_SECONDS)
-            self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
-        except TooLate:
-            self.close()
-            raise DeviceError("The robot process does not begin.") from None
+        return ready
+
+    def _call_off(self) -> None:
+        """Have the process end that was to switch the robot on; nobody waits for it any more."""
+        process = self._process
+        if process is not None:
+            process.terminate()
+        with self._lock:
+            ready = self._asked.pop(0, None)
+        if ready is not None:
+            ready.set_exception(Cancelled())
 
     def restart(self) -> None:
-        """End the process, however it is, and start another."""
-        self.close()
+        """End the process, however it is, and start another.
+
+        Raises:
+            DeviceError: it cannot be started, or this was closed meanwhile.
+        """
+        self._end()
         self.start()
 
     def close(self) -> None:
-        """Let the process stop the robot and end; it is ended where it does not."""
+        """Let the process stop the robot and end, for good; it is ended where it does not."""
+        with self._starting:  # or one that is just being started would be left behind
+            self._over = True
+        self._end()
+
+    def _end(self) -> None:
         process, self._process = self._process, None
         outbox, self._outbox = self._outbox, None
         self._closing.set()
         if process is None or outbox is None:
             return
-        if self.silent:  # it would not end by itself, and may not even read
+        called_off = self._cancellation.cancelled
+        if self.silent and not called_off:  # it would not end by itself, and may not even read
             process.kill()
         outbox.close()
         try:
-            process.wait(END_SECONDS)
+            process.wait(CALLED_OFF_SECONDS if called_off else END_SECONDS)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
@@ -252,7 +299,11 @@ class RobotLink:
     def beat(self) -> RobotState:
         """Wait until the robot has said once more how it is, and return that."""
         last, until = self.state.number, time.monotonic() + START_SECONDS
-        while self.state.number == last and not self._told.ended and time.monotonic() < until:
+        while (
+            self.state.number == last
+            and not (self._told.ended or self._cancellation.cancelled)
+            and time.monotonic() < until
+        ):
             with self._said:
                 self._said.wait(BEAT_SECONDS)
         return self.state

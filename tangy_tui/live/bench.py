@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from tangy_hw.cancellation import Cancellation
 from tangy_profiles.errors import TangyError
 from tangy_profiles.worker_log import open_log
 
@@ -58,6 +59,7 @@ class Bench:
         robot: str,
         room: str = "common-room",
         log: Path | None = None,
+        cancellation: Cancellation | None = None,
     ) -> None:
         """Start a bench.
 
@@ -66,10 +68,14 @@ class Bench:
             people: who sits there, in this order: names by id.
             stepped: its time passes only when the robot lets it.
             log: where what goes wrong in it is written.
+            cancellation: of the opening that it is part of.
 
         Raises:
             BenchError: it does not begin.
+            Cancelled: it was called off.
         """
+        cancellation = cancellation or Cancellation()
+        cancellation.check()
         command = [*CHILD, "--seed", str(seed), "--room", room]
         command += [f"--person={id}={name}" for id, name in people.items()]
         command += ["--activity", activity, "--robot", robot, *(["--stepped"] if stepped else [])]
@@ -86,6 +92,7 @@ class Bench:
         )
         if not isinstance(err, int):
             err.close()
+        cancellation.register(self._process.kill)  # there is nothing in it to be put in order
         self._lock = threading.Lock()
         try:
             ready = self._read()["ready"]
@@ -99,6 +106,7 @@ class Bench:
             )
         except (KeyError, TypeError, BenchError):
             self.close()
+            cancellation.check()
             where = f": see {log}" if log is not None else ""
             raise BenchError(f"The bench does not begin{where}.") from None
 

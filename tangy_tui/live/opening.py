@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from tangy_hw.cancellation import Cancellation
 from tangy_hw.devices import DeviceError
 from tangy_hw.robot_link import RobotLink
 from tangy_hw.robot_setup import RobotSetup
@@ -31,6 +32,9 @@ LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong
 PICTURES = 10  # of each drawn face that the bench's people are known by
 CAMERA = "camera"
 
+Opening = Callable[[bool, Cancellation], AbstractContextManager[LiveWorld]]
+"""Opens a robot, or its bench (in a hurry, if that is wanted), unless it is called off."""
+
 
 def opening_of(
     house: House,
@@ -39,8 +43,8 @@ def opening_of(
     injections: Sequence[Injection] = (),
     own: Mapping[str, Any] | None = None,
     **both: Any,
-) -> Callable[[bool], AbstractContextManager[LiveWorld]]:
-    """Return what opens the robot, or its bench (in a hurry, if that is asked for).
+) -> Opening:
+    """Return what opens the robot, or its bench.
 
     Args:
         house: whose robot it is.
@@ -51,11 +55,11 @@ def opening_of(
     """
     from tangy_profiles.fault_file import load_faults
 
-    def opening(stepped: bool) -> AbstractContextManager[LiveWorld]:
-        book = load_faults(house.robot)
+    def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
+        told: dict[str, Any] = {"book": load_faults(house.robot), "cancellation": cancellation}
         if bench:
-            return open_bench(house, stepped=stepped, book=book, injections=injections, **both)
-        return open_robot(house, book=book, **(own or {}), **both)
+            return open_bench(house, stepped=stepped, injections=injections, **told, **both)
+        return open_robot(house, **told, **(own or {}), **both)
 
     return opening
 
@@ -72,6 +76,7 @@ def open_bench(
     kind: type[B] = BenchedWorld,  # type: ignore[assignment]
     map_: str = "",
     lost: bool = False,
+    cancellation: Cancellation | None = None,
 ) -> Iterator[B]:
     """Open the robot's own devices as a bench simulates them.
 
@@ -84,11 +89,14 @@ def open_bench(
         kind: the kind of world.
         map_: the robot finds its way by this map, not by the measures of the room.
         lost: the robot is not told where it stands.
+        cancellation: by which this can be called off before it is open.
 
     Raises:
+        Cancelled: it was called off.
         TangyError: the bench or the robot process does not begin.
     """
     folder = house.store.folder
+    cancellation = cancellation or Cancellation()
     bench = Bench(
         seed=seed,
         people=house.names,
@@ -96,6 +104,7 @@ def open_bench(
         activity=house.profile,
         robot=str(house.robot.file),
         log=folder / BENCH_LOG,
+        cancellation=cancellation,
     )
     try:
         at = bench.wires.rosbridge
@@ -115,10 +124,13 @@ def open_bench(
             map=map_,
             stepped=stepped,
             seed=seed,
-            faces=_drawn_people(bench.wires.faces),
+            faces=_drawn_people(bench.wires.faces, cancellation),
             log=str(folder / LOG),
         )
-        with _linked(kind, setup, house, seed=seed, pace=pace, book=book) as world:
+        linked = _linked(
+            kind, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+        )
+        with linked as world:
             try:
                 world.on(bench, injections, seed)
                 yield world
@@ -145,14 +157,17 @@ def open_robot(
     map_: str = "",
     lost: bool = False,
     cards: Mapping[str, int] | None = None,
+    cancellation: Cancellation | None = None,
 ) -> Iterator[LiveWorld]:
     """Open a robot that is there, by the drivers of its profile.
 
     Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
     robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
-    itself. `cards` are the numbers of the cards that were dealt, by person.
+    itself. `cards` are the numbers of the cards that were dealt, by person. Until it is open it
+    can be called off by `cancellation`.
 
     Raises:
+        Cancelled: it was called off.
         TangyError: the profile names none, or the robot process does not begin.
     """
     if not house.robot.drivers:
@@ -165,6 +180,7 @@ def open_robot(
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_hw.perception.requests.naming import requests_named
 
+    cancellation = cancellation or Cancellation()
     name, named = requests_named(house.robot)
     requests, corners = requests or name, corners or named
     known = read_faces(house.store, open_reader(house.robot.faces).kind)
@@ -182,7 +198,10 @@ def open_robot(
         log=str(house.store.folder / LOG),
         pairing=keep_pairing(house.store.folder).to_json(),
     )
-    with _linked(LiveWorld, setup, house, seed=seed, pace=pace, book=book) as world:
+    linked = _linked(
+        LiveWorld, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+    )
+    with linked as world:
         world.cards.dealt.deal(cards or {})
         yield world
 
@@ -196,8 +215,9 @@ def _linked(
     seed: int,
     pace: float,
     book: FaultBook | None,
+    cancellation: Cancellation,
 ) -> Iterator[W]:
-    link = RobotLink(setup, log=house.store.folder / LOG)
+    link = RobotLink(setup, log=house.store.folder / LOG, cancellation=cancellation)
     try:
         link.start()
         link.beat()  # a game begins by what the robot says of itself
@@ -261,15 +281,25 @@ def _start(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
     return front.x, front.y, FACING
 
 
-def _drawn_people(faces: Mapping[str, int]) -> dict[str, list[list[float]]]:
-    """Describe the drawn faces of the bench's people, as an enrolment would."""
+def _drawn_people(
+    faces: Mapping[str, int], cancellation: Cancellation
+) -> dict[str, list[list[float]]]:
+    """Describe the drawn faces of the bench's people, as an enrolment would.
+
+    Raises:
+        Cancelled: it was called off meanwhile.
+    """
     from tangy_hw.perception.faces.reader import HaarReader
     from tangy_sim.faces import drawn_face
 
     reader = HaarReader()
     known: dict[str, list[list[float]]] = {}
     for person, number in faces.items():
-        seen = (reader.read(drawn_face(number, 100 + one)) for one in range(PICTURES))
-        vectors = [found[0].vector for found in seen if found and found[0].vector is not None]
+        vectors = []
+        for one in range(PICTURES):
+            cancellation.check()
+            found = reader.read(drawn_face(number, 100 + one))
+            if found and found[0].vector is not None:
+                vectors.append(found[0].vector)
         known[person] = [[round(float(v), 5) for v in vector] for vector in vectors]
     return known

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
-from contextlib import AbstractContextManager, ExitStack
 from typing import TYPE_CHECKING
+
+from textual.constants import ESCAPE_DELAY
+
+from tangy_profiles.errors import TangyError
 
 if TYPE_CHECKING:
     from tangy_hw.world import LiveWorld
     from tangy_tui.learning.policy import Policy
+    from tangy_tui.live.opening import Opening
+    from tangy_tui.live.switching_on import SwitchingOn
     from tangy_tui.ui.program import Program
 
-Opening = Callable[[bool], "AbstractContextManager[LiveWorld]"]
-"""Opens a robot, or its bench (in a hurry, if that is wanted)."""
-
-
+TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
+"""After which an Esc that was typed before there was a screen is known to be one."""
 SWITCH_ON = (
     "It stands at the front, facing people, with nobody close by, and somebody is near its stop "
     "button. In the game ctrl+x stops it, too."
@@ -47,19 +49,55 @@ async def play_from_home(program: Program, policy: Policy) -> None:
 async def play_live(
     program: Program, opening: Opening, policy: Policy, *, games: int, seed: int, teacher: str
 ) -> None:
-    """Switch the robot on, play on the live screen, and switch it off again."""
-    from tangy_tui.ui.screens.live import LiveScreen
+    """Switch the robot on, play on the live screen, and switch it off again.
+
+    It is left off where somebody calls it off meanwhile.
+    """
+    from tangy_tui.live.switching_on import SwitchingOn
 
     house = program.house
-    with ExitStack() as opened:
-        world = await program.in_thread(
-            "Switching the robot on ...", lambda: opened.enter_context(opening(False))
-        )
+    robot = SwitchingOn(opening)
+    try:
+        world = await _switch_on(program, robot)
         if world is None:
             return
+        from tangy_tui.ui.screens.live import LiveScreen
+
         supervision = house.supervision(policy, seed, asks=True, world=world)
-        try:
-            screen = LiveScreen(house, supervision, world, games=games, teacher=teacher)
-            await program.push_screen_wait(screen)
-        finally:
-            await asyncio.shield(asyncio.to_thread(opened.close))
+        screen = LiveScreen(house, supervision, world, games=games, teacher=teacher)
+        await program.push_screen_wait(screen)
+    finally:
+        await asyncio.shield(asyncio.to_thread(robot.close))
+
+
+async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:
+    """Switch a robot on behind a dialog; None where it was called off, or could not be."""
+    from tangy_hw.cancellation import Cancelled
+    from tangy_tui.ui.dialogs.message import MessageDialog
+    from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
+
+    dialog = SwitchingOnDialog(program.house.robot.title, robot.cancel)
+    program.push_screen(dialog)
+    await dialog.shown()
+    await asyncio.sleep(TYPED_AHEAD_SECONDS)
+    opening = asyncio.ensure_future(asyncio.to_thread(robot.open))
+    opening.add_done_callback(_heard)
+    try:
+        return await asyncio.shield(opening)
+    except Cancelled:
+        return None
+    except TangyError as error:
+        said = str(error)
+    except asyncio.CancelledError:  # the program is being left
+        robot.cancel()
+        raise
+    finally:
+        dialog.over()
+    await program.push_screen_wait(MessageDialog(said, title="Not yet"))
+    return None
+
+
+def _heard(opening: asyncio.Future[LiveWorld]) -> None:
+    """Take note of how it went, where nobody waits for it any more."""
+    if not opening.cancelled():
+        opening.exception()

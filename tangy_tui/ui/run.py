@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tangy_tui.house import House
 from tangy_tui.ui.app import run_app
-from tangy_tui.ui.live_games import Opening, play_live
+from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
 from tangy_tui.ui.storytelling import tell_story
 from tangy_tui.ui.terminal import terminal_kind
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.live.opening import Opening
 
 
 def run_program(house: House, *, ascii_only: bool, voice: bool = False) -> int:

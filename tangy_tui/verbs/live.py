@@ -145,7 +145,9 @@ def live(
             )
         if not as_json:
             print("Switching the robot on ...", file=sys.stderr)
-        with opening(bench) as world:
+        from tangy_tui.live.switching_on import switched_on
+
+        with switched_on(opening, stepped=bench) as world:
             if not (as_json or bench) and world.link.tablet:
                 print(plain(world.link.tablet), file=sys.stderr)
             asks = who == SCRIPTED

@@ -15,6 +15,7 @@ from typing import Any, cast
 import pytest
 
 from tangy_hw import robot_link
+from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.devices import DeviceError
 from tangy_hw.outbox import Outbox
 from tangy_hw.robot_link import RobotLink
@@ -155,3 +156,78 @@ class TestEnd:
             link.ask("spin").result(5)
         ends.join()
         assert link.silent == "the robot process has ended"
+
+
+SILENT = "import sys, time; sys.stdin.readline(); "
+STUBBORN = "import signal, sys, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); "
+
+
+class TestCalledOff:
+    """A process that is still switching the robot on ends when that is called off."""
+
+    def opening(
+        self, monkeypatch: pytest.MonkeyPatch, does: str
+    ) -> tuple[RobotLink, Cancellation, Future[None]]:
+        """Begin to switch on a robot that never answers, on a thread."""
+        monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", does))
+        cancellation = Cancellation()
+        link = RobotLink(SETUP, cancellation=cancellation)
+        done: Future[None] = Future()
+
+        def start() -> None:
+            try:
+                link.start()
+            except BaseException as error:
+                done.set_exception(error)
+            else:
+                done.set_result(None)
+            finally:
+                link.close()
+
+        threading.Thread(target=start, daemon=True).start()
+        return link, cancellation, done
+
+    @pytest.mark.parametrize("does", [SILENT, STUBBORN], ids=["hears TERM", "hears nothing"])
+    def test_nobody_waits_for_it_any_more_and_it_is_ended(
+        self, monkeypatch: pytest.MonkeyPatch, does: str
+    ) -> None:
+        monkeypatch.setattr(robot_link, "CALLED_OFF_SECONDS", 0.2)
+        link, cancellation, done = self.opening(monkeypatch, does + "time.sleep(60)")
+        assert holds(lambda: link.pid is not None)
+        process = link._process
+        assert process is not None
+        cancellation.cancel()
+        with pytest.raises(Cancelled):
+            done.result(5)
+        assert holds(lambda: process.poll() is not None)
+
+    def test_nothing_is_started_afterwards(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        started: list[object] = []
+        monkeypatch.setattr("subprocess.Popen", lambda *a, **b: started.append(a))
+        cancellation = Cancellation()
+        cancellation.cancel()
+        with pytest.raises(Cancelled):
+            RobotLink(SETUP, cancellation=cancellation).start()
+        assert started == []
+
+    def test_one_that_was_closed_is_not_started_again(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Whoever mends a fault on a thread may be about to, when the program is left."""
+        link = linked(monkeypatch, "time.sleep(60)")
+        link.close()
+        with pytest.raises(DeviceError, match="switched off"):
+            link.restart()
+        assert link.pid is None
+
+    def test_one_that_is_on_is_not_called_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", READY + "time.sleep(60)"))
+        cancellation = Cancellation()
+        link = RobotLink(SETUP, cancellation=cancellation)
+        try:
+            link.start()
+            cancellation.complete()
+            cancellation.cancel()
+            assert link._process is not None and link._process.poll() is None
+        finally:
+            link.close()

@@ -16,6 +16,7 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.live import opening
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
 from tests.pilot.live_games import HeldLink, live, live_world, until
@@ -78,7 +79,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
             await until(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
             await pilot.press(answer)
             await until(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
-        await until(pilot, lambda: len(pilot.app.screen_stack) == 2)
+        await until(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
         await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
         assert opened == [True]
         await pilot.press("escape")

@@ -19,8 +19,8 @@ from statistics import median, quantiles
 import pytest
 
 from tangy_hw.devices import DeviceError
+from tangy_hw.program_pipe import LONGEST_LINE
 from tangy_hw.robot import HAZARD_SECONDS
-from tangy_hw.robot_child import LONGEST_LINE
 from tangy_hw.robot_link import CHILD, RobotLink
 from tangy_hw.stopping import BrokenOff
 from tangy_tui.live.bench import Bench

@@ -1,0 +1,51 @@
+"""The robot process's end of its pipes to the program: lines come in, and answers go out."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from typing import Any
+
+LONGEST_LINE = 1 << 22
+MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
+LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
+END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
+
+
+async def open_lines() -> tuple[asyncio.StreamReader, asyncio.ReadTransport]:
+    """Return what the program says, and the pipe it comes by."""
+    reader = asyncio.StreamReader(limit=LONGEST_LINE)
+    pipe, _ = await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
+    )
+    return reader, pipe
+
+
+async def end_with(program: int, lines: asyncio.StreamReader) -> None:
+    """End once the program has ended, whatever is waited for; first let what it does be stopped."""
+    while os.getppid() == program and not lines.at_eof():  # noqa: ASYNC110 - nobody tells
+        await asyncio.sleep(LOOK_SECONDS)
+    await asyncio.sleep(END_SECONDS)
+    os._exit(1)
+
+
+class Answers(asyncio.Protocol):
+    """Lines to the program; where it takes none, beats are left out and nothing waits."""
+
+    transport: asyncio.WriteTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take what is written to."""
+        assert isinstance(transport, asyncio.WriteTransport)  # noqa: S101 - it is a pipe
+        self.transport = transport
+
+    def write(self, answer: dict[str, Any]) -> None:
+        """Write a line."""
+        transport = self.transport
+        if transport is None or transport.is_closing():
+            return
+        if "beat" in answer and transport.get_write_buffer_size() > MOST_UNREAD:
+            return
+        transport.write(json.dumps(answer, separators=(",", ":")).encode() + b"\n")

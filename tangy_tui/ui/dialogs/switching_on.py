@@ -1,0 +1,78 @@
+"""What is shown while a robot is being switched on, which takes seconds and can be called off."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.widgets import Static
+
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.messages import Stop
+
+TELLS = "Its devices are being started. It stands still until the game begins."
+CALLED_OFF = "It is being switched off again."
+
+
+class SwitchingOnDialog(Dialog[None]):
+    """Stays until the robot is on, or off again. Esc, STOP, and leaving the program call it off."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "call_off", "Leave it off")]
+    HELP = "Wait until the robot is switched on, or press esc to leave it off."
+
+    def __init__(self, title: str, call_off: Callable[[], None]) -> None:
+        """Make it.
+
+        Args:
+            title: which robot it is.
+            call_off: is called when somebody wants it left off, perhaps more than once.
+        """
+        super().__init__(None)
+        self._title = clean(title)
+        self._call_off = call_off
+        self._called_off = False
+        self._shown = asyncio.Event()
+
+    def compose(self) -> ComposeResult:
+        """Lay out what goes on, and the key."""
+        yield Static(self._text(), id="switching-on", classes="box")
+
+    def on_mount(self) -> None:
+        """Take note when this can be read."""
+        self.call_after_refresh(self._shown.set)
+
+    async def shown(self) -> None:
+        """Wait until this can be read, and keys are heard."""
+        await self._shown.wait()
+
+    def over(self) -> None:
+        """Go: the robot is on, or off again."""
+        if self not in self.app.screen_stack:
+            return
+        while self.app.screen is not self:  # somebody may read the help
+            self.app.pop_screen()
+        self.answer(None)
+
+    def action_call_off(self) -> None:
+        """Leave the robot off."""
+        self._call_off()
+        self._called_off = True
+        for text in self.query(Static):
+            text.update(self._text())
+
+    def on_stop(self, message: Stop) -> None:
+        """Take STOP for it."""
+        self.action_call_off()
+
+    def _text(self) -> Content:
+        head = (f"Switching {self._title} on ...", "bold")
+        if self._called_off:
+            return Content.assemble(head, "\n\n", CALLED_OFF)
+        return Content.assemble(
+            head, "\n\n", TELLS, "\n\n", ("ESC", "$success bold"), "  leave it off"
+        )

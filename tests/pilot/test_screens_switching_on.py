@@ -1,0 +1,134 @@
+"""While a robot is being switched on a dialog says so, and every way out calls it off."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from textual.app import App
+
+from tangy_hw.cancellation import Cancellation
+from tangy_hw.devices import DeviceError
+from tangy_hw.world import LiveWorld
+from tangy_tui.house import House
+from tangy_tui.learning.policy import Policy
+from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
+from tangy_tui.ui.live_games import play_live
+from tangy_tui.ui.program import Program
+from tangy_tui.ui.screens.help import HelpScreen
+from tangy_tui.ui.screens.home import HomeScreen
+from tangy_tui.ui.screens.live import LiveScreen
+from tests.pilot.conftest import Run, StillClock, TangyPilot
+from tests.pilot.live_games import HeldLink, live_world, paused_after, until
+
+
+class Robot:
+    """A robot whose devices answer when they are let."""
+
+    def __init__(self, house: House, wrong: str = "") -> None:
+        self.did: list[str] = []
+        self.answers = threading.Event()
+        self.link = HeldLink()
+        self._house = house
+        self._wrong = wrong
+
+    @contextmanager
+    def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        self.did.append("begins")
+        cancellation.register(self.answers.set)
+        try:
+            assert self.answers.wait(20)
+            cancellation.check()
+            if self._wrong:
+                raise DeviceError(self._wrong)
+            self.did.append("is on")
+            yield live_world(self._house, self.link)
+        finally:
+            self.did.append("is off")
+
+
+def program(house: House, policy: Policy, robot: Robot) -> Program:
+    async def start(program: Program) -> None:
+        await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
+        robot.did.append("over")
+
+    return Program(house, start, clock=StillClock())
+
+
+async def switching(pilot: TangyPilot, robot: Robot) -> None:
+    await until(pilot, lambda: "Switching Tangy on" in pilot.text() and robot.did == ["begins"])
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
+async def test_it_says_what_goes_on_and_how_to_leave_it_off(
+    run: Run,
+    house: House,
+    policy: Policy,
+    picture: Callable[[App[Any]], None],
+    size: tuple[int, int],
+) -> None:
+    robot = Robot(house)
+    async with run(app=program(house, policy, robot), size=size) as pilot:
+        await switching(pilot, robot)
+        picture(pilot.app)
+
+
+@pytest.mark.parametrize("key", ["escape", "ctrl+x"])
+async def test_esc_and_stop_leave_it_off(run: Run, house: House, policy: Policy, key: str) -> None:
+    robot = Robot(house)
+    async with run(app=program(house, policy, robot)) as pilot:
+        await switching(pilot, robot)
+        await pilot.press(key)
+        await until(pilot, lambda: robot.did == ["begins", "is off", "over"])
+        assert isinstance(pilot.app.screen, HomeScreen)
+
+
+@pytest.mark.parametrize("leave", [lambda p: p.leave(), lambda p: p.exit()], ids=["left", "ended"])
+async def test_leaving_the_program_leaves_it_off(
+    run: Run, house: House, policy: Policy, leave: Callable[[Program], None]
+) -> None:
+    robot, app = Robot(house), None
+    app = program(house, policy, robot)
+    async with run(app=app) as pilot:
+        await switching(pilot, robot)
+        leave(app)
+        await until(pilot, lambda: robot.did[:2] == ["begins", "is off"])
+
+
+async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
+    run: Run, house: House, policy: Policy
+) -> None:
+    """A window that takes its time to come up is left before anything can be read in it."""
+    robot = Robot(house)
+    app = program(house, policy, robot)
+    async with run(app=app) as pilot:
+        await until(pilot, lambda: isinstance(app.screen, SwitchingOnDialog))
+        pilot.type("escape")
+        await until(pilot, lambda: robot.did == ["over"])
+
+
+async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
+    run: Run, house: House, policy: Policy
+) -> None:
+    robot = Robot(house)
+    async with run(app=program(house, policy, robot)) as pilot:
+        await switching(pilot, robot)
+        await pilot.press("question_mark")
+        await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+        robot.answers.set()
+        await until(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+        assert not any(isinstance(s, SwitchingOnDialog) for s in pilot.app.screen_stack)
+        await paused_after(pilot, robot.link, 1)
+
+
+async def test_what_is_wrong_with_the_robot_is_said(run: Run, house: House, policy: Policy) -> None:
+    robot = Robot(house, wrong="The arms have no cable.")
+    robot.answers.set()
+    async with run(app=program(house, policy, robot)) as pilot:
+        await until(pilot, lambda: "The arms have no cable." in pilot.text())
+        assert robot.did == ["begins", "is off"]
+        await pilot.press("enter")
+        await until(pilot, lambda: robot.did[-1] == "over")

@@ -1,0 +1,176 @@
+"""A robot that is being switched on can be called off, from a screen and by a signal."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import cast
+
+import pytest
+
+from tangy_hw.cancellation import Cancellation, Cancelled
+from tangy_hw.world import LiveWorld
+from tangy_tui.live import bench
+from tangy_tui.live.bench import Bench
+from tangy_tui.live.switching_on import SwitchingOn, switched_on
+
+WORLD = cast(LiveWorld, object())
+
+
+class Robot:
+    """Opens a robot that answers when it is let, and notes what becomes of it."""
+
+    def __init__(self) -> None:
+        self.did: list[str] = []
+        self.begun, self.answers = threading.Event(), threading.Event()
+
+    @contextmanager
+    def __call__(self, stepped: bool, cancellation: Cancellation) -> Iterator[LiveWorld]:
+        self.did.append("begins")
+        cancellation.register(self.answers.set)
+        self.begun.set()
+        try:
+            assert self.answers.wait(20)
+            cancellation.check()
+            self.did.append("is on")
+            yield WORLD
+        finally:
+            self.did.append("is off")
+
+
+def test_one_that_answers_is_on_until_it_is_closed() -> None:
+    robot = Robot()
+    robot.answers.set()
+    one = SwitchingOn(robot)
+    assert one.open() is WORLD
+    one.cancel()
+    assert robot.did == ["begins", "is on"]
+    one.close()
+    one.close()
+    assert robot.did == ["begins", "is on", "is off"]
+
+
+def test_one_that_is_called_off_meanwhile_is_off() -> None:
+    robot = Robot()
+    one = SwitchingOn(robot)
+
+    def call_off() -> None:
+        if robot.begun.wait(20):
+            one.cancel()
+
+    caller = threading.Thread(target=call_off)
+    caller.start()
+    with pytest.raises(Cancelled):
+        one.open()
+    caller.join()
+    assert robot.did == ["begins", "is off"]
+    with pytest.raises(Cancelled):
+        one.open()
+    assert robot.did == ["begins", "is off"]
+
+
+@contextmanager
+def signalled(number: int, when: Callable[[], object]) -> Iterator[None]:
+    """Send this program a signal, once."""
+    this = threading.main_thread().ident
+    assert this is not None
+
+    def send() -> None:
+        if when():
+            signal.pthread_kill(this, number)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    try:
+        yield
+    finally:
+        sender.join()
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGHUP, 129), (signal.SIGTERM, 143)])
+def test_a_signal_calls_it_off_without_a_screen(number: int, status: int) -> None:
+    robot = Robot()
+    before = signal.getsignal(number)
+    with (
+        pytest.raises(SystemExit) as ended,
+        signalled(number, lambda: robot.begun.wait(20)),
+        switched_on(robot, stepped=True),
+    ):
+        pytest.fail("it was switched on")
+    assert ended.value.code == status
+    assert robot.did == ["begins", "is off"]
+    assert signal.getsignal(number) == before
+
+
+def test_ctrl_c_calls_it_off_without_a_screen() -> None:
+    robot = Robot()
+    with (
+        pytest.raises(KeyboardInterrupt),
+        signalled(signal.SIGINT, lambda: robot.begun.wait(20)),
+        switched_on(robot, stepped=True),
+    ):
+        pytest.fail("it was switched on")
+    assert robot.did == ["begins", "is off"]
+
+
+def test_a_signal_in_a_game_switches_the_robot_off() -> None:
+    robot = Robot()
+    robot.answers.set()
+    playing = threading.Event()
+    with (
+        pytest.raises(SystemExit),
+        signalled(signal.SIGHUP, lambda: playing.wait(20)),
+        switched_on(robot, stepped=True) as world,
+    ):
+        assert world is WORLD
+        playing.set()
+        threading.Event().wait(20)
+        pytest.fail("nothing came of it")
+    assert robot.did == ["begins", "is on", "is off"]
+
+
+def test_a_hang_up_that_is_to_be_ignored_is_ignored() -> None:
+    """As `nohup tangy live --bench --headless` has it."""
+    robot = Robot()
+    robot.answers.set()
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with switched_on(robot, stepped=True):
+            assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "CHILD", (sys.executable, "-c", "import time; time.sleep(60)"))
+    cancellation = Cancellation()
+    caller = threading.Timer(0.2, cancellation.cancel)
+    caller.start()
+    began = time.monotonic()
+    with pytest.raises(Cancelled):
+        Bench(
+            seed=1,
+            people={},
+            stepped=True,
+            activity="bingo",
+            robot="/dev/null",
+            cancellation=cancellation,
+        )
+    assert time.monotonic() - began < bench.END_SECONDS  # it is not waited for
+    caller.join()
+
+
+def test_no_bench_is_started_once_it_was_called_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[object] = []
+    monkeypatch.setattr("subprocess.Popen", lambda *a, **b: started.append(a))
+    cancellation = Cancellation()
+    cancellation.cancel()
+    with pytest.raises(Cancelled):
+        Bench(
+            seed=1, people={}, stepped=True, activity="bingo", robot="", cancellation=cancellation
+        )
+    assert started == []

@@ -1,0 +1,154 @@
+"""A robot that is being switched on is left off however the program ends, and nothing runs on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from tests.support.processes import Family
+from tests.support.terminal import TANGY, Terminal
+
+ENDS = 2.0  # s in which all is over, on a machine that has a processor to spare
+PATIENCE = 60.0
+PROFILE = Path(__file__).parents[2] / "profiles/tangy_profiles/robots/tangy.toml"
+
+BENCH, ROBOT, CAMERA = "tangy_sim.bench", "tangy_hw.robot_child", "camera_child"
+STAGES = (BENCH, ROBOT, CAMERA)
+"""What is started one after the other."""
+
+ENDINGS: dict[str, tuple[Callable[[Terminal], object], int]] = {
+    "HUP": (lambda t: t.process.send_signal(signal.SIGHUP), 129),
+    "TERM": (lambda t: t.process.send_signal(signal.SIGTERM), 143),
+    "ctrl-c": (lambda t: t.type("\x03"), 0),
+    "esc": (lambda t: t.type("\x1b"), 0),
+    "closed": (lambda t: t.close(), 129),
+}
+"""How a program on a terminal ends, and its exit status then."""
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
+
+
+@pytest.fixture
+def family() -> Iterator[Family]:
+    family = Family()
+    yield family
+    for pid in family.there():
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+
+
+def runs(what: str) -> Callable[[dict[int, str]], bool]:
+    return lambda there: any(what in command for command in there.values())
+
+
+def nothing(there: dict[int, str]) -> bool:
+    return not there
+
+
+def assert_all_over(family: Family, started: set[int], meanwhile: Callable[[], object]) -> None:
+    """Wait until nothing runs; nothing may have been started meanwhile, but by who was on it."""
+    took = family.seconds_until(nothing, PATIENCE, meanwhile)
+    late = {pid: family.seen[pid] for pid in family.seen.keys() - started}
+    assert not [command for command in late.values() if BENCH in command or ROBOT in command]
+    assert took <= ENDS * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+@pytest.mark.parametrize("stage", STAGES)
+def test_on_a_terminal_it_is_left_off(
+    folder: Path, family: Family, stage: str, ending: str
+) -> None:
+    command = [TANGY, "live", "--bench", "--data", str(folder)]
+    terminal = Terminal(command, environment=family.environment)
+    end, status = ENDINGS[ending]
+
+    try:
+        family.seconds_until(runs(stage), PATIENCE, lambda: terminal.read(0.0))
+        started = set(family.there())
+        end(terminal)
+        read = (lambda: None) if ending == "closed" else (lambda: terminal.read(0.0))
+        assert_all_over(family, started, read)
+        assert terminal.process.wait(1) == status
+    finally:
+        terminal.end()
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGHUP, 129), (signal.SIGTERM, 143), (signal.SIGINT, 130)]
+)
+@pytest.mark.parametrize("stage", STAGES)
+def test_without_a_screen_it_is_left_off(
+    folder: Path, family: Family, stage: str, number: int, status: int
+) -> None:
+    with subprocess.Popen(  # noqa: S603
+        [TANGY, "live", "--bench", "--json", "--data", str(folder)],
+        env={**os.environ, **family.environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    ) as program:
+        family.seconds_until(runs(stage), PATIENCE, lambda: None)
+        started = set(family.there())
+        program.send_signal(number)
+        assert_all_over(family, started, lambda: None)
+        out, err = program.communicate()
+        assert (program.returncode, out) == (status, b"")
+        assert b"Traceback" not in err
+
+
+@pytest.fixture
+def deaf() -> Iterator[int]:
+    """A port that takes connections and never says a word."""
+    with socket.create_server(("127.0.0.1", 0), backlog=64) as server:
+        yield int(server.getsockname()[1])
+
+
+@pytest.mark.parametrize("ending", ["HUP", "esc"])
+def test_a_robot_whose_devices_do_not_answer_is_left_off(
+    folder: Path, tmp_path: Path, family: Family, deaf: int, ending: str
+) -> None:
+    drivers = [
+        "[drivers]",
+        *(
+            f'{name} = {{ kind = "rosbridge", at = "ws://127.0.0.1:{deaf}" }}'
+            for name in ("base", "stop_button", "arms", "voice")
+        ),
+        f'laser = {{ kind = "scip", at = "tcp://127.0.0.1:{deaf}" }}',
+    ]
+    camera = f'source = "http://127.0.0.1:{deaf}/head"'
+    text = PROFILE.read_text().replace('# source = "/dev/video0"', camera)
+    file = tmp_path / "robot.toml"
+    file.write_text(f"{text}\n" + "\n".join(drivers) + "\n")
+    command = [TANGY, "live", "--robot", str(file), "--data", str(folder)]
+    terminal = Terminal(command, environment=family.environment)
+    end, status = ENDINGS[ending]
+    try:
+        family.seconds_until(runs(CAMERA), PATIENCE, lambda: terminal.read(0.0))
+        terminal.settle(0.2)
+        started = set(family.there())
+        end(terminal)
+        assert_all_over(family, started, lambda: terminal.read(0.0))
+        assert terminal.process.wait(1) == status
+    finally:
+        terminal.end()
+
+
+def test_what_the_program_had_started_ends_by_itself_where_that_was_killed(
+    folder: Path, family: Family
+) -> None:
+    command = [TANGY, "live", "--bench", "--data", str(folder)]
+    terminal = Terminal(command, environment=family.environment)
+    try:
+        family.seconds_until(runs(ROBOT), PATIENCE, lambda: terminal.read(0.0))
+        terminal.process.kill()
+        family.seconds_until(nothing, PATIENCE, lambda: None)
+    finally:
+        terminal.end()
