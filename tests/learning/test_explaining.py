@@ -20,7 +20,7 @@ from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
 from tangy_tui.learning.explaining import explain, foresee, shown_words, why_words
 from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
-from tangy_tui.learning.policies import keep_policy
+from tangy_tui.learning.policies import keep_policy, kept_policies
 from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
 
 Demonstrate = Callable[[str, int, int], Demonstration]
@@ -216,9 +216,18 @@ def test_what_cannot_be_found_is_said_with_what_there_is(
         find_policy(two_teachers, activity, wanted)
 
 
-def test_a_house_opens_all_of_it_by_name(tmp_path: Path) -> None:
-    house = House(tmp_path / "data")
+def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
+    house = House(taught, write=False)
     try:
-        assert choices(house.store, house.activity) == []
+        store, activity = house.store, house.activity
+        (kept,) = kept_policies(store, activity.name)
+        assert choices(store, activity) == [kept["name"], "scripted"]
+        found = {name: find_policy(store, activity, name) for name in choices(store, activity)}
+        assert [notices for _, notices in found.values()] == [[], []]
+        learnt, shown = (policy for policy, _ in found.values())
+        assert (learnt.name, learnt.digest) == (kept["name"], kept["digest"])
+        assert (shown.name, len(shown.demonstrations)) == ("scripted", 3)
+        assert all(row.same for row in compare(activity, learnt, shown))
+        assert learnt.exact(activity)
     finally:
         house.close()

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.fault_file import load_faults
-from tangy_profiles.faults import FaultBook
+from tangy_profiles.faults import Condition, FaultBook, FaultRule
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import Contact, load_robot
 from tangy_sim.body import WELL, readings
 from tangy_sim.injection import KINDS
 from tangy_tui.learning.effects import Effects, Mismatch
 from tangy_tui.monitoring.detection import Detector, symptoms
-from tangy_tui.monitoring.diagnosis import diagnose
+from tangy_tui.monitoring.diagnosis import diagnose, narrows
 from tangy_tui.monitoring.telling import evidence_words, whom_to_call
 
 ROBOT = load_robot()
@@ -125,3 +125,152 @@ def test_a_robots_file_names_the_expert(tmp_path: Path) -> None:
     file.write_text(f'{shipped}\n[expert]\nnmae = "Anna Berg"\n', encoding="utf-8")
     with pytest.raises(ProfileError, match="expert"):
         load_robot(str(file))
+
+
+# A book of our own says what is promised of any rules.
+
+
+def rule(code: str, *when: Condition, **more: object) -> FaultRule:
+    told = {"criticality": "non-critical", "recovery": ("continue",), "console": "", "advice": ()}
+    return FaultRule(code, code, **{**told, "when": (when,), **more})  # type: ignore[arg-type]
+
+
+def book(*rules: FaultRule) -> FaultBook:
+    return FaultBook((*rules, rule("unexplained", recovery=("teacher",), fallback=True)), "test")
+
+
+FAILED = Condition("base.state", "is", "ERROR")
+PLACE = {"mismatch.robot's place": "front", "mismatch.card": "bingo"}
+FEWER = {"mismatch.others' requests": "fewer"}
+
+
+@pytest.mark.parametrize(
+    ("critical", "completed", "left"),
+    [
+        (True, False, set(FEWER)),
+        (True, True, {*PLACE, *FEWER}),
+        (False, False, {*PLACE, *FEWER}),
+    ],
+    ids=["broken off by it", "carried out all the same", "not critical"],
+)
+def test_nothing_was_to_be_expected_of_what_a_critical_fault_broke_off_but_of_others(
+    critical: bool, completed: bool, left: set[str]
+) -> None:
+    mine = rule("dead", FAILED, criticality="critical" if critical else "non-critical")
+    found: dict[str, Fact] = {
+        "base.state": "ERROR",
+        **PLACE,
+        **FEWER,
+        "behaviour.completed": completed,
+    }
+    told = {d.rule.code: d for d in diagnose(book(mine), found)}
+    assert set(told) == {"dead", "unexplained"}
+    assert set(told["unexplained"].evidence) == left
+    assert "mismatch.card" not in told["dead"].evidence
+
+
+def test_what_a_critical_fault_broke_off_alone_is_one_fault() -> None:
+    mine = rule("dead", FAILED, criticality="critical")
+    found: dict[str, Fact] = {"base.state": "ERROR", **PLACE, "behaviour.completed": False}
+    assert diagnosed(found, book(mine)) == ["dead"]
+
+
+def test_what_a_critical_fault_leaves_for_later_rules_is_theirs() -> None:
+    first = rule("dead", FAILED, criticality="critical")
+    later = rule("left", Condition("mismatch.others' requests", "is", "fewer"))
+    found: dict[str, Fact] = {"base.state": "ERROR", **PLACE, **FEWER, "behaviour.completed": False}
+    assert sorted(diagnosed(found, book(first, later))) == ["dead", "left"]
+
+
+def test_the_most_urgent_comes_first_and_else_the_order_of_the_book() -> None:
+    calm, asks = rule("calm", FAILED), rule("asks", Condition("voice.state", "is", "ERROR"))
+    stops = rule("stops", Condition("link.state", "is", "ERROR"), recovery=("expert",))
+    again = rule("again", Condition("arms.state", "is", "ERROR"))
+    found: dict[str, Fact] = dict.fromkeys(
+        ("base.state", "voice.state", "link.state", "arms.state"), "ERROR"
+    )
+    found["screen.state"] = "STALE"
+    assert diagnosed(found, book(calm, asks, stops, again)) == [
+        "stops",
+        "unexplained",
+        "calm",
+        "asks",
+        "again",
+    ]
+
+
+def test_what_an_earlier_rule_explained_is_no_further_fault() -> None:
+    first = rule("first", FAILED, also=("voice.state",))
+    second = rule("second", Condition("voice.state", "is", "ERROR"))
+    found: dict[str, Fact] = {"base.state": "ERROR", "voice.state": "ERROR"}
+    assert diagnosed(found, book(first, second)) == ["first"]
+    assert diagnosed({"voice.state": "ERROR"}, book(first, second)) == ["second"]
+
+
+def test_evidence_is_what_was_recognised_with_the_age_of_the_device() -> None:
+    found: dict[str, Fact] = {
+        "base.state": "ERROR",
+        "base.age": 2.5,
+        "voice.age": 9.0,
+        "base.speed": 1.0,
+    }
+    (told,) = diagnose(book(rule("dead", FAILED)), found)
+    assert told.evidence == {"base.state": "ERROR", "base.age": 2.5}
+    assert told.beside == frozenset()
+
+
+BELOW, AT_LEAST = Condition("laser.fit", "below", 0.8), Condition("laser.fit", "at_least", 0.8)
+STALE, NOT_STALE = Condition("link.state", "is", "STALE"), Condition("link.state", "not", "STALE")
+
+
+@pytest.mark.parametrize(
+    ("mine", "others", "beside"),
+    [
+        ((FAILED, BELOW), (AT_LEAST,), {"laser.fit"}),
+        ((FAILED, AT_LEAST), (BELOW,), {"laser.fit"}),
+        ((FAILED, NOT_STALE), (STALE,), {"link.state"}),
+        ((FAILED, STALE), (NOT_STALE,), {"link.state"}),
+        ((BELOW,), (AT_LEAST,), set()),
+        ((BELOW, NOT_STALE), (AT_LEAST, STALE), set()),
+        ((FAILED, BELOW), (Condition("laser.fit", "at_least", 0.7),), set()),
+        ((FAILED, BELOW), (Condition("laser.near", "at_least", 0.8),), set()),
+        ((FAILED, BELOW), (Condition("laser.fit", "below", 0.8),), set()),
+        ((FAILED, BELOW), (Condition("laser.fit", "above", 0.8),), set()),
+    ],
+)
+def test_a_condition_only_says_which_fault_it_is_not_where_another_rule_has_its_contrary(
+    mine: tuple[Condition, ...], others: tuple[Condition, ...], beside: set[str]
+) -> None:
+    rules = book(rule("mine", *mine), rule("other", *others))
+    assert {condition.key for condition in mine if narrows(condition, mine, rules)} == beside
+    fit = 0.9 if AT_LEAST in mine else 0.5
+    link = "STALE" if STALE in mine else "OK"
+    found: dict[str, Fact] = {"base.state": "ERROR", "laser.fit": fit, "link.state": link}
+    told = {d.rule.code: d for d in diagnose(rules, found)}
+    if "mine" in told:
+        assert told["mine"].beside == beside
+
+
+def test_in_what_company_something_was_seen_makes_no_fault_of_what_is_explained() -> None:
+    first = rule("first", FAILED, also=("voice.state",))
+    drawn = Condition("behaviour.effect", "is", "draw")
+    second = rule("second", Condition("voice.state", "is", "ERROR"), drawn)
+    found: dict[str, Fact] = {
+        "base.state": "ERROR",
+        "voice.state": "ERROR",
+        "behaviour.effect": "draw",
+    }
+    assert diagnosed(found, book(first, second)) == ["first"]
+
+
+def test_a_mismatch_belongs_to_one_fault_only_the_first_that_explains_it() -> None:
+    first = rule("first", FAILED, also=("mismatch.card",))
+    second = rule("second", Condition("voice.state", "is", "ERROR"), also=("mismatch.card",))
+    card = Mismatch("mark numbers", "card", (), "bingo")
+    found: dict[str, Fact] = {
+        "base.state": "ERROR",
+        "voice.state": "ERROR",
+        "mismatch.card": "bingo",
+    }
+    told = {d.rule.code: d.mismatches for d in diagnose(book(first, second), found, [card])}
+    assert told == {"first": (card,), "second": ()}

@@ -253,3 +253,18 @@ def test_two_counts_since_the_same_behaviour_are_kept_apart(activity: Activity) 
 def test_nobody_of_an_unknown_id_has_a_state() -> None:
     with pytest.raises(KeyError):
         begun().state().user("user9")
+
+
+def test_what_must_come_before_is_begun_only_when_all_of_it_was_done(activity: Activity) -> None:
+    rules = (
+        StageRule("start", "before", "greeting"),
+        StageRule("warm up", "before", "joke"),
+        StageRule("facilitate", "otherwise"),
+    )
+    tracker = Tracker(replace(activity, stage_rules=rules), IDS)
+    assert not tracker.begun()
+    told = []
+    for name in ("greeting", "call number", "joke"):
+        tracker.executed(activity.behaviours[name])
+        told.append((tracker.begun(), tracker.state().stage))
+    assert told == [(False, "warm up"), (False, "warm up"), (True, "facilitate")]

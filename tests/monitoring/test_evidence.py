@@ -1,0 +1,137 @@
+"""What the execution of a behaviour gives as evidence: who refused how often, what led nowhere."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_profiles.activity import load_activity
+from tangy_profiles.faults import Evidence
+from tangy_profiles.robot import load_robot
+from tangy_profiles.state import ActivityState, Outcome, Response, Situation, UserState
+from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.learning.effects import Effects
+from tangy_tui.learning.policy import Decision
+from tangy_tui.monitoring.detection import Detector
+
+BINGO = load_activity("bingo")
+ASKED = UserState("user1", "missing numbers", "AR")
+IDLE = UserState("user2", "occluded", "ANR")
+HELP = ActivityState(7, Situation("help", "AR", "missing numbers"), "user1", "user1", (ASKED, IDLE))
+QUIET = ActivityState(
+    7,
+    Situation("facilitate", "ANR", "occluded"),
+    "front",
+    None,
+    (UserState("user1", "occluded", "ANR"), IDLE),
+)
+SURE = Decision("mark numbers", 1.0, (), 1)
+
+
+@pytest.fixture
+def detector() -> Detector:
+    return Detector(BINGO, load_robot(), Effects({}))
+
+
+def acted(
+    behaviour: str,
+    state: ActivityState,
+    response: Response | None = None,
+    *,
+    changed: bool = False,
+    numbers: tuple[int, ...] = (),
+    completed: bool = True,
+) -> Acted:
+    """Make a step: a behaviour in a state, and what came of it."""
+    after = state._replace(step=state.step + 1)
+    if changed:
+        after = after._replace(place="front" if state.place != "front" else "user2")
+    action = BINGO.action(BINGO.behaviours[behaviour], state.attended, None)
+    outcome = Outcome(completed, 4.0, numbers, response)
+    return Acted(1, state, SURE, None, action, outcome, after, "", "", True)
+
+
+def did(person: str, *, followed: bool, complied: bool = False) -> Response:
+    return Response(person, "praise", followed, complied, 3.0)
+
+
+def evidence(detector: Detector, step: Acted) -> Evidence:
+    return detector.compare(step)[0]
+
+
+def test_refusals_are_counted_in_a_row_and_end_with_what_is_done(detector: Detector) -> None:
+    no = acted("mark numbers", HELP, did("user1", followed=False), changed=True)
+    yes = acted("mark numbers", HELP, did("user1", followed=True, complied=True), changed=True)
+    counted = [evidence(detector, step).get("person.refusals") for step in (no, no, yes, no)]
+    assert counted == [1, 2, None, 1]
+
+
+def test_a_refusal_is_told_of_whoever_is_attended_and_of_nobody_else(detector: Detector) -> None:
+    detector.compare(acted("mark numbers", HELP, did("user1", followed=False), changed=True))
+    users = (UserState("user1", "occluded", "ANR"), UserState("user2", "occluded", "AR"))
+    other = HELP._replace(attended="user2", place="user2", users=users)
+    for step in (acted("navigate to user", other), acted("joke", QUIET)):
+        assert "person.refusals" not in evidence(detector, step)
+    again = acted("navigate to user", HELP, changed=True)
+    assert evidence(detector, again).get("person.refusals") == 1
+
+
+def test_a_step_after_which_nothing_is_amiss_gives_no_evidence(detector: Detector) -> None:
+    assert evidence(detector, acted("navigate to user", HELP, changed=True)) == {}
+
+
+def test_what_changes_nothing_is_counted_until_something_changes(detector: Detector) -> None:
+    idle, moved = acted("joke", QUIET), acted("joke", QUIET, changed=True)
+    steps = (idle, idle, idle, moved, idle)
+    counted = [evidence(detector, step).get("visit.fruitless") for step in steps]
+    assert counted == [1, 2, 3, None, 1]
+
+
+def test_a_call_leads_on_although_no_state_changes(detector: Detector) -> None:
+    called = acted("call number", QUIET, numbers=(5,))
+    assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1
+    assert "visit.fruitless" not in evidence(detector, called)
+    assert evidence(detector, acted("joke", QUIET))["visit.fruitless"] == 1, "it begins anew"
+
+
+def test_numbers_that_somebody_was_asked_about_do_not_lead_on(detector: Detector) -> None:
+    asked = acted("mark numbers", HELP, did("user1", followed=True), numbers=(5, 9))
+    assert evidence(detector, asked)["visit.fruitless"] == 1
+
+
+@pytest.mark.parametrize(
+    ("response", "word"),
+    [
+        (None, "none"),
+        (did("user1", followed=False), "not followed"),
+        (did("user1", followed=True, complied=True), "complied"),
+        (did("user1", followed=True), "late"),
+    ],
+)
+def test_what_the_person_did_is_said_in_a_word(
+    detector: Detector, response: Response | None, word: str
+) -> None:
+    behaviour = "mark numbers" if response is not None else "navigate to user"
+    told = evidence(detector, acted(behaviour, HELP, response, completed=response is not None))
+    assert told["behaviour.response"] == word
+    assert told["behaviour.name"] == behaviour
+    assert told["behaviour.effect"] == BINGO.behaviours[behaviour].effect
+    assert told["behaviour.completed"] is (response is not None)
+
+
+def test_a_new_game_begins_without_the_counts_of_the_last(detector: Detector) -> None:
+    refused = acted("mark numbers", HELP, did("user1", followed=False))
+    first = evidence(detector, refused)
+    assert (first["person.refusals"], first["visit.fruitless"]) == (1, 1)
+    detector.begin()
+    assert evidence(detector, refused) == first
+
+
+def test_forgiving_somebody_ends_their_count_and_no_other(detector: Detector) -> None:
+    one = acted("mark numbers", HELP, did("user1", followed=False), changed=True)
+    users = (UserState("user1", "occluded", "ANR"), UserState("user2", "missing numbers", "AR"))
+    other = HELP._replace(attended="user2", place="user2", users=users)
+    detector.compare(one)
+    detector.compare(acted("mark numbers", other, did("user2", followed=False), changed=True))
+    detector.forgive("user1")
+    detector.forgive(None)
+    assert (detector.refusals("user1"), detector.refusals("user2")) == (0, 1)
