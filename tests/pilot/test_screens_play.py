@@ -150,6 +150,22 @@ async def test_panels_are_chosen_by_number_where_there_is_no_room(
             assert f" {title} " in screen_text(pilot.app)
 
 
+@pytest.mark.parametrize("size", [(80, 24), (80, 20)])
+async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
+    run: Run, house: House, policy: Policy, size: tuple[int, int]
+) -> None:
+    async with run(app=playing(house, policy), size=size) as pilot:
+        screen = await pause_at_once(pilot)
+        room, keys = screen.query_one("#room"), screen.query_one("#keys")
+        beside = room.region.height
+        await pilot.press("1")
+        await pilot.pause()
+        assert room.region.bottom == keys.region.y
+        await pilot.press("2")
+        await pilot.pause()
+        assert room.region.height == beside
+
+
 async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     run: Run, house: House
 ) -> None:

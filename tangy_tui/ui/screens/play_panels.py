@@ -83,6 +83,7 @@ class PlayPanels(TangyScreen[Tally]):
         for id in CHOOSABLE:
             self.query_one(f"#{id}").set_class(id == name, "-chosen")
         self.set_class(name in ON_THE_LEFT, "-left")
+        self.set_class(name == "room", "-room")
         if name != "room":
             chosen = self.query_one(f"#{name}")
             chosen.focus()
