@@ -23,7 +23,7 @@ pytestmark = [
     pytest.mark.xdist_group("chromium"),
 ]
 
-UNPAIRED = "(document.getElementById('pair') || {}).offsetHeight > 0"
+UNPAIRED = "((document.body || {}).className || '').indexOf('unpaired') >= 0"
 CALL = Picture("Next number", "B-12", ("N-40", "O-75", "I-17", "G-52", "B-3"))
 SMALL, LARGE = (800, 480), (1280, 800)
 LETTER = 0.35
@@ -258,6 +258,7 @@ async def test_the_question_for_the_code_is_all_on_the_screen(
     await tab.until(UNPAIRED)
     await enter(tab, "123")
     await tab.until("document.getElementById('wrong').innerText")
+    assert await tab.value("document.getElementById('main').offsetHeight") == 0
     for element in ("code", "wrong", "pair"):
         box = f"document.getElementById('{element}').getBoundingClientRect()"
         assert await tab.value(f"{box}.bottom <= innerHeight && {box}.right <= innerWidth")
