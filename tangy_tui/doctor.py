@@ -8,6 +8,7 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -86,7 +87,11 @@ def examine_robot(
     from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.trial import try_robot
 
-    pairing = {} if folder is None else keep_pairing(folder).to_json()
+    pairing = {}
+    if folder is not None and any(driver.kind == "page" for driver in robot.drivers.values()):
+        with suppress(OSError):  # there is something to keep: the code that it tells
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        pairing = keep_pairing(folder).to_json()
 
     def label(device: str) -> str:
         known = robot.devices.get(device)

@@ -99,8 +99,9 @@ class LinkedSensors:
             return OWN_SOURCE
         driver = self._drivers[device]
         kind = str(driver["kind"])
-        at = self._link.screen if kind == PAGE else str(driver.get("at", ""))
-        return f"{kind} {at}".rstrip()
+        if kind == PAGE and self._link.screen:
+            return f"{self._link.screen}, code {self._link.code}"
+        return f"{kind} {driver.get('at', '')}".rstrip()
 
     def sight(self, device: str) -> Sight:
         """Return the state of a camera as it was told last, and how old its picture is now."""

@@ -74,7 +74,7 @@ async def test_staff_see_where_the_robot_is_and_where_it_goes(
 async def test_staff_see_where_tablets_open_the_chest_screen_and_by_which_code(
     run: Run, program: Program, link: HeldLink
 ) -> None:
-    link.tablet = "Chest screen: open http://10.0.0.5:8765/ on the tablet; the code is 1234 5678."
+    link.tablet = "Chest screen: open http://10.0.0.5:8765/ on the tablet; the code is 1234-5678."
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 1)
         assert link.tablet in live(pilot).query_one(LogView).sentences

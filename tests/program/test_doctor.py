@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import socket
+import stat
 from collections.abc import Callable
 from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_hw.drivers.chest_pairing import keep_pairing
 from tangy_hw.sound.arecord import list_microphones
 from tangy_hw.sound.wav import SoundError
 from tangy_profiles import log_file
@@ -166,6 +168,23 @@ def test_a_robots_devices_are_tried_and_what_nothing_drives_is_missing(tmp_path:
     laser = found["Tangy's laser scanner"]
     assert (laser.state, "/dev/no-such-port cannot be opened" in laser.text) == ("broken", True)
     assert found["Tangy's wheels"].state == "missing"
+
+
+def test_the_code_of_the_chest_screen_is_told_and_stays_the_same(tmp_path: Path) -> None:
+    file, folder = tmp_path / "mine.toml", tmp_path / "data"
+    shipped = load_robot().file.read_text(encoding="utf-8")
+    file.write_text(f'{shipped}\n[drivers]\nscreen = {{ kind = "page", port = 0 }}\n')
+    robot, activity = load_robot(str(file)), load_activity("bingo")
+
+    def told() -> Finding:
+        found = examine_robot(robot, activity, {}, 0.1, folder=folder)
+        return next(one for one in found if one.part == "Tangy's chest screen")
+
+    first, second = told(), told()
+    codes = {one.text.partition("the code that pairs it is ")[2] for one in (first, second)}
+    assert codes == {f"{keep_pairing(folder).shown}."}
+    assert first.state == "missing" and "http://127.0.0.1:" in first.text
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
 
 def test_what_was_asked_for_and_is_broken_is_the_exit_status(

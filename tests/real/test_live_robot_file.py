@@ -5,6 +5,7 @@ The robot is a bench that runs beside the program and not under it, as a robot d
 
 from __future__ import annotations
 
+import re
 import signal
 import time
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_sim.bench.tablet import Tablet
 from tangy_tui.live.bench import Bench
 from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
 from tests.support.terminal import TANGY, Terminal
@@ -80,4 +82,30 @@ def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
         assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
     finally:
         terminal.process.send_signal(signal.SIGCONT)
+        terminal.end()
+
+
+UP, DOWN = "\x1b[A", "\x1b[B"
+
+
+def test_a_tablet_is_paired_by_what_the_live_screen_tells(folder: Path, bench: Bench) -> None:
+    terminal = program(bench, folder)
+    told = re.compile(r"(http://[\d.:]+/), code[^\d]+(\d{4}-\d{4})")
+    tablet = None
+    try:
+        if "Is all well now?" in terminal.until(lambda text: "greeting" in text or "well" in text):
+            terminal.settle()
+            terminal.type("y")
+        terminal.until("No screen")  # nobody has paired a tablet yet
+        terminal.type("7")
+        terminal.until("chest screen")
+        terminal.type(DOWN * 9 + UP)  # from the last one up
+        found = told.search(terminal.until(lambda text: told.search(text) is not None))
+        assert found is not None
+        tablet = Tablet(found[1], found[2])
+        wait_until(lambda: bool(tablet.picture.get("number")), "a number is shown")
+        assert (folder / "tablets.json").exists()
+    finally:
+        if tablet is not None:
+            tablet.close()
         terminal.end()

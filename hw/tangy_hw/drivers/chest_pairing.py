@@ -44,8 +44,8 @@ class Pairing:
 
     @property
     def shown(self) -> str:
-        """The code as people read it: in two groups."""
-        return f"{self.code[: DIGITS // 2]} {self.code[DIGITS // 2 :]}"
+        """The code as people read it: in two groups, that no line breaks between."""
+        return f"{self.code[: DIGITS // 2]}-{self.code[DIGITS // 2 :]}"
 
     @property
     def cookie(self) -> str:
