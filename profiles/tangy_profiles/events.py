@@ -11,6 +11,7 @@ from typing import Any
 
 from tangy_profiles.persuading import LEAST_KEPT, METHODS, PERIODS, PRIORS
 from tangy_profiles.shapes import (
+    LARGEST,
     Check,
     Fields,
     count,
@@ -43,6 +44,7 @@ MOVES = (
     "accepted",
     "cleared",
     "ended",
+    "left",
     "given up",
     "left open",
 )
@@ -61,10 +63,10 @@ def _one_group(state: Mapping[str, Any]) -> str:
     return "" if there else "has somebody 'attended' who is not among the 'users'"
 
 
-def _state(closed: bool) -> Fields:
+def _state(closed: bool) -> Check:
     """A joint state; the first games were logged without who was `closed`."""
     told: Mapping[str, Check] = {"closed": maybe(text)}
-    return Fields(
+    closely = Fields(
         {
             "step": count,
             "situation": _SITUATION,
@@ -76,6 +78,33 @@ def _state(closed: bool) -> Fields:
         {} if closed else told,
         whole=_one_group,
     )
+    return lambda value: "" if _plainly_a_state(value) else closely(value)
+
+
+def _plainly_a_state(value: Any) -> bool:
+    """Say at a glance that a state is as it should be: most of a log are states."""
+    try:
+        stage, request, activity = value["situation"]
+        ids = []
+        for user in value["users"]:
+            id, doing, asks = user
+            if type(user) is not list or type(doing) is not str or asks not in ("ANR", "AR"):
+                return False
+            ids.append(id)
+        attended, closed = value["attended"], value["closed"]
+        return (
+            type(value["situation"]) is type(value["users"]) is list
+            and type(stage) is type(activity) is type(value["place"]) is str
+            and request in ("ANR", "AR")
+            and type(value["step"]) is int
+            and 0 <= value["step"] < LARGEST
+            and all(type(id) is str for id in ids)
+            and len(set(ids)) == len(ids)
+            and (attended is None or attended in ids)
+            and (closed is None or type(closed) is str)
+        )
+    except (TypeError, KeyError, ValueError):
+        return False
 
 
 def _same_group(step: Mapping[str, Any]) -> str:

@@ -9,7 +9,8 @@ READ = "SELECT seq, uuid, robot, at, kind, person, strategy, complied, body FROM
 ADD = """INSERT INTO event (uuid, robot, at, kind, person, strategy, complied, body)
     VALUES (?, ?, ?, ?, ?, ?, ?, ?)"""
 # The responses that do not hold are few: they are looked up and subtracted, so that the index
-# alone still counts what may be half a million. One query with the counts, as below.
+# alone still counts what may be half a million (an `answer` that was materialized would not).
+# One query with the counts, as below.
 # What is no answer (neither 0 nor 1, nobody's) or no JSON is left out, as `rows` has it.
 OF = "CASE WHEN json_valid(body) THEN json_extract(body, '$.of') END"
 RESPONSES = f"""WITH
@@ -18,8 +19,8 @@ RESPONSES = f"""WITH
     gone AS (SELECT * FROM back UNION ALL
         SELECT {OF}, person, strategy FROM event
         WHERE kind = 'void' AND uuid NOT IN (SELECT uuid FROM back)),
-    answer AS (SELECT uuid, person, strategy, complied FROM event WHERE complied IN (0, 1)
-        AND typeof(person) = 'text' AND typeof(strategy) = 'text')
+    answer AS NOT MATERIALIZED (SELECT uuid, person, strategy, complied FROM event
+        WHERE complied IN (0, 1) AND typeof(person) = 'text' AND typeof(strategy) = 'text')
     SELECT person, strategy, sum(yes), sum(no) FROM (
     SELECT person, strategy, sum(complied) AS yes, count(*) - sum(complied) AS no FROM answer
         GROUP BY person, strategy

@@ -5,9 +5,13 @@ from __future__ import annotations
 import ast
 import importlib
 from pathlib import Path
+from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from tangy_profiles import events
 from tangy_profiles.events import ABOUT_PEOPLE, BODIES, MOVES, WITH_STRATEGY, wrong_with
 from tangy_tui.monitoring import fault
 
@@ -67,3 +71,36 @@ def test_a_body_of_nothing_is_that_of_a_kind_only_where_nothing_is_needed(kind: 
     empty = wrong_with(kind, None, None, {})
     assert (empty == "") == (kind == "recordings forgotten")
     assert wrong_with(kind, None, None, []) != ""  # type: ignore[arg-type]
+
+
+ODD: Any = st.sampled_from(["user1", "AR", "x", "", 1, -1, 10**13, True, None, [], {}, ["AR"], 1.5])
+USERS: Any = st.lists(
+    st.lists(st.sampled_from(["user1", "user2", "AR", "ANR", 3, None, []]), max_size=4)
+    | st.tuples(st.sampled_from(["a", "b"]), st.just("x"), st.sampled_from(["AR", "ANR"])).map(list)
+    | ODD,
+    max_size=3,
+)
+STATES = st.fixed_dictionaries(
+    {"step": ODD | st.just(3), "users": USERS | ODD, "attended": ODD | st.just("a")},
+    optional={
+        "situation": st.just(["help", "AR", "x"]) | st.lists(ODD, max_size=4) | ODD,
+        "place": ODD | st.just("front"),
+        "closed": ODD | st.none(),
+    },
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(STATES)
+def test_what_is_a_state_at_a_glance_is_one_looked_at_closely(state: dict[str, Any]) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        glance = events._plainly_a_state(state)
+        patch.setattr(events, "_plainly_a_state", lambda _: False)
+        closely = events._state(closed=True)(state)
+    assert not glance or closely == ""
+
+
+def test_a_state_as_the_program_writes_it_is_one_at_a_glance() -> None:
+    users = [["user1", "occluded", "AR"], ["user2", "occluded", "ANR"]]
+    state = {"step": 3, "situation": ["help", "AR", "occluded"], "place": "user1"}
+    assert events._plainly_a_state({**state, "attended": "user1", "users": users, "closed": None})
