@@ -8,6 +8,7 @@ Widget ids that scripts and testers may rely on:
     #command     the command bar (its line to type in is #command-input)
     #question    the question that verifies a command
     #confirm, #message, #help    the other dialogs
+    #switching-on  says that a robot is being switched on
     #posteriors  what is believed of each person
     #policy      the policy table
     #log         what happened, in sentences
