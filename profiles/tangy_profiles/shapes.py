@@ -5,6 +5,7 @@ Each says what is wrong as the tail of a sentence ("is not text", "has no 'seed'
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -46,8 +47,11 @@ def yes_or_no(value: Any) -> str:
 
 
 def fact(value: Any) -> str:
-    """A measurement of a device: a number, yes or no, or a word."""
-    return "" if isinstance(value, str | bool) or not number(value) else "is not a measurement"
+    """A measurement of a device: any number, yes or no, or a word."""
+    if isinstance(value, str | bool):
+        return ""
+    finite = isinstance(value, int | float) and abs(value) <= sys.float_info.max
+    return "" if finite else "is not a measurement"
 
 
 def maybe(check: Check) -> Check:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -56,14 +56,32 @@ class Program(SoundingApp):
         self.eyes = Eyes(house, sensors, live=live)
         self._busy = False
         self._opening = False
+        self._told: set[str] = set()
 
     def on_mount(self) -> None:
         """Do what comes first."""
+        self._tell_of_log()
         if self._start is not None:
             self.run_worker(self._start(self))
 
     def _home(self) -> Screen[Any]:
-        return HomeScreen(lambda: how_far(self.house), note=self.house.activity.title)
+        def far() -> Mapping[str, str]:
+            found = how_far(self.house)
+            self.call_later(self._tell_of_log)
+            return found
+
+        return HomeScreen(far, note=self.house.activity.title)
+
+    def _tell_of_log(self) -> None:
+        """Say, once, what was noticed of the log, and what is left out of it."""
+        store = self.house.store
+        aside = [store.aside[seq] for seq in sorted(store.aside)]
+        if len(aside) > 1:
+            aside = [f"{aside[0]} And {len(aside) - 1} more: `tangy store check` names them."]
+        for sentence in (*store.notices, *aside):
+            if sentence not in self._told:
+                self._told.add(sentence)
+                self.say(sentence, bad=True, seconds=60)
 
     # ---------------------------------------------------------------------------------- ways
 

@@ -93,3 +93,25 @@ async def test_v_needs_something_that_was_learnt(run: Run, house: House) -> None
     async with run(app=Program(house, clock=StillClock())) as pilot:
         await pilot.press("v")
         await until(pilot, lambda: "has not learnt" in screen_text(pilot.app))
+
+
+async def test_home_says_what_is_left_out_of_the_log(run: Run, house: House) -> None:
+    store = house.store
+    store.append("policy learnt", {**POLICY_BODY, "name": "lost"})
+    db = store._file.db
+    assert db is not None
+    db.executescript("DROP TRIGGER unchanged; UPDATE event SET body = '{'")
+    store.notices.append("tangy.db: events 5 to 9 had been kept and are gone.")
+    program = Program(house, clock=StillClock())
+    async with run(app=program) as pilot:
+        shown = program._notifications
+        await until(pilot, lambda: len(shown) == 2)
+        first, second = (note.message for note in shown)
+        assert "events 5 to 9 had been kept and are gone" in first
+        assert "(policy learnt) is damaged and left out: its body is not JSON." in second
+
+
+POLICY_BODY: dict[str, Any] = {
+    **{"activity": "bingo", "demonstrations": [], "forest": {}, "versions": {}},
+    **{"digest": "0", "rows": []},
+}

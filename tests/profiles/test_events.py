@@ -104,3 +104,15 @@ def test_a_state_as_the_program_writes_it_is_one_at_a_glance() -> None:
     users = [["user1", "occluded", "AR"], ["user2", "occluded", "ANR"]]
     state = {"step": 3, "situation": ["help", "AR", "occluded"], "place": "user1"}
     assert events._plainly_a_state({**state, "attended": "user1", "users": users, "closed": None})
+
+
+@pytest.mark.parametrize("measured", [0, -2.5, 1.7e18, 10**30, True, "STALE"])
+def test_whatever_a_device_measures_can_be_kept_with_its_fault(measured: float | str) -> None:
+    assert events.BODIES["fault"]({**FAULT, "evidence": {"laser.stamp": measured}}) == ""
+
+
+FAULT: dict[str, Any] = {
+    **dict.fromkeys(("game", "fault", "code", "name", "recovery", "behaviour", "console"), "x"),
+    **{"why": "", "criticality": "critical", "step": 3, "seconds": 4.5},
+    **{"mismatches": [], "advice": ["look"], "evidence": {}},
+}
