@@ -122,6 +122,19 @@ class LiveWorld:
             self.requests.tell(self.tracker)
         return self.tracker.state()
 
+    def look_again(self) -> ActivityState:
+        """Take another look, a moment later, at what is beside the robot; return the state then.
+
+        A stop, or what keeps it from looking, ends that at once.
+        """
+        with suppress(DeviceError):
+            place = self.tracker.place
+            if place in self.tracker.queue and not self.over:
+                self.read_card(place, after=LOOK_SECONDS)
+            self.commands.settle()
+            self.link.beat()
+        return self.observe()
+
     # ------------------------------------------------------------------------ behaviours
 
     def execute(self, action: Action) -> Outcome:

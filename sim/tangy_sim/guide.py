@@ -239,7 +239,7 @@ class GuidedWorld(SimulatedWorld):
             self._in_view = False
             hidden = self._cue is not None and self._cue.hidden and self.plan.lacks_hidden
             if not hidden and target in tracker.queue:
-                self._read_card()
+                self._look_at_card()
         return ()
 
     # ---------------------------------------------------------------------------- what cards tell

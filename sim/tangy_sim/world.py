@@ -8,6 +8,7 @@ shift the others; only `Random.random` is drawn from, which Python keeps the sam
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from random import Random
 
@@ -21,6 +22,9 @@ from tangy_profiles.tracker import Tracker
 from tangy_sim.body import WELL
 from tangy_sim.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
+
+AGREEING, MOST_LOOKS = 3, 5
+"""Looks at a card that agree before it counts as read, and looks that are taken at most."""
 
 
 class SimulatedWorld:
@@ -105,7 +109,7 @@ class SimulatedWorld:
         elif not self._opened and tracker.begun():
             self._open()
         if self._in_view and tracker.seen is None and tracker.place in tracker.queue:
-            self._read_card()  # the person beside the robot asks again, the card still there
+            self._look_at_card()  # the person beside the robot asks again, the card still there
         return Outcome(succeeded, calls * self.users.call_seconds, numbers, response)
 
     @property
@@ -217,7 +221,7 @@ class SimulatedWorld:
             tracker.arrive(target)
             self._in_view = False
             if self._uniform() >= self.users.occluded and target in tracker.queue:
-                self._read_card()
+                self._look_at_card()
         return ()
 
     def _go_to_front(self, _: Action) -> tuple[int, ...] | None:
@@ -228,7 +232,7 @@ class SimulatedWorld:
     def _bring_card_closer(self, _: Action) -> tuple[int, ...] | None:
         if self.tracker.place in self.tracker.queue:
             self._did("moves the card")
-            self._read_card()
+            self._look_at_card()
         return ()
 
     def _clear_wrong_marks(self, _: Action) -> tuple[int, ...] | None:
@@ -247,7 +251,7 @@ class SimulatedWorld:
             return None
         player.marked ^= mask
         self._did(verb)
-        self._read_card()
+        self._look_at_card()
         return player.cells(mask)
 
     def _finish(self, _: Action) -> tuple[int, ...] | None:
@@ -256,6 +260,16 @@ class SimulatedWorld:
 
     def _did(self, verb: str) -> None:
         self._players[self.tracker.place].did = (self.tracker.step, verb, 0)
+
+    def _look_at_card(self) -> None:
+        """Read the card beside the robot until looks agree: one may be late, or misread."""
+        looks: Counter[str | None] = Counter()
+        for _ in range(MOST_LOOKS):
+            self._read_card()
+            looks[self.tracker.seen] += 1
+            if looks[self.tracker.seen] == AGREEING:
+                return
+        self.tracker.seen = looks.most_common(1)[0][0]
 
     def _read_card(self) -> None:
         self._in_view = True

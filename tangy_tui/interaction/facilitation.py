@@ -19,6 +19,7 @@ from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.not_sure import remedy_for, why_not
+from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Choice, Persuasion
 from tangy_tui.learning.asking import Answers, Lesson
 from tangy_tui.learning.commands import Phrasebook
@@ -137,6 +138,9 @@ def refused(
 Permits: TypeAlias = Callable[[Decision, str | None], bool]
 """Says whether what was decided, for whom, may be done."""
 
+Contradicts: TypeAlias = Callable[[Action, ActivityState, Outcome, ActivityState], bool]
+"""Says whether what is seen after an action, done in a state, is not what was to be expected."""
+
 GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | DoneOnce | GameEnded
 
 
@@ -174,6 +178,10 @@ class Facilitation:
         """Whether somebody looks the last behaviour over before the game is ended (`finish`)."""
         self.permits: Permits = lambda decision, target: True
         """Is asked at each step about the very thing that would be done; on a no nothing is."""
+        self.contradicts: Contradicts = lambda action, state, outcome, after: False
+        """Is asked what to look at again; whoever looks behaviours over knows."""
+        self.observation = Observation(world)
+        """Observes the state, and looks again where one look is not to be believed."""
         self._answers = answers
         self._activity = world.activity
         self._store = store
@@ -187,6 +195,7 @@ class Facilitation:
     def begin(self) -> list[GameEvent]:
         """Begin the next game."""
         state = self.world.begin()
+        self.observation.begin(state)
         self._game = uuid4().hex[:12]
         self.games += 1
         self.steps = 0
@@ -215,7 +224,7 @@ class Facilitation:
         """
         if self.over or self.question is not None:
             return []
-        state = self.world.observe()
+        state = self.look()
         decision = self.policy.decide(state.situation)
         if self.steps >= MOST_STEPS:
             return [self._end(f"The game did not end within {MOST_STEPS} steps.")]
@@ -233,6 +242,10 @@ class Facilitation:
         with self._store.transaction():
             ended = self._log(acted, "")
         return self._told(acted, ended)
+
+    def look(self) -> ActivityState:
+        """Observe the state before a behaviour."""
+        return self.observation.before(lambda seen: not self.policy.decide(seen.situation).sure)
 
     @property
     def asks(self) -> bool:
@@ -348,7 +361,7 @@ class Facilitation:
             choice = self.persuasion.choose(self.world.who(target), without)
         action = activity.action(behaviour, target, choice.strategy if choice else None)
         outcome = self.world.execute(action)
-        after = self.world.observe()
+        after = self.observation.after(lambda seen: self.contradicts(action, state, outcome, seen))
         self.steps += 1
         if state.place != after.place:
             self._refused = None

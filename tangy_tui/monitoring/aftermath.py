@@ -8,7 +8,7 @@ its own.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 from tangy_profiles.faults import Evidence, FaultBook, FaultRule
@@ -50,18 +50,19 @@ class Aftermath:
         """Let a fault explain nothing any more; return whether it still did."""
         return self._causes.pop(code, None) is not None
 
-    def without(self, evidence: Evidence, now: float) -> Evidence:
+    def without(self, evidence: Evidence, clock: Callable[[], float]) -> Evidence:
         """Return evidence without what an earlier fault still explains.
 
         Args:
             evidence: what is known at this moment.
-            now: the time, in s, of the world in which it is.
+            clock: tells the time, in s, of the world in which it is.
         """
         explained: set[str] = set()
         for code, cause in list(self._causes.items()):
             if cause.rule.matched(evidence) is not None:
                 cause.over_since = None
                 continue  # it explains them by itself
+            now = clock()
             cause.over_since = now if cause.over_since is None else min(cause.over_since, now)
             cause.missed = {name for name in cause.missed if self._is_missed(name, cause, evidence)}
             if not cause.missed or now - cause.over_since > GRACE_SECONDS:

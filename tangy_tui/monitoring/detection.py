@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import Robot
@@ -100,16 +101,8 @@ class Detector:
             The evidence of the execution, and what was not as expected.
         """
         behaviour, outcome = acted.action.behaviour, acted.outcome
-        followed = outcome.response is None or outcome.response.followed
-        found: list[Mismatch] = []
+        found = self.unexpected(behaviour, acted.state, outcome, acted.after)
         if behaviour.name in self.effects.values:
-            found = [
-                mismatch
-                for mismatch in self.effects.mismatches(
-                    behaviour.name, acted.state, acted.after, self._activity
-                )
-                if followed or mismatch.variable not in OWED_BY_PEOPLE
-            ]
             found += self._between(behaviour.name, acted.state, found)
         self._last = acted.after
         evidence: dict[str, Fact] = {f"mismatch.{one.variable}": one.seen for one in found}
@@ -125,6 +118,32 @@ class Detector:
             evidence["behaviour.completed"] = outcome.completed
             evidence["behaviour.response"] = _response(outcome)
         return evidence, found
+
+    def unexpected(
+        self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
+    ) -> list[Mismatch]:
+        """Return what is not as a behaviour should have left it."""
+        if behaviour.name not in self.effects.values:
+            return []
+        followed = outcome.response is None or outcome.response.followed
+        return [
+            mismatch
+            for mismatch in self.effects.mismatches(behaviour.name, before, after, self._activity)
+            if followed or mismatch.variable not in OWED_BY_PEOPLE
+        ]
+
+    def contradicts(
+        self, action: Action, before: ActivityState, outcome: Outcome, after: ActivityState
+    ) -> bool:
+        """Say whether what is seen after an action is to be looked at again.
+
+        That is what it should not have left so, or what looks as if a person had not done it.
+        """
+        behaviour = action.behaviour
+        if not outcome.completed:
+            return False  # it is known already that it came to nothing
+        unexpected = self.unexpected(behaviour, before, outcome, after)
+        return bool(unexpected) or refused(behaviour, before, outcome, after)
 
     def _between(
         self, behaviour: str, now: ActivityState, found: Sequence[Mismatch]

@@ -16,6 +16,7 @@ from uuid import uuid4
 from tangy_profiles.faults import URGENCY, FaultRule, Remedy
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import Robot
+from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent
 from tangy_tui.monitoring.detection import Detector, symptoms
@@ -255,11 +256,14 @@ class Recovery:
             return not symptoms({key: devices[key] for key in fault.evidence if key in devices})
         if rule.solved == "evidence gone" or fault.person is None:
             return rule.matched(devices) is None
-        user = self._game.world.observe().user(fault.person)
-        closed = user.request == "ANR"
-        if rule.solved == "card in view":
-            return closed or user.activity != self._game.world.activity.unread
-        return closed
+        person, unread = fault.person, self._game.world.activity.unread
+
+        def is_gone(state: ActivityState) -> bool:
+            user = state.user(person)
+            in_view = rule.solved == "card in view" and user.activity != unread
+            return in_view or user.request == "ANR"
+
+        return self._game.observation.shows(is_gone)
 
     def remedy(self, fault: Fault, kind: str, move: Move | None = None) -> None:
         """Let the world do something about a fault; `move` holds what is said with it."""

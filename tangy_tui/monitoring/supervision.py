@@ -81,6 +81,7 @@ class Supervision:
         self._store = store
         self._effects_of = effects_of
         self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
+        game.contradicts = self._detector.contradicts
         self._recovery = Recovery(game, self._detector, robot, store, name)
         self._watch = Watch(game, book, self._detector, self._recovery)
         self._clearings: Counter[str] = Counter()

@@ -97,7 +97,7 @@ class Watch:
 
     def foresee(self) -> list[Event]:
         """Where nobody can be asked, say why the game is about to end: nobody has shown this."""
-        decision = self._game.policy.decide(self._game.world.observe().situation)
+        decision = self._game.policy.decide(self._game.look().situation)
         if decision.sure:
             return []
         return self._take(diagnose(self.book, NOT_SHOWN), None) + self._recovery.leave_open()
@@ -114,7 +114,7 @@ class Watch:
 
     def _diagnose(self, evidence: Evidence, mismatches: Sequence[Mismatch] = ()) -> list[Diagnosis]:
         """Explain what no fault explains that was there before."""
-        unexplained = self._aftermath.without(evidence, self._game.world.seconds)
+        unexplained = self._aftermath.without(evidence, lambda: self._game.world.seconds)
         found = diagnose(self.book, unexplained, mismatches)
         self._aftermath.take(found, unexplained)
         return found

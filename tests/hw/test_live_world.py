@@ -511,3 +511,21 @@ def test_what_was_called_off_and_is_never_answered_is_given_up(
     world.commands.diagnosed = lambda _: {"laser-disconnected": True}
     assert not do(world, "call number").completed
     assert world.broken == "laser-disconnected"
+
+
+def test_a_second_look_at_a_card_takes_another_picture(world: LiveWorld, link: FakeLink) -> None:
+    beside(world, link, 2, LaidCard(CARD, seen=False))
+    assert world.observe().situation.user_state == BINGO.unread
+    link.cards["user2"] = LaidCard(CARD)
+    pictures = asked_of(link).count("card")
+    assert world.look_again().situation.user_state == "correctly marked"
+    assert asked_of(link).count("card") == pictures + 1
+
+
+def test_a_second_look_ends_at_once_where_the_robot_may_not_look(
+    world: LiveWorld, link: FakeLink
+) -> None:
+    state = beside(world, link, 2, LaidCard(CARD)).observe()
+    link.slow["card"] = 5
+    link.silent = "the robot process has ended"
+    assert world.look_again() == state

@@ -35,7 +35,7 @@ class Seen:
         self.aftermath = Aftermath(self.book, ROBOT.devices)
 
     def at(self, now: float, health: Health) -> list[str]:
-        evidence: Evidence = self.aftermath.without(device_evidence(ROBOT, health), now)
+        evidence: Evidence = self.aftermath.without(device_evidence(ROBOT, health), lambda: now)
         found = diagnose(self.book, evidence)
         self.aftermath.take(found, evidence)
         return [one.rule.code for one in found]

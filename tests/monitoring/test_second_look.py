@@ -1,0 +1,81 @@
+"""One look is no proof: what contradicts the expectation once is looked at again first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import cast
+
+import pytest
+
+from tangy_profiles.state import ActivityState, Situation, UserState
+from tangy_tui.house import House
+from tangy_tui.interaction.observation import MOST_LOOKS, Observation
+from tangy_tui.learning.policy import Policy
+from tangy_tui.world import World
+from tests.monitoring.conftest import codes, moves, play
+from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld
+
+GAMES = 12
+
+
+def state(card: str) -> ActivityState:
+    """Return the state beside somebody whose card looks like that."""
+    users = (UserState("user1", card, "AR"),)
+    return ActivityState(3, Situation("help", "AR", card), "user1", "user1", users)
+
+
+RIGHT, WRONG, OTHER = state("right"), state("wrong"), state("other")
+
+
+class Eyes:
+    """A world that is looked at: one look after another, and the last for ever."""
+
+    def __init__(self, looks: Sequence[ActivityState]) -> None:
+        self.looks = list(looks)
+        self.taken = 0
+
+    def observe(self) -> ActivityState:
+        self.taken += 1
+        return self.looks[min(self.taken, len(self.looks)) - 1]
+
+
+def after(*looks: ActivityState) -> tuple[ActivityState, int]:
+    """Return what counts as seen after a behaviour that should leave all right, and the looks."""
+    eyes = Eyes(looks)
+    seen = Observation(cast(World, eyes)).after(lambda one: one != RIGHT)
+    return seen, eyes.taken
+
+
+@pytest.mark.parametrize(
+    ("looks", "seen", "taken"),
+    [
+        ((RIGHT,), RIGHT, 1),
+        ((WRONG, RIGHT), RIGHT, 3),
+        ((WRONG,), WRONG, 3),
+        ((WRONG, WRONG, RIGHT), RIGHT, 4),
+        ((WRONG, OTHER, RIGHT), RIGHT, 4),
+        ((WRONG, OTHER, WRONG, OTHER, WRONG), WRONG, 5),
+    ],
+)
+def test_what_contradicts_is_seen_again_before_it_counts(
+    looks: tuple[ActivityState, ...], seen: ActivityState, taken: int
+) -> None:
+    assert after(*looks) == (seen, taken)
+
+
+def test_looks_that_never_agree_come_to_an_end() -> None:
+    _, taken = after(*(state(f"never {number}") for number in range(20)))
+    assert taken == MOST_LOOKS
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("kind", [OddCards, OddStates])
+def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
+    kind: type[OddWorld], odd: str, house: House, learnt: Policy
+) -> None:
+    world = kind(house.activity, list(house.names), seed=4, odd=odd, share=0.05)
+    game = house.supervision(learnt, 4, asks=True, world=world)
+    with house.store.transaction():
+        told = [event for _ in range(GAMES) for event in play(game)]
+    assert world.odd_looks > 5  # or it says nothing
+    assert (codes(told), moves(told), world.accused) == ([], [], 0)

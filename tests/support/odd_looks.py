@@ -1,0 +1,91 @@
+"""Simulated worlds in which a single look is late, misread or not readable now and then.
+
+It is the eye that is wrong, not the world: the very next look may be right. What is seen of cards
+is odd in `OddCards`, in which each reading of a card is a look; all of the state in `OddStates`.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+from tangy_profiles.behaviour import Action
+from tangy_profiles.state import ActivityState, Outcome, UserState
+from tangy_sim.faulty import FaultyWorld
+
+LATE, MISREAD, UNREADABLE = "late", "misread", "unreadable"
+ODD = (LATE, MISREAD, UNREADABLE)
+
+
+class OddWorld(FaultyWorld):
+    """What both have in common: how a look is odd, how often, and how often that came about."""
+
+    def __init__(self, *what: Any, odd: str, share: float, **more: Any) -> None:
+        """Prepare it; `odd` is one of ODD, `share` is of how many looks."""
+        self.odd, self.share = odd, share
+        self.looks = self.odd_looks = self.accused = 0
+        super().__init__(*what, **more)
+        self._by_chance = Random(f"{more['seed']}/looks")
+
+    def execute(self, action: Action) -> Outcome:
+        """Carry it out; count who is asked to mend what is right."""
+        wrong = action.behaviour.effect == "clear wrong marks"
+        player = self._players.get(self.tracker.place)
+        if player is not None and (wrong or action.behaviour.effect == "set missing marks"):
+            marked, called = player.marked, player.called
+            self.accused += not (marked & ~called if wrong else called & ~marked)
+        return super().execute(action)
+
+    def is_odd(self) -> bool:
+        """Draw whether a look is odd."""
+        self.looks += 1
+        now = self._by_chance.random() < self.share
+        self.odd_looks += now
+        return now
+
+    def misread(self, state: str) -> str:
+        """Return another state of a card."""
+        others = [one.name for one in self.activity.card_states if one.name != state]
+        return others[int(self._by_chance.random() * len(others))]
+
+
+class OddCards(OddWorld):
+    """A world in which single readings of cards are odd."""
+
+    def _read_card(self) -> None:
+        before = self.tracker.seen
+        super()._read_card()
+        seen = self.tracker.seen
+        if seen is not None and self.is_odd():
+            new = {LATE: before, UNREADABLE: None, MISREAD: self.misread(seen)}
+            self.tracker.seen = new[self.odd]
+
+
+class OddStates(OddWorld):
+    """A world in which single observations are odd."""
+
+    def begin(self) -> ActivityState:
+        """Begin a game."""
+        self._now_so: ActivityState | None = None
+        self._was_so: ActivityState | None = None
+        return super().begin()
+
+    def observe(self) -> ActivityState:
+        """Return what is seen, which now and then is not so, or not so any more."""
+        state = super().observe()
+        if state != self._now_so:
+            self._was_so, self._now_so = self._now_so, state
+        if self.over or not self.is_odd():
+            return state
+        if self.odd == LATE:
+            return self._was_so or state
+        attended, unread = state.attended, self.activity.unread
+        if attended is None or state.user(attended).activity == unread:
+            return state
+        seen = unread if self.odd == UNREADABLE else self.misread(state.user(attended).activity)
+        users = (
+            UserState(user.id, seen, user.request) if user.id == attended else user
+            for user in state.users
+        )
+        situation = state.situation._replace(user_state=seen)
+        return state._replace(situation=situation, users=tuple(users))
