@@ -74,6 +74,8 @@ def read_card(
         raise TangyError(
             plain(f"--method {method[:40]!r} is not known; {nearest(method, METHODS)}")
         )
+    if together and method != METHODS[0]:
+        raise TangyError(f"--together goes with --method {METHODS[0]} alone.")
     reader = CardReader(loaded.deck, deck_seed)
     read = reader.read
     if method == "paper":

@@ -151,6 +151,8 @@ def test_pictures_of_one_card_are_read_together(tangy: Tangy, tmp_path: Path) ->
     assert "--together" in tangy("read-card", *files).stdout
     [one] = json.loads(tangy("read-card", *files, "--together", "--json").stdout)
     assert (one["file"], one["card"], one["hidden"]) == (str(files[0]), 42, [])
+    refused = tangy("read-card", *files, "--together", "--method", "paper")
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1
 
 
 def test_a_picture_is_turned_as_it_was_taken(tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ class PaperReader:
             part = red[top : round(top + side), left : round(left + side)]
             marked |= int(part.size > 0 and part.mean() > RED) << cell
         cells = tuple(float(marked >> c & 1) for c in range(deck.rows * len(deck.columns)))
-        return CardReading(card, marked, 0, 1.0, cells)
+        return CardReading(card, marked, 0, 1.0, cells, cards=(card,))
 
 
 def _evenly(lines: Plane, start: float, side: float, count: int) -> float:

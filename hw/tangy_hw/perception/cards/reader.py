@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
 from tangy_hw.perception.cards.features import Measured, features_of
+from tangy_hw.perception.cards.likeness import unlike_others
 from tangy_hw.perception.cards.locating import Sighting, find_cards
 from tangy_hw.perception.cards.rectifying import flatten
 from tangy_profiles.card_face import USUAL_SEED, Face, called_cells, numbers_of
@@ -77,15 +78,24 @@ def _count(number: int) -> str:
     return words[number] if number < len(words) else str(number)
 
 
-def _reconsidered(parts: Real, measured: Measured) -> Real:
-    """Doubt cells that nets take for paper, but whose numbers are pale.
+def _reconsidered(parts: Real, measured: Measured, across: int) -> Real:
+    """Doubt cells that nets take for paper, but whose numbers are pale, and marks unlike others.
 
     What lies on a number takes from its contrast, however clear or pale; light does not.
     """
+    import numpy as np
+
     parts = parts.copy()
     unmarked = parts[:, UNMARKED] >= parts[:, MARKED]
     parts[unmarked & (measured.compared("middle of usual") < FADED)] = UNCERTAIN
+    tells, hand = load_classifier().tells, _has_hand(parts)
+    told = np.array([tells(part, hand) for part in parts])
+    parts[unlike_others(measured, parts, told, across)] = UNCERTAIN
     return parts
+
+
+def _has_hand(parts: Real) -> bool:
+    return bool(parts[:, HIDDEN].max() >= HAND)
 
 
 class CardReader:
@@ -164,7 +174,7 @@ class CardReader:
             return self.nothing(TOO_LITTLE if few else OTHER_NUMBERS)
         across = len(self.deck.columns)
         parts = load_classifier().probabilities(measured.rows, measured.beside, across)
-        parts = _reconsidered(parts, measured)
+        parts = _reconsidered(parts, measured, across)
         grid = self.face.grid
         ends = [
             (grid.left, grid.top),
@@ -193,7 +203,7 @@ class CardReader:
     ) -> CardReading:
         """Say what is told of cells, and which cannot be told, from their probabilities."""
         classifier = load_classifier()
-        hand = bool(parts[:, HIDDEN].max() >= HAND)
+        hand = _has_hand(parts)
         marked = hidden = 0
         confidence = 1.0
         for cell, part in enumerate(parts):
