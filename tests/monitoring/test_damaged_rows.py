@@ -129,6 +129,13 @@ def places(value: Any, way: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return [one for key in keys for one in ((*way, key), *places(value[key], (*way, key)))]
 
 
+def _text_or_bytes(read: bytes) -> str | bytes:
+    try:
+        return read.decode()
+    except UnicodeDecodeError:
+        return read
+
+
 def _is_list(value: Any) -> bool:
     return isinstance(value, list)
 
@@ -174,6 +181,7 @@ def _survives(folder: Path, several: list[Callable[[sqlite3.Connection], None]])
         copy = Path(shutil.copytree(folder, Path(scratch) / "data"))
         with closing(sqlite3.connect(copy / "tangy.db")) as db:
             db.executescript("DROP TRIGGER unchanged; DROP TRIGGER undeleted;")
+            db.text_factory = _text_or_bytes  # what was damaged once can be damaged again
             for damage in several:
                 with suppress(sqlite3.IntegrityError):  # SQLite itself refuses it
                     damage(db)

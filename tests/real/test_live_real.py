@@ -145,7 +145,7 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
         terminal.until("c to clear")
         terminal.type("c")
         terminal.until("5 facilitate")  # the game has gone on
-        house = House(folder)
+        house = House(folder, write=False)
         try:
             assert [fault.code for fault in read_faults(house.store)[-1:]] == ["link-lost"]
             last = read_faults(house.store)[-1].game
