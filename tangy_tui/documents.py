@@ -202,6 +202,7 @@ def person_document(record: Record) -> dict[str, Any]:
             for strategy, belief in record.beliefs.items()
         },
         "settled": record.settled,
+        "world": record.world,
         "method": {
             **known.chosen.to_json(),
             "own": known.own,

@@ -24,6 +24,7 @@ from tangy_profiles.voice import VoicePreference
 # The engine is imported when it is first asked for: the first screen needs none of it.
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
+    from tangy_profiles.game_world import GameWorld
     from tangy_profiles.health import Health
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.memory import Memory
@@ -310,7 +311,7 @@ class House:
         return Facilitation(
             world,
             policy,
-            self.persuasion(Random(f"{seed}/persuasion")),
+            self.persuasion(Random(f"{seed}/persuasion"), world.played_in),
             self.store,
             names=self.names,
             people=self.people,
@@ -318,29 +319,35 @@ class House:
             answers=Answers(self.store, self.activity) if asks else None,
         )
 
-    def persuasion(self, rng: Random) -> Persuasion:
-        """Make the persuasion of everybody present from the responses in the log."""
+    def persuasion(self, rng: Random, world: GameWorld | None = None) -> Persuasion:
+        """Make the persuasion of everybody present from the responses in a world's games."""
         from tangy_tui.interaction.persuasion import Persuasion
 
+        memory = self.memory(world)
         return Persuasion(
             [person.id for person in self.people],
             tuple(self.activity.strategies),
             rng,
-            counts=self.store.responses(),
-            memory=self.memory(),
+            counts=memory.responses(),
+            memory=memory,
         )
 
-    def memory(self) -> Memory:
-        """Make what recalls people from the log, with the activity's choice of method."""
+    def memory(self, world: GameWorld | None = None) -> Memory:
+        """Make what recalls people from the log, with the activity's choice of method.
+
+        Args:
+            world: whose games count (default: the world of the last game).
+        """
         from tangy_tui.interaction.memory import Memory
 
-        return Memory(self.store, tuple(self.activity.strategies), self.activity.persuasion)
+        strategies = tuple(self.activity.strategies)
+        return Memory(self.store, strategies, self.activity.persuasion, world=world)
 
-    def records(self, *people: Person) -> list[Record]:
+    def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
         """Read what is to be told of people (of everybody, if none is named)."""
         from tangy_tui.interaction.record import read_records
 
-        return read_records(self.store, self.memory(), people or self.people)
+        return read_records(self.store, self.memory(world), people or self.people)
 
 
 def _forget_spoken() -> None:

@@ -19,9 +19,9 @@ MOST_TOLD = 30
 
 
 def game_words(game: Game) -> str:
-    """Name a game: its number, id, activity, policy and when it was."""
+    """Name a game: its number, id, activity, world, policy and when it was."""
     return (
-        f"Game {game.number} ({game.id}), {game.activity}, policy {game.policy}, "
+        f"Game {game.number} ({game.id}), {game.activity}, {game.world}, policy {game.policy}, "
         f"{day_and_time(game.at)}"
     )
 

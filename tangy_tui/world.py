@@ -7,6 +7,7 @@ from typing import Protocol
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import ActivityState, Outcome
@@ -17,6 +18,8 @@ class World(Protocol):
 
     activity: Activity
     people: tuple[str, ...]
+    played_in: GameWorld
+    """Whether its games are simulated, on the bench or live: beliefs are kept for each."""
     over: bool
     """Whether the game that was begun last has ended."""
 

@@ -25,6 +25,7 @@ from tangy_hw.stopping import BrokenOff
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import OK, Health
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Point, Room
@@ -43,6 +44,8 @@ FACING = pi / 2  # the heading at which the robot faces the people
 
 class LiveWorld:
     """One room with a robot and people in it. `begin` each game, `execute` behaviours."""
+
+    played_in: GameWorld = LIVE
 
     def __init__(
         self,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from tangy_profiles.game_world import GAME_WORLDS
 from tangy_profiles.persuading import LEAST_KEPT, METHODS, PERIODS, PRIORS
 from tangy_profiles.shapes import (
     LARGEST,
@@ -233,7 +234,13 @@ BODIES: Mapping[str, Check] = {
     ),
     "game begun": Fields(
         {"game": text, "people": _NAMES},
-        {"number": count, "activity": text, "policy": text, "seed": whole},
+        {
+            "number": count,
+            "activity": text,
+            "policy": text,
+            "seed": whole,
+            "world": one_of(*GAME_WORLDS),
+        },
     ),
     "game step": Fields(
         {

@@ -11,7 +11,7 @@ import json
 import sqlite3
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -22,7 +22,7 @@ from tangy_profiles.errors import ProfileError, StoreError, TangyError
 from tangy_profiles.events import wrong_with
 from tangy_profiles.log_file import FILE, NAMING, LogFile
 from tangy_profiles.phones import read_name_phones
-from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, RESPONSES, fetch
+from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, fetch, responses_among
 from tangy_profiles.reading import plain
 from tangy_profiles.rows import BadRow, left_out, read_row
 from tangy_profiles.rows import Event as Event
@@ -191,12 +191,19 @@ class Store:
         """Say of an event that it makes no sense where it stands, so that it is left out."""
         self.aside.setdefault(event.seq, left_out(event.seq, event.kind, why))
 
-    def responses(self) -> dict[tuple[str, str], tuple[int, int]]:
+    def responses(
+        self, of: Collection[str] | None = None, *, but: Collection[str] = ()
+    ) -> dict[tuple[str, str], tuple[int, int]]:
         """Count the responses that hold by (person, strategy): (complied, did not).
 
         One more than each is the posterior's alpha and beta (Eq. 2).
+
+        Args:
+            of: the ids of the games whose responses count, and the worlds for which those do
+                that belong to no game; None: all of them.
+            but: the games and worlds whose responses do not count.
         """
-        rows = self._rows(RESPONSES)
+        rows = self._rows(*responses_among(of, but))
         return {(person, strategy): (yes, no) for person, strategy, yes, no in rows}
 
     def answers(self, person: str) -> Iterator[Event]:

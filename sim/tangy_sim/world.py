@@ -15,6 +15,7 @@ from random import Random
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.health import Health
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
@@ -32,6 +33,8 @@ class SimulatedWorld:
 
     The same seed gives the same games on every machine.
     """
+
+    played_in: GameWorld = SIMULATED
 
     def __init__(
         self,

@@ -211,6 +211,7 @@ class Facilitation:
                 "policy": self.policy.digest,
                 "seed": self._seed,
                 "people": list(self.world.people),
+                "world": self.world.played_in,
             },
         )
         return [GameBegun(self._game, self.games, state)]

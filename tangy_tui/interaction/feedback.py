@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import SIMULATED, GameWorld, game_world
 from tangy_profiles.persuading import Persuading
 from tangy_profiles.reading import plain
 from tangy_profiles.store import TAKEN_BACK, VOID, Event, Store
@@ -45,6 +46,8 @@ class Entry:
     void: bool
     why: str
     settled: bool = False
+    world: str | None = None
+    """The world that it names itself, where it belongs to no game."""
 
     @property
     def counts(self) -> bool:
@@ -60,9 +63,23 @@ class Entry:
 class Feedback:
     """The log's side of persuasion. Every method raises TangyError, one sentence, for a mistake."""
 
-    def __init__(self, store: Store) -> None:
-        """Work on a log; one that cannot be written can still be read."""
+    def __init__(self, store: Store, world: GameWorld = SIMULATED) -> None:
+        """Work on a log; one that cannot be written can still be read.
+
+        Args:
+            store: the log.
+            world: what staff say without a game belongs to it.
+        """
         self.store = store
+        self._world = world
+
+    @property
+    def names_worlds(self) -> bool:
+        """Whether staff said something without a game that belongs to another world."""
+        return any(
+            game_world(event.body.get("world")) not in (None, SIMULATED)
+            for event in self.store.events(FEEDBACK)
+        )
 
     def history(self, person: str) -> list[Entry]:
         """Return everything a person was asked to do with a strategy, in the order of the log."""
@@ -91,7 +108,7 @@ class Feedback:
         Raises:
             TangyError: the request was answered already, or was another one.
         """
-        body: dict[str, str | None] = {"of": None, "game": None}
+        body: dict[str, str | None] = {"of": None, "game": None, "world": self._world}
         if of is not None:
             request = self._at(person, of)
             if request.strategy != strategy:
@@ -102,7 +119,7 @@ class Feedback:
                     "That request has its answer already, and none counts twice: "
                     "void the answer first if it is wrong."
                 )
-            body = {"of": request.request, "game": request.game}
+            body = {"of": request.request, "game": request.game, "world": request.world}
         seq = self.store.append(FEEDBACK, body, person=person, strategy=strategy, complied=complied)
         return self._at(person, seq)
 
@@ -235,4 +252,5 @@ def _entry(
         late=late,
         void=event.uuid in voids or event.uuid in back,
         why=voids.get(event.uuid, "taken back" if event.uuid in back else ""),
+        world=None if game is not None else game_world(event.body.get("world")),
     )

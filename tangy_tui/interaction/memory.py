@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.game_world import GAME_WORLDS, SIMULATED, GameWorld
 from tangy_profiles.persuading import PAPER, Persuading
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import Entry, Feedback
+from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.interaction.methods import Method, Thompson, method_of, others
 
 DAY = 86_400.0  # s
 
 Responses = Mapping[tuple[str, str], tuple[int, int]]
-"""(person, strategy) -> how often they complied, and did not: `Store.responses()`."""
+"""(person, strategy) -> how often they complied, and did not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +39,25 @@ class Known:
 class Memory:
     """Recalls people from the log, by an activity's strategies and its choice of method."""
 
-    def __init__(self, store: Store, strategies: Sequence[str], chosen: Persuading = PAPER) -> None:
-        """Read from a log; `chosen` holds for everybody who has no method of their own."""
-        self.feedback = Feedback(store)
+    def __init__(
+        self,
+        store: Store,
+        strategies: Sequence[str],
+        chosen: Persuading = PAPER,
+        *,
+        world: GameWorld | None = None,
+    ) -> None:
+        """Read from a log.
+
+        Args:
+            store: the log.
+            strategies: those of the activity.
+            chosen: the method for everybody who has none of their own.
+            world: whose games count (default: the world of the last game).
+        """
+        self._worlds = GameWorlds(store)
+        self.world = world or self._worlds.last
+        self.feedback = Feedback(store, self.world)
         self._store = store
         self._strategies = tuple(strategies)
         self._chosen = chosen
@@ -48,19 +66,42 @@ class Memory:
         """Return the time by the log's clock."""
         return self._store.now()
 
+    def responses(self) -> Responses:
+        """Count the responses of this world's games, as `Store.responses` does."""
+        worlds = self._worlds.all
+        if self.world == SIMULATED:  # to which belongs what names no game and no world
+            others = {game for game, world in worlds.items() if world != SIMULATED}
+            if not others and not self.feedback.names_worlds:
+                return self._store.responses()  # by the index alone
+            return self._store.responses(but=others | (set(GAME_WORLDS) - {SIMULATED}))
+        mine = {game for game, world in worlds.items() if world == self.world}
+        return self._store.responses(mine | {self.world})
+
+    def history(self, person: str) -> list[Entry]:
+        """Return what a person was asked to do in this world's games, in the order of the log."""
+        return [
+            entry
+            for entry in self.feedback.history(person)
+            if self._worlds.of(entry.game, entry.world) == self.world
+        ]
+
+    def is_of_this_world(self, game: str) -> bool:
+        """Say whether a game was played in this world."""
+        return self._worlds.of(game) == self.world
+
     def recall(self, person: str, responses: Responses | None = None) -> Known:
         """Put together what is known of a person now.
 
         Args:
-            responses: `Store.responses()`, where the caller has them already.
+            responses: what `responses` returns, where the caller has it already.
         """
-        responses = self._store.responses() if responses is None else responses
+        responses = self.responses() if responses is None else responses
         own = self.feedback.method(person)
         chosen = own or self._chosen
         method = method_of(chosen, others(responses, person) if chosen.prior == "people" else ())
         prior = method.prior(self._strategies)
         if method.forgets:
-            beliefs = replayed(method, prior, self.feedback.history(person), self.now())
+            beliefs = replayed(method, prior, self.history(person), self.now())
         else:
             beliefs = counted(prior, person, responses)
         return Known(method, prior, beliefs, self.feedback.off(person), chosen, own is not None)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, leading, probability_best, settled
+from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import BEGUN
@@ -41,6 +42,8 @@ class Record:
     games: tuple[Game, ...]
     seen: datetime | None
     now: datetime
+    world: GameWorld = SIMULATED
+    """Whose games all this is read from."""
 
     @property
     def beliefs(self) -> Beliefs:
@@ -60,10 +63,12 @@ class Record:
 
 def read_records(store: Store, memory: Memory, people: Iterable[Person]) -> list[Record]:
     """Read the records of some people."""
-    responses = store.responses()
+    responses = memory.responses()
     begun: dict[str, datetime] = {}
     present: dict[str, datetime] = {}
     for event in store.events(BEGUN):
+        if not memory.is_of_this_world(str(event.body.get("game"))):
+            continue
         at = datetime.fromisoformat(event.at)
         begun[str(event.body.get("game"))] = at
         present.update(dict.fromkeys(map(str, event.body.get("people", ())), at))
@@ -80,7 +85,7 @@ def _record(
     begun: Mapping[str, datetime],
     present: Mapping[str, datetime],
 ) -> Record:
-    history = tuple(memory.feedback.history(person.id))
+    history = tuple(memory.history(person.id))
     best = best_of_those_on(known.beliefs, known.off)
     times = [entry.at for entry in history]
     if person.id in present:
@@ -94,6 +99,7 @@ def _record(
         games=_games(history, begun),
         seen=max(times, default=None),
         now=memory.now(),
+        world=memory.world,
     )
 
 

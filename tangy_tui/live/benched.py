@@ -19,6 +19,7 @@ from tangy_hw.devices import DeviceError
 from tangy_hw.world import DRIVES, LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim import injection
@@ -58,6 +59,7 @@ class Score:
 class BenchedWorld(LiveWorld):
     """A real world whose devices a bench simulates. Between games everything is put right."""
 
+    played_in: GameWorld = BENCH
     bench: Bench
     injections: Sequence[Injection] = ()
 

@@ -9,9 +9,11 @@ from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import CRITICAL
+from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Event, Store
 from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
+from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.learning.policies import POLICY
 from tangy_tui.monitoring.fault import FAULT, OPEN, Fault, read_faults
 
@@ -46,6 +48,7 @@ class Game:
     ended: datetime | None
     last_seq: int | None
     stopped: str | None
+    world: GameWorld = SIMULATED
 
     @property
     def smooth(self) -> bool:
@@ -74,6 +77,7 @@ class Game:
             "ended": self.ended and self.ended.isoformat(),
             "stopped": self.stopped,
             "ending": self.ending,
+            "world": self.world,
         }
 
 
@@ -95,8 +99,17 @@ def read_games(store: Store) -> list[Game]:
         elif "situation.shown" not in body.get("evidence", {}):
             faults.setdefault(game, []).append(body.get("criticality") == CRITICAL)
     steps = _steps_of_unended(store, begun.keys() - ended.keys(), begun)
+    worlds = GameWorlds(store).all
     return [
-        _game(number, event, policy, ended.get(id), faults.get(id, []), steps.get(id, 0))
+        _game(
+            number,
+            event,
+            policy,
+            ended.get(id),
+            faults.get(id, []),
+            steps.get(id, 0),
+            worlds.get(id, SIMULATED),
+        )
         for number, (id, (event, policy)) in enumerate(begun.items(), 1)
     ]
 
@@ -115,7 +128,13 @@ def _steps_of_unended(
 
 
 def _game(
-    number: int, event: Event, policy: str, end: Event | None, faults: Sequence[bool], steps: int
+    number: int,
+    event: Event,
+    policy: str,
+    end: Event | None,
+    faults: Sequence[bool],
+    steps: int,
+    world: GameWorld,
 ) -> Game:
     body = event.body
     digest = str(body.get("policy", ""))
@@ -134,6 +153,7 @@ def _game(
         ended=None if end is None else datetime.fromisoformat(end.at),
         last_seq=None if end is None else end.seq,
         stopped=None if end is None else end.body.get("stopped"),
+        world=world,
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, Beta
+from tangy_profiles.persuading import PAPER
 from tangy_profiles.reading import plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
@@ -272,16 +273,15 @@ def _people(
     strategies = activity.strategies if activity is not None else dict.fromkeys(
         a.strategy for replay in replays for _, a in replay.answers
     )  # fmt: skip
-    memory = Memory(store, tuple(strategies), activity.persuasion) if activity else Memory(
-        store, tuple(strategies)
-    )  # fmt: skip
-    responses = store.responses()
+    chosen = activity.persuasion if activity is not None else PAPER
+    memory = Memory(store, tuple(strategies), chosen, world=replays[-1].game.world)
+    responses = memory.responses()
     return tuple(
         _progress(
             person,
             names.get(person, person),
             memory.recall(person, responses),
-            memory.feedback.history(person),
+            memory.history(person),
             replays,
             said,
         )

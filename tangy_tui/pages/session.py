@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import Replay
@@ -102,12 +103,20 @@ def _sum(session: Session) -> str:
     return " · ".join(words)
 
 
+GAME_WORDS = {
+    SIMULATED: "simulated",
+    BENCH: "on the bench of simulated devices",
+    LIVE: "live, with a robot",
+}
+
+
 def _head(session: Session) -> Iterator[str]:
     games = session.games
     people = [person.name for person in session.people]
     policies = dict.fromkeys(game.policy for game in games)
     facts = [
         ("When", f"{day_and_time(games[0].at)} to {_until(session)}"),
+        ("Games", ", ".join(dict.fromkeys(GAME_WORDS[game.world] for game in games))),
         ("Who took part", ", ".join(people) or "nobody is named in the log"),
         ("Policy", ", ".join(policies)),
         ("How long", _how_long(session)),

@@ -10,13 +10,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
 from tangy_tui.ui.local_time import local_time
 
 SHORT = 6
 """Characters of an id that are printed."""
-COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end")
+SHORT_WORLDS = {SIMULATED: "sim", BENCH: "bench", LIVE: "live"}
+COLUMNS = ("", "id", "when", "activity", "policy", "steps", "faults", "end", "games")
 FOLDED = ("activity", "policy")
 """What people name as they like; all else fits 80 columns, with numbers of five digits too."""
 
@@ -46,6 +48,7 @@ def print_games(games: Sequence[Game]) -> None:
             str(game.steps),
             _faults(game),
             _ended(game),
+            SHORT_WORLDS[game.world],
         )
     console.print(table)
     for game in games:

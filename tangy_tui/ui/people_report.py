@@ -29,7 +29,8 @@ def print_people(records: Sequence[Record]) -> None:
     """Print everybody with the strategies tried on them, and what works with whom in words."""
     console = Console(highlight=False)
     strategies = tuple(records[0].beliefs)
-    table = _table("Complied, of times tried (P(best))", "person", *strategies)
+    title = f"Complied, of times tried (P(best)), in {records[0].world} games"
+    table = _table(title, "person", *strategies)
     for record in records:
         cells = (_short(record, strategy) for strategy in strategies)
         table.add_row(Text(plain(record.person.name)), *cells)
@@ -43,7 +44,7 @@ def print_person(record: Record) -> None:
     """Print one person in full."""
     console = Console(highlight=False)
     table = _table(
-        f"{plain(record.person.name)} ({record.person.id})",
+        f"{plain(record.person.name)} ({record.person.id}), in {record.world} games",
         "strategy", "complied", "mean", "90% interval", "P(best)", "",
     )  # fmt: skip
     for strategy, belief in record.beliefs.items():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, as_given, print_json
 from tangy_tui.verbs.opening import open_house
@@ -27,6 +28,13 @@ app = typer.Typer(
 )
 
 Who = Annotated[str, typer.Argument(metavar="PERSON", help="An id or a name.")]
+WhoseGames = Annotated[
+    str,
+    typer.Option(
+        "--world",
+        help="Whose games count: simulated, bench or live; default those of the last game.",
+    ),
+]
 Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the activity.")]
 
 
@@ -41,7 +49,7 @@ def people(
 ) -> None:
     """List the people, where no verb is given."""
     if context.invoked_subcommand is None:
-        people_list(activity, seed, data, users, as_json)
+        people_list(activity, seed, data, users, as_json=as_json)
     elif (activity, seed, data, users, as_json) != ("bingo", None, None, 4, False):
         verb = context.invoked_subcommand
         raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
@@ -53,6 +61,7 @@ def people_list(
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
+    world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
     """List the people, with how often each strategy has worked."""
@@ -60,7 +69,7 @@ def people_list(
     from tangy_tui.ui import people_report
 
     with open_house(data, activity, users, write=False) as house:
-        records = house.records()
+        records = house.records(world=_world(world))
         if as_json:
             print_json([person_document(record) for record in records])
         else:
@@ -74,13 +83,14 @@ def people_show(
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
+    world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
     """Show one person: what works, how sure that is, and the history game by game."""
     from tangy_tui.ui import people_report
 
     with open_house(data, activity, users, write=False) as house:
-        record = _record(house, house.find_person(person))
+        record = _record(house, house.find_person(person), _world(world))
         if not _printed(record, as_json):
             people_report.print_person(record)
 
@@ -92,6 +102,7 @@ def people_history(
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
+    world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
     """List what a person was asked to do, game by game, with the numbers `void` takes."""
@@ -99,7 +110,7 @@ def people_history(
     from tangy_tui.ui import people_report
 
     with open_house(data, activity, users, write=False) as house:
-        record = _record(house, house.find_person(person))
+        record = _record(house, house.find_person(person), _world(world))
         if as_json:
             print_json([entry_document(entry) for entry in record.history])
         else:
@@ -117,13 +128,14 @@ def people_void(
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
+    world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
     """Let a response no longer count ("that was not compliance")."""
-    with _changing(data, activity, users, person, as_json) as (house, found):
-        feedback = house.memory().feedback
-        entry = _numbered(feedback.history(found.id), number, found)
-        feedback.void(found.id, entry.seq, plain(why))
+    with _changing(data, activity, users, person, as_json, world) as (house, found):
+        memory = house.memory(_world(world))
+        entry = _numbered(memory.history(found.id), number, found)
+        memory.feedback.void(found.id, entry.seq, plain(why))
         if not as_json:
             print(plain(f"Void: {_entry_words(entry)}."))
 
@@ -143,19 +155,20 @@ def people_feedback(
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
+    world: WhoseGames = "",
     as_json: Json = False,
 ) -> None:
     """Say later what a person did about a request that waits for an answer."""
-    with _changing(data, activity, users, person, as_json) as (house, found):
-        feedback = house.memory().feedback
+    with _changing(data, activity, users, person, as_json, world) as (house, found):
+        memory = house.memory(_world(world))
         _known(strategy, house.activity.strategies, "strategy")
         _known(complied, ("yes", "no"), "answer")
         if seen and of is not None:
             raise TangyError("Choose one: --of for a request in the history, or --seen for none.")
-        history = feedback.history(found.id)
+        history = memory.history(found.id)
         request = None if seen else _awaiting(history, strategy, of, found)
         of_seq = None if request is None else request.seq
-        given = feedback.give(found.id, strategy, complied == "yes", of_seq)
+        given = memory.feedback.give(found.id, strategy, complied == "yes", of_seq)
         if not as_json:
             print(plain(f"Said: {_entry_words(given)}."))
 
@@ -265,7 +278,7 @@ def people_rename(
 
 @contextmanager
 def _changing(
-    data: Path | None, activity: str, users: int, person: str, as_json: bool
+    data: Path | None, activity: str, users: int, person: str, as_json: bool, world: str = ""
 ) -> Iterator[tuple[House, Person]]:
     """Open the house for a change to a person, and say afterwards what is now known of them."""
     from tangy_tui.interaction.saying import method_words, sentence
@@ -273,9 +286,9 @@ def _changing(
     with open_house(data, activity, users) as house:
         found = house.find_person(person)
         yield house, found
-        record = _record(house, found)
+        record = _record(house, found, _world(world))
         if not _printed(record, as_json):
-            print(plain(f"Now: {sentence(record)}."))
+            print(plain(f"Now: {sentence(record)}, in {record.world} games."))
             off = sorted(record.known.off)
             print(plain(f"Method: {method_words(record)}.") + _off_words(off))
 
@@ -304,9 +317,14 @@ def _off_words(off: list[str]) -> str:
     return plain(f" Switched off: {', '.join(off)}.") if off else ""
 
 
-def _record(house: House, person: Person) -> Record:
-    (record,) = house.records(person)
+def _record(house: House, person: Person, world: GameWorld | None) -> Record:
+    (record,) = house.records(person, world=world)
     return record
+
+
+def _world(word: str) -> GameWorld | None:
+    """Return the world that was asked for; None: that of the last game."""
+    return read_game_world(word) if word else None
 
 
 def _printed(record: Record, as_json: bool) -> bool:

@@ -10,6 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import GAME_WORLDS
 from tangy_tui.house import House
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.record import Record
@@ -47,7 +48,8 @@ class PeopleScreen(TangyScreen[None]):
         "each way of asking and the history game by game. tab goes from one panel to the next. "
         "Every change is asked about first, and u takes the last one back. "
         "n is for how the name is said, so that it is heard when somebody speaks it. Names are "
-        "given on the command line: tangy people rename."
+        "given on the command line: tangy people rename. What is known is kept apart for "
+        "simulated games, games on the bench, and live ones: w shows the next of them."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("v", "void", "The chosen response does not count"),
@@ -56,6 +58,7 @@ class PeopleScreen(TangyScreen[None]):
         Binding("m", "method", "Choose how Tangy persuades this person"),
         Binding("n", "pronounce", "Say how this person's name is said"),
         Binding("u", "undo", "Take the last change back"),
+        Binding("w", "world", "Show simulated, bench or live games"),
         Binding("escape", "leave", "Back"),
     ]
 
@@ -65,11 +68,12 @@ class PeopleScreen(TangyScreen[None]):
         self._house = house
         self._leave_after = leave_after
         self._feedback = house.memory().feedback
+        self._world = house.memory().world
         self._records: dict[str, Record] = {}
 
     def compose(self) -> ComposeResult:
         """Lay out the three panels."""
-        yield StatusLine(Status(mode="people", note=self._house.activity.title))
+        yield StatusLine(self._status)
         with Container(id="body"):
             with Container(id="left"):
                 yield panel(ChoiceList("People", PEOPLE_HELP, id="people"))
@@ -83,9 +87,22 @@ class PeopleScreen(TangyScreen[None]):
             ("m", "method"),
             ("u", "undo"),
             ("n", "name"),
+            ("w", "games"),
             ("esc", "back"),
             ("?", "help"),
         )
+
+    @property
+    def _status(self) -> Status:
+        return Status(mode="people", note=f"{self._house.activity.title}, {self._world} games")
+
+    def action_world(self) -> None:
+        """Show what is known from the games of the next world."""
+        self._world = GAME_WORLDS[(GAME_WORLDS.index(self._world) + 1) % len(GAME_WORLDS)]
+        self._feedback = self._house.memory(self._world).feedback
+        self.query_one(StatusLine).show(self._status)
+        self._read()
+        self._say(f"What is known from {self._world} games.")
 
     def on_mount(self) -> None:
         """Fill the panels from the log."""
@@ -211,7 +228,7 @@ class PeopleScreen(TangyScreen[None]):
 
     def _read(self) -> None:
         """Read everything from the log again."""
-        records = self._house.records()
+        records = self._house.records(world=self._world)
         self._records = {record.person.id: record for record in records}
         self._list("people").show(lambda width, _: people_lines(records, width))
         self._show_person()

@@ -71,7 +71,7 @@ class PlayPanels(TangyScreen[Tally]):
             with Vertical(id="right"):
                 yield panel(Transcript(id="transcript"))
                 yield panel(PolicyTable())
-                yield panel(Posteriors())
+                yield panel(Posteriors(world=self._supervision.world.played_in))
         if (hearing := hearing_of(self.app)) is not None:
             yield HearingLine(hearing)
         yield KeyLine(*keys(going=True))

@@ -62,14 +62,22 @@ class Posteriors(ScrollView, can_focus=True):
     def __init__(
         self,
         *,
+        world: str = "",
         compact: bool | None = None,
         id: str | None = "posteriors",
         classes: str | None = None,
     ) -> None:
-        """Make the view; `compact` gives each person one line (None: where it is narrow)."""
+        """Make the view.
+
+        Args:
+            world: whose games the beliefs are from, for the title; "" leaves it out.
+            compact: gives each person one line (None: where it is narrow).
+            id: the widget's id.
+            classes: the widget's classes.
+        """
         super().__init__(id=id, classes=classes)
         self._compact_wanted = compact
-        self.border_title = "Posteriors"
+        self.border_title = f"Posteriors, {world} games" if world else "Posteriors"
         self._beliefs: dict[str, Beliefs] = {}
         self._names: Mapping[str, str] = {}
         self._highlight: tuple[str, str] | None = None

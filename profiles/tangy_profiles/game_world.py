@@ -1,0 +1,35 @@
+"""Where a game is played: in simulation, on the bench of simulated devices, or with a robot.
+
+What is believed of people is kept for each of them apart, so that a simulated person teaches
+Tangy nothing about a real one.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import nearest, plain
+
+GameWorld = Literal["simulated", "bench", "live"]
+SIMULATED: GameWorld = "simulated"
+BENCH: GameWorld = "bench"
+LIVE: GameWorld = "live"
+GAME_WORLDS: tuple[GameWorld, ...] = get_args(GameWorld)
+
+
+def game_world(value: Any) -> GameWorld | None:
+    """Return the world that a log or a file names; None where it names none that there is."""
+    return next((world for world in GAME_WORLDS if world == value), None)
+
+
+def read_game_world(word: str) -> GameWorld:
+    """Return the world that a person names.
+
+    Raises:
+        TangyError: there is no such world; it names the nearest one.
+    """
+    world = game_world(word.strip().casefold())
+    if world is None:
+        raise TangyError(plain(f"There are no {word!r} games: {nearest(word, GAME_WORLDS)}"))
+    return world

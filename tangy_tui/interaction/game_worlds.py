@@ -1,0 +1,76 @@
+"""In which world each game of the log was played, and whose beliefs a response belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime, timedelta
+
+from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld, game_world
+from tangy_profiles.store import Event, Store
+
+BEGUN, STEP = "game begun", "game step"
+
+
+class GameWorlds:
+    """The worlds of the games of one log. What was read once is not read again."""
+
+    def __init__(self, store: Store) -> None:
+        """Read from a log."""
+        self._store = store
+        self._worlds: dict[str, GameWorld] = {}
+        self._read = 0
+
+    @property
+    def all(self) -> Mapping[str, GameWorld]:
+        """The world of every game, by its id, in the order of the log."""
+        unmarked: dict[str, Event] = {}
+        for event in self._store.events(BEGUN, after=self._read):
+            self._read = event.seq
+            game = str(event.body.get("game"))
+            world = game_world(event.body.get("world"))
+            self._worlds[game] = world or SIMULATED
+            if world is None and "world" not in event.body:
+                unmarked[game] = event
+        if unmarked:
+            self._worlds.update(_told_by_time(self._store, unmarked))
+        return self._worlds
+
+    @property
+    def last(self) -> GameWorld:
+        """The world of the last game; before any game: simulated."""
+        return next(reversed(list(self.all.values())), SIMULATED)
+
+    def of(self, game: object, said: object = None) -> GameWorld:
+        """Return the world that something in the log belongs to.
+
+        Args:
+            game: the id of its game, or None.
+            said: the world that it names itself, where it belongs to no game.
+        """
+        return self.all.get(str(game)) or game_world(said) or SIMULATED
+
+
+def _told_by_time(store: Store, begun: Mapping[str, Event]) -> dict[str, GameWorld]:
+    """Tell the world of games of before worlds were logged, by how long their calls took.
+
+    A simulated call always takes the same time, and a robot's is measured. A game that was
+    over sooner than its own steps say was played on the bench.
+    """
+    calls: dict[str, set[float]] = {game: set() for game in begun}
+    lasted = dict.fromkeys(begun, 0.0)
+    until = {game: event.at for game, event in begun.items()}
+    for event in store.events(STEP, after=min(event.seq for event in begun.values())):
+        game = str(event.body.get("game"))
+        seconds = event.body.get("seconds")
+        if game not in begun or not isinstance(seconds, int | float):
+            continue
+        lasted[game] += seconds
+        until[game] = event.at
+        if event.body.get("numbers") and event.body.get("target") is None:
+            calls[game].add(round(seconds, 3))
+    found: dict[str, GameWorld] = {}
+    for game, event in begun.items():
+        took = datetime.fromisoformat(until[game]) - datetime.fromisoformat(event.at)
+        hurried = took < timedelta(seconds=lasted[game] / 2)
+        found[game] = SIMULATED if len(calls[game]) < 2 else BENCH if hurried else LIVE
+    return found

@@ -1,0 +1,141 @@
+"""What is believed of people is kept apart for simulated, bench and live games."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.game_world import (
+    BENCH,
+    GAME_WORLDS,
+    LIVE,
+    SIMULATED,
+    GameWorld,
+    read_game_world,
+)
+from tangy_profiles.person import Person
+from tangy_profiles.persuading import Persuading
+from tangy_profiles.state import FRONT, ActivityState, Situation
+from tangy_profiles.store import Store
+from tangy_tui.interaction.game_worlds import GameWorlds
+from tangy_tui.interaction.memory import Memory
+from tangy_tui.interaction.record import read_records
+
+STATE = ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()).to_json()
+STRATEGIES = ("praise", "neutral")
+
+
+def game(store: Store, id: str, world: GameWorld | None, complied: int, refused: int = 0) -> None:
+    """Log a game with responses of one person to praise."""
+    body = {"game": id, "number": 1, "activity": "a", "policy": "", "seed": 1, "people": ["p"]}
+    store.append("game begun", body if world is None else {**body, "world": world})
+    for did in [True] * complied + [False] * refused:
+        told = {"game": id, "followed": did, "seconds": 1.0}
+        store.append("response", told, person="p", strategy="praise", complied=did)
+
+
+def believed(store: Store, world: GameWorld | None = None) -> tuple[float, float]:
+    belief = Memory(store, STRATEGIES, world=world).recall("p").beliefs["praise"]
+    return belief.alpha, belief.beta
+
+
+def test_each_world_has_its_own_beliefs(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "s", SIMULATED, 5, 1)
+        game(store, "b", BENCH, 2)
+        game(store, "l", LIVE, 0, 3)
+        assert [believed(store, world) for world in GAME_WORLDS] == [(6, 2), (3, 1), (1, 4)]
+
+
+def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        assert GameWorlds(store).last == SIMULATED
+        game(store, "l", LIVE, 1)
+        game(store, "s", SIMULATED, 4)
+        assert believed(store) == believed(store, SIMULATED) == (5, 1)
+        game(store, "m", LIVE, 1)
+        assert believed(store) == (3, 1)
+
+
+def test_a_method_that_forgets_learns_from_its_own_world_alone(tmp_path: Path) -> None:
+    forgetting = Persuading("thompson", "uniform", 0.9, "interaction")
+    with Store.open(tmp_path) as store:
+        game(store, "l", LIVE, 3)
+        before = Memory(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs
+        game(store, "s", SIMULATED, 0, 9)
+        assert Memory(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs == before
+
+
+def test_what_worked_with_others_is_taken_from_the_same_world(tmp_path: Path) -> None:
+    people = Persuading("thompson", "people")
+    with Store.open(tmp_path) as store:
+        game(store, "s", SIMULATED, 9)
+        fresh = Memory(store, STRATEGIES, people, world=LIVE).recall("q").prior
+        game(store, "t", SIMULATED, 9)
+        assert Memory(store, STRATEGIES, people, world=LIVE).recall("q").prior == fresh
+
+
+def test_what_staff_saw_without_a_game_belongs_to_the_world_they_look_at(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "s", SIMULATED, 1)
+        Memory(store, STRATEGIES, world=LIVE).feedback.give("p", "praise", True)
+        assert believed(store, LIVE) == (2, 1)
+        assert believed(store, SIMULATED) == (2, 1)
+        Memory(store, STRATEGIES, world=SIMULATED).feedback.give("p", "praise", False)
+        assert believed(store, LIVE) == (2, 1)
+        assert believed(store, SIMULATED) == (2, 2)
+
+
+def test_a_response_that_is_void_counts_in_no_world(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "l", LIVE, 2)
+        memory = Memory(store, STRATEGIES, world=LIVE)
+        memory.feedback.void("p", memory.history("p")[0].seq)
+        assert believed(store, LIVE) == (2, 1)
+        assert believed(store, SIMULATED) == (1, 1)
+
+
+def test_a_record_tells_of_one_world_with_the_numbers_of_the_whole_log(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "s", SIMULATED, 2)
+        game(store, "l", LIVE, 1)
+        person = Person("p", "Rosa")
+        (live,) = read_records(store, Memory(store, STRATEGIES, world=LIVE), [person])
+        assert (live.world, [entry.number for entry in live.history]) == (LIVE, [3])
+        (bench,) = read_records(store, Memory(store, STRATEGIES, world=BENCH), [person])
+        assert (bench.history, bench.seen) == ((), None)
+
+
+@pytest.mark.parametrize(
+    ("calls", "hurried", "world"),
+    [
+        ([31.0, 31.0, 31.0], True, SIMULATED),
+        ([31.0, 31.0, 31.0], False, SIMULATED),
+        ([], False, SIMULATED),
+        ([33.2, 33.4, 31.9], True, BENCH),
+        ([33.2, 33.4, 31.9], False, LIVE),
+    ],
+)
+def test_games_of_before_count_as_simulated_unless_a_robot_played_them(
+    tmp_path: Path, calls: list[float], hurried: bool, world: GameWorld
+) -> None:
+    clock = [datetime(2026, 1, 1, tzinfo=UTC)]
+    with Store.open(tmp_path, now=lambda: clock[0]) as store:
+        game(store, "old", None, 1)
+        for seconds in calls:
+            clock[0] += timedelta(seconds=0.5 if hurried else seconds)
+            body = {"game": "old", "behaviour": "b", "target": None, "numbers": [1]}
+            body |= {"seconds": seconds, "state": STATE}
+            store.append("game step", body)
+        assert GameWorlds(store).all == {"old": world}
+        game(store, "new", BENCH, 0)
+        assert believed(store, world) == (2, 1)
+
+
+def test_an_unknown_world_is_refused_with_the_nearest_word() -> None:
+    assert read_game_world(" Live ") == LIVE
+    with pytest.raises(TangyError, match="bench"):
+        read_game_world("bnech")
