@@ -267,7 +267,9 @@ BODIES: Mapping[str, Check] = {
     ),
     "response awaited": Fields({}, {"game": maybe(text)}),
     "game ended": Fields({"game": text, "steps": count, "stopped": maybe(text)}),
-    "feedback": Fields({}, {"game": maybe(text), "of": maybe(text)}),
+    "feedback": Fields(
+        {}, {"game": maybe(text), "of": maybe(text), "world": maybe(one_of(*GAME_WORLDS))}
+    ),
     "void": Fields({"of": text}, {"why": text}),
     "taken back": Fields({"of": text}, {"what": text}),
     "strategy switched": Fields({"on": yes_or_no}),

@@ -127,8 +127,10 @@ def test_games_of_before_count_as_simulated_unless_a_robot_played_them(
         game(store, "old", None, 1)
         for seconds in calls:
             clock[0] += timedelta(seconds=0.5 if hurried else seconds)
-            body = {"game": "old", "behaviour": "b", "target": None, "numbers": [1]}
-            body |= {"seconds": seconds, "state": STATE}
+            body = {
+                "game": "old", "behaviour": "b", "target": None, "numbers": [1],
+                "seconds": seconds, "state": STATE,
+            }  # fmt: skip
             store.append("game step", body)
         assert GameWorlds(store).all == {"old": world}
         game(store, "new", BENCH, 0)

@@ -144,7 +144,12 @@ async def test_panels_are_chosen_by_number_where_there_is_no_room(
 ) -> None:
     async with run(app=playing(house, policy), size=SMALL) as pilot:
         await pause_at_once(pilot)
-        for key, title in (("2", "Steps"), ("3", "Policy"), ("4", "Posteriors"), ("5", "Log")):
+        for key, title in (
+            ("2", "Steps"),
+            ("3", "Policy"),
+            ("4", "Posteriors, simulated games"),
+            ("5", "Log"),
+        ):
             await pilot.press(key)
             await pilot.pause()
             assert f" {title} " in screen_text(pilot.app)
