@@ -243,6 +243,11 @@ class RobotLink:
         return f"Chest screen: open {self.screen} on the tablet; the code there is {self.code}."
 
     @property
+    def tablet_page(self) -> str:
+        """The address of the chest screen and its code, as short as can be; "" as for `tablet`."""
+        return f"chest screen {self.screen} code {self.code}" if self.screen else ""
+
+    @property
     def state(self) -> RobotState:
         """What the robot said of itself last."""
         return self._told.state

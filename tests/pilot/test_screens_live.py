@@ -75,9 +75,11 @@ async def test_staff_see_where_tablets_open_the_chest_screen_and_by_which_code(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     link.tablet = "Chest screen: open http://10.0.0.5:8765/ on the tablet; the code is 1234-5678."
-    async with run(app=program) as pilot:
+    link.tablet_page = "chest screen http://10.0.0.5:8765/ code 1234-5678"
+    async with run(app=program, size=(80, 24)) as pilot:
         await paused_after(pilot, link, 1)
         assert link.tablet in live(pilot).query_one(LogView).sentences
+        assert link.tablet_page in screen_text(pilot.app)  # however small the window is
 
 
 async def test_where_it_drives_to_is_seen_in_a_small_window(

@@ -14,6 +14,7 @@ from math import ceil
 from typing import ClassVar
 
 from textual.binding import BindingType
+from textual.content import Content
 from textual.screen import Screen
 
 from tangy_hw.stopping import STAFF
@@ -88,6 +89,8 @@ class LiveScreen(PlayScreen):
         self._show_status()
         if self._world.link.tablet:
             self._write(self._world.link.tablet, "text")
+            # the log has no room in a small window, and the tablet may have to be opened again
+            self.query_one(RoomView).border_subtitle = Content(self._world.link.tablet_page)
         self.set_interval(TRACK_SECONDS, self._track)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
