@@ -8,6 +8,8 @@ from types import MappingProxyType
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.learning.stop_sentence import stops
+from tangy_tui.learning.words import words_of
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 from tangy_tui.monitoring.drill_sheet import Answered, Sheet
@@ -38,6 +40,7 @@ WELCOME = (
 )
 KEPT = "What was answered before is kept as an unfinished sheet."
 NOTHING_KEPT = "Nothing was kept: the first round was not answered to its end."
+NOTHING_MOVES = "Nothing is moving: this is a rehearsal, without the robot."
 HELP = "Type the number or letter of an answer, or quit."
 
 _STATES = {STALE: "nothing comes from it", ERROR: "it reports an error", "WARN": "it warns"}
@@ -264,6 +267,9 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
         if word in ("quit", "exit", "leave"):
             return False
         if not word or word.startswith("#"):
+            continue
+        if stops(word, words_of(drill.tabletop.activity.title)):
+            write(NOTHING_MOVES)
             continue
         if question.kind == "clear":
             word = {"yes": "y", "no": "n"}.get(word, word)

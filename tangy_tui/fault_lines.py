@@ -92,6 +92,8 @@ def attend(game: Supervision, write: Write, read: Read, who: str) -> list[Event]
                 write(told_line)
         elif word in ("quit", "exit", "leave"):
             break
+        elif game.verifier().stops(word):
+            write(HALTED)
         elif word and not word.startswith("#"):
             if word not in ("help", "?"):
                 write(f"I do not know {word!r} here.")

@@ -44,6 +44,7 @@ MEANINGS = (
     ("why", "say why Tangy asks"),
     ("quit", "give the game up"),
 )
+STOPPED = "STOP: Tangy stands still until you say what it should do."
 ACCEPTING = ("all right", "what happened is all right: expect it from now on")
 _TAKEN_BACK = {"undo": "undo", "redo": "redo", "again": "show again"}
 
@@ -173,6 +174,11 @@ def _ask(
             continue
         if lower in ("quit", "exit", "leave"):
             break
+        if verifier.stops(text):
+            if verifier.question is not None:
+                verifier.reply(Reply(yes=False))
+            write(STOPPED)
+            continue
         if verifier.question is not None:
             if lower in ANSWERS:
                 said = verifier.reply(Reply(yes=ANSWERS[lower]))

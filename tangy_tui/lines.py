@@ -18,7 +18,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.speech.ears import Ears, Heard
-from tangy_tui.learning.speech.understanding import stops
+from tangy_tui.learning.stop_sentence import stops
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -226,7 +226,7 @@ class TeachingLines:
         lower = text.lower()
         if not text or text.startswith("#"):
             return "nothing"
-        if stops(lower):
+        if stops(text, self._teaching.phrasebook.game):
             return Stop(text)
         if self._teaching.question is not None and lower != "quit":
             if lower in ANSWERS:

@@ -15,7 +15,8 @@ from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Alike, Lexicon, distinct_word
 from tangy_tui.learning.phrases import Phrase
 from tangy_tui.learning.pronouncing import can_look_up
-from tangy_tui.learning.speech.understanding import NO, YES, stops
+from tangy_tui.learning.speech.understanding import NO, YES
+from tangy_tui.learning.stop_sentence import stops
 from tangy_tui.learning.words import words_of
 
 

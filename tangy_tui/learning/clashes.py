@@ -15,7 +15,8 @@ from tangy_tui.learning.lexicon import MOST_WAYS, Lexicon
 from tangy_tui.learning.naming import how_said
 from tangy_tui.learning.phrases import name_phones
 from tangy_tui.learning.pronouncing import pronounce
-from tangy_tui.learning.speech.understanding import NO, STOPS, YES, stops
+from tangy_tui.learning.speech.understanding import NO, YES
+from tangy_tui.learning.stop_sentence import STOPS, stops
 from tangy_tui.learning.words import Words, bare, clean, spoken, words_of
 
 

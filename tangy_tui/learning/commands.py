@@ -64,17 +64,20 @@ class Phrasebook:
     """What is meant by a text, out of every phrase and keyword of an activity (see `phrases`).
 
     `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
-    the ids of those who can be gone to; `table` has each phrase with all that is known of it.
+    the ids of those who can be gone to; `table` has each phrase with all that is known of it;
+    `game` are the words that the activity is called by.
     """
 
     phrases: Mapping[str, str]
     people: tuple[str, ...]
     table: Phrases
+    game: frozenset[str]
 
     def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
         """Make the phrasebook of an activity for the people who take part in it."""
         self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
         self.people = tuple(person.id for person in people)
+        self.game = frozenset(words_of(activity.title))
         self.nouns = {
             name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
             for name in self._to_people

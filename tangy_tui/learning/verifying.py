@@ -13,6 +13,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import ActivityState
 from tangy_tui.learning.commands import MOST_ALTERNATIVES, Command, Phrasebook
+from tangy_tui.learning.stop_sentence import stops
 
 ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
 """What is typed for an answer where lines are read."""
@@ -153,6 +154,10 @@ class Verifier:
         if not said.sure:
             return self._offer(said, commands)
         return self._ask(commands[0], commands[1:])
+
+    def stops(self, text: str) -> bool:
+        """Say whether what was typed stops the robot, instead of asking for a behaviour."""
+        return stops(text, self._phrasebook.game)
 
     def reply(self, reply: Reply) -> Verification:
         """Take the answer to the open question."""

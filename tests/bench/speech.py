@@ -43,6 +43,7 @@ from tangy_tui.learning.speech.decoding import Decoder, make_decoder
 from tangy_tui.learning.speech.evidence import Evidence, Expecting, Settings
 from tangy_tui.learning.speech.listening import tier_of
 from tangy_tui.learning.speech.recogniser import Recogniser
+from tangy_tui.learning.stop_sentence import stops
 from tangy_tui.learning.verifying import Reply, Say
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 
@@ -68,7 +69,7 @@ def meaning(kind: str, text: str) -> tuple[str, dict[str, str]] | None:
         return WORDINGS[text], {}
     if kind != "phrase":
         return None
-    if understanding.stops(text):
+    if stops(text):
         return "stop", {}
     command = BOOK.understand(text)
     assert command is not None
@@ -262,7 +263,7 @@ def figures(job: Job, evidence: Evidence) -> tuple[list[float], bool] | None:
     """Return what the likelihood of an utterance is made of, and whether it was understood."""
     text, margin = understanding.best_words(evidence, BOOK)
     found = BOOK.choices(text)
-    if not found or understanding.stops(text):
+    if not found or stops(text):
         return None
     known = min(BOOK.known(text), understanding.MOST_KNOWN)
     ok = right(job[0], job[2], found[0].behaviour, dict(found[0].arguments))

@@ -35,18 +35,17 @@ from tangy_tui.learning.speech.evidence import (
 )
 from tangy_tui.learning.speech.language import dictionary, grammar, open_model, phrase_model
 from tangy_tui.learning.speech.understanding import (
-    STOPS,
     SURE,
     UNDERSTOOD,
     UNSURE,
     answer,
     best_words,
     likelihood,
-    stops,
     understand,
     wanted,
 )
 from tangy_tui.learning.speech.worker import LARGEST_PIECE, STANDS, Worker
+from tangy_tui.learning.stop_sentence import STOPS, stops
 from tangy_tui.learning.verifying import Reply, Say, Stop
 from tests.hw.sounds import wav
 from tests.learning.speech_fakes import FakeRecogniser, sound

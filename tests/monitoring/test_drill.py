@@ -457,6 +457,18 @@ def test_by_lines_a_slip_is_asked_again_and_the_end_of_lines_leaves(
     assert last_sheet(store) == replace(sheet, at=last_sheet(store).at)  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize("strict", [False, True])
+def test_by_lines_who_says_stop_hears_that_nothing_moves(
+    table: Tabletop, store: Store, strict: bool
+) -> None:
+    told: list[str] = []
+    lines = iter(["stop the robot", "stop the bingo"])
+    drill = Drill(table, store, who="ada", seed=3, rounds=4)
+    drill_by_lines(drill, told.append, lambda: next(lines, None), strict=strict)
+    assert sum(line.startswith("Nothing is moving") for line in told) == 2
+    assert not any(line.startswith("Type the number") for line in told)
+
+
 def test_in_a_script_a_slip_ends_it_and_what_was_answered_stays(
     table: Tabletop, store: Store
 ) -> None:

@@ -240,6 +240,15 @@ def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervis
     assert "Game 2 begins." not in said
 
 
+def test_by_lines_who_says_stop_while_it_stands_still_hears_so(supervise: Supervise) -> None:
+    game = supervise("link-lost@3", seed=3)
+    typed, said = iter(["stop the bingo", "quit"]), list[str]()
+    play_by_lines(game, 1, str, said.append, lambda: next(typed, None), "Ada")
+    halted = [line for line in said if line.startswith("Tangy stands still. Type: seen")]
+    assert len(halted) == 2
+    assert not any("I do not know" in line for line in said)
+
+
 def test_an_answer_that_holds_once_is_put_down_to_who_gave_it(supervise: Supervise) -> None:
     game = supervise("no-effect@1", seed=3)
     typed, said = iter(["call number", "y"]), list[str]()

@@ -255,6 +255,18 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
             await pilot.pause(0.02)
 
 
+@pytest.mark.parametrize("words", ["stop the robot", "Please stop the bingo game!"])
+async def test_a_stop_that_is_typed_for_an_answer_stops(
+    run: Run, house: House, gappy: Policy, words: str
+) -> None:
+    async with run(app=playing(house, gappy)) as pilot:
+        screen = await asked(pilot)
+        pilot.type(*words, "enter")
+        await pilot.pause()
+        assert "STOPPED" in screen_text(pilot.app)
+        assert pilot.app.screen is screen and screen._supervision.question is not None
+
+
 async def test_pausing_while_tangy_asks_pauses_after_the_answer(
     run: Run, house: House, gappy: Policy
 ) -> None:

@@ -318,6 +318,16 @@ async def test_stop_works_while_a_question_is_open(run: Run, house: House) -> No
         assert not read_demonstrations(house.store, house.activity.name)
 
 
+@pytest.mark.parametrize("words", ["stop the robot", "emergency stop", "Make it stop!"])
+async def test_a_stop_is_typed_as_it_is_said(run: Run, house: House, words: str) -> None:
+    async with run(app=program(house)) as pilot:
+        pilot.type(*words, "enter")
+        await pilot.pause()
+        assert "STOP: the simulated robot stands still" in screen_text(pilot.app)
+        assert isinstance(pilot.app.screen, TeachScreen)
+        assert "No steps yet" in screen_text(pilot.app)
+
+
 async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> None:
     with_markup = House(tmp_path / "data")
     with_markup.store.rename("user1", "[/][@click=app.quit]x")

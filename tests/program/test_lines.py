@@ -86,6 +86,22 @@ def test_an_answer_without_a_question_is_told_so(house: House, answer: str) -> N
     assert told(house, answer)[-1] == "There is no question open: give a command."
 
 
+@pytest.mark.parametrize(
+    "words", ["stop the robot", "Emergency stop!", "make it stop", "stop the bingo game"]
+)
+def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(house: House, words: str) -> None:
+    stands = "STOP: the simulated robot stands still until the next command is carried out."
+    assert told(house, words)[-1] == stands
+    said = told(house, "greet everyone", words, "y")
+    assert said[-2:] == [stands, "There is no question open: give a command."]
+    assert not any(line.startswith("1. ") for line in said)
+
+
+@pytest.mark.parametrize("words", ["stop teasing her", "stop the music", "don't stop"])
+def test_what_only_mentions_stopping_is_a_command_like_another(house: House, words: str) -> None:
+    assert not any(line.startswith("STOP") for line in told(house, words))
+
+
 @pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
 def test_again_wants_a_step(house: House, words: str) -> None:
     assert told(house, words)[-1] == "Say which step: again 5 goes back before step 5."
@@ -303,6 +319,13 @@ def asked(house: House, *lines: str, knows: bool = True) -> list[str]:
     assert said[1].startswith("Tangy asks. Nobody has shown Tangy what to do here yet: start")
     stopped = next(n for n, line in enumerate(said) if line.startswith("The game stopped after"))
     return said[2:stopped]
+
+
+def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(house: House) -> None:
+    stands = "STOP: Tangy stands still until you say what it should do."
+    assert asked(house, "stop the robot") == [stands]
+    *_, said, last = asked(house, "greet everyone", "stop the bingo", "y")
+    assert (said, last) == (stands, "There is no question open: give a command.")
 
 
 def test_while_tangy_asks_it_says_why_and_what_it_sees(house: House) -> None:

@@ -28,7 +28,8 @@ from tangy_tui.learning.speech.calibration import (
 from tangy_tui.learning.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
 from tangy_tui.learning.speech.labels import Label
 from tangy_tui.learning.speech.loudness import LOUD, SILENT, advice, loudness
-from tangy_tui.learning.speech.understanding import stops, wanted
+from tangy_tui.learning.speech.understanding import wanted
+from tangy_tui.learning.stop_sentence import stops
 
 COMMANDS = 6
 SENTENCES = (  # of everyday speech; one that means something in the activity is not used

@@ -11,7 +11,7 @@ from pathlib import Path
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech.understanding import STOPS
+from tangy_tui.learning.stop_sentence import STOPS
 from tangy_tui.learning.words import Words, words_of
 
 STOP = "stop"

@@ -14,8 +14,8 @@ from difflib import SequenceMatcher
 
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech.evidence import Evidence, Settings, Wanted
+from tangy_tui.learning.stop_sentence import STOPS, stops
 from tangy_tui.learning.verifying import Reply, Say, Stop
-from tangy_tui.learning.words import words_of
 
 # How likely words are to be the command they come nearest to: a logistic over the confidence of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
@@ -31,11 +31,6 @@ SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the
 UNDERSTOOD = 0.35
 """The confidence below which the paper's mode takes nothing for a command."""
 
-STOPS = (
-    *("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "stop stop stop", "halt"),
-    *("no stop", "oh stop", "wait stop", "please stop", "stop it", "stop that", "stop right now"),
-    *("stop right there", "stop please", "stop what you are doing", "i said stop", "stop moving"),
-)
 OWN_NAME = {"tangy": ("T AE NG IY",)}
 YES = ("yes", "yes please", "yes do it", "yes that is right")
 NO = ("no", "no thank you", "no do not", "no that is wrong")
@@ -43,17 +38,6 @@ LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
 """The margins from which words are an answer: where the grammar finds it too, and where not."""
 
 SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
-CRIES = frozenset(("stop", "halt"))
-BESIDE_CRIES = frozenset(
-    (
-        *("no", "oh", "wait", "whoa", "please", "hey", "tangy", "robot", "now", "just", "and"),
-        *("i", "said", "you", "must", "have", "to", "it", "this", "that", "what", "what's"),
-        *("are", "you're", "doing", "right", "there", "here", "where", "moving", "driving"),
-        *("talking", "at", "once", "immediately", "everything", "know"),
-    )
-)
-"""What is said with a cry to stop; with any other word it is not certain who, or what, stops."""
-MOST_STOP_WORDS = 7
 
 
 def wanted(
@@ -78,11 +62,11 @@ def wanted(
 def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -> Say | Stop:
     """Return what an utterance commands: it may be several things, or (no commands) nothing."""
     if settings.mode == "paper":
-        if stops(evidence.words):
+        if stops(evidence.words, phrasebook.game):
             return Stop(evidence.words)
         return _as_in_the_paper(evidence, phrasebook)
     text, margin = best_words(evidence, phrasebook)
-    if stops(text):
+    if stops(text, phrasebook.game):
         return Stop(text)
     found = phrasebook.choices(text)
     if not found:
@@ -126,16 +110,6 @@ def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
     if settings.mode != "paper" and agreed and (said in YES or said in NO):
         return Reply(said in YES)
     return None
-
-
-def stops(text: str) -> bool:
-    """Say whether words stop the robot, whatever else is going on."""
-    words = words_of(text)
-    if not CRIES.intersection(words):
-        return False
-    if words[0] in CRIES and len(words) <= 2:
-        return True
-    return len(words) <= MOST_STOP_WORDS and BESIDE_CRIES.issuperset(set(words) - CRIES)
 
 
 def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:

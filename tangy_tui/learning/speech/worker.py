@@ -33,7 +33,7 @@ from typing import Any, get_args
 
 from tangy_tui.learning.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
-from tangy_tui.learning.speech.understanding import stops
+from tangy_tui.learning.stop_sentence import stops
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it

@@ -20,7 +20,6 @@ from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import Unsure
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.explaining import Why
-from tangy_tui.learning.speech.understanding import stops
 from tangy_tui.learning.verifying import (
     Asked,
     NotUnderstood,
@@ -284,7 +283,7 @@ class AskingPanel(Vertical):
             case "help":
                 bar.ready()
                 self.app.run_worker(self.run_action("app.help"))
-            case words if stops(words):
+            case words if self._verifier.stops(words):
                 bar.ready()
                 self.app.run_worker(self.run_action("app.stop"))
             case "phrases" | "voice" as word:

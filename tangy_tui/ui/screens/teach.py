@@ -17,7 +17,7 @@ from textual.worker import Worker
 from tangy_profiles.errors import TangyError
 from tangy_tui.house import House
 from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.speech.understanding import stops
+from tangy_tui.learning.stop_sentence import stops
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -152,7 +152,7 @@ class TeachScreen(TangyScreen[bool]):
             case "help":
                 self.query_one(CommandBar).ready()
                 self.app.run_worker(self.run_action("app.help"))
-            case words if stops(words):
+            case words if stops(words, self._teaching.phrasebook.game):
                 self.app.run_worker(self.run_action("app.stop"))
             case "undo":
                 self.action_undo()

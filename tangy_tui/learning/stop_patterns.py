@@ -1,0 +1,239 @@
+"""Patterns of sentences with which people stop the robot or the game, put together from small ones.
+
+They are for clauses of lower-case words with single spaces and without apostrophes, and with
+numbers as digits. A sentence is made of calls and askings ("please", "can you", "i want it to"), a
+verb of stopping, what is to stop, how, and what else is thought of it. `game` stands for what the
+activity is called.
+"""
+
+from __future__ import annotations
+
+import re
+
+
+def _any(*ways: str) -> str:
+    """Write a pattern for one of some ways; those that are lists of words have bars."""
+    return f"(?:{'|'.join(ways)})"
+
+
+# ------------------------------------------------------------------------------ who or what stops
+
+DETERMINER = (
+    "all of (?:the|this|that)|all(?: the| this| your)?|any|the|this|that|your|our|its|these|those"
+)
+PASSION = "whole|entire|bloody|stupid|damned?|darn|silly|crazy|mad|blasted|poor|big|little|horrible"
+BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
+LIMBS = "base|wheels?|motors?|engines?|arms?|hands?|head|movements?|motions?|moving|driving"
+PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"
+DOINGS = "lot|nonsense|madness|noise|talking|experiment|simulation|action"
+ROBOT = f"(?:(?:{DETERMINER}) )?(?:(?:{PASSION}|game) )*(?:{BODY})"
+GAME = f"(?:{DETERMINER}) (?:(?:{PASSION}|game) )*(?:{LIMBS}|{PLAYS}|{DOINGS})|game"
+_IS = f"(?:(?:you|it|he|she|they|{ROBOT}) (?:are|is)|youre|its|hes|shes|theyre)"
+_DOING = f"(?:what|whatever) (?:it is )?{_IS} (?:doing|up to)"
+THINGS = _any(
+    "all of (?:it|this|that)|everything|everybody|everyone|yourself|itself|himself|herself|all",
+    f"doing (?:that|this|it|everything|anything)|(?:doing )?{_DOING}|it all|it|that|this|these",
+)
+ITSELF = _any(ROBOT, GAME, THINGS)
+SOMEBODY = "him|her|them"
+
+# ------------------------------------------------------------------------------ how, and what else
+
+SAKE = r"for (?:\w+ )?\w+ sake|in (?:gods|heavens) name|in the name of (?:god|heaven)"
+NAMED = "tangy|robot|dear|love|buddy|mate|pal|darling|sweetheart|everybody|everyone|you"
+_MOMENT = "moment|second|sec|minute|instant|while|bit"
+HOW = _any(
+    "now|please|immediately|instantly|here|there|already|altogether|completely|dead|quick|quickly",
+    "fast|then|today|yet|stop|halt|no|oh|okay|ok|thanks|thank you|again|at last|finally|for good",
+    "at once|at this point|straight ?away|right (?:now|away|here|there|off)|just|still|emergency",
+    "(?:right |exactly |just )?where(?:ver)? (?:you are|youre|it is|it stands)",
+    f"(?:right )?this (?:very )?(?:{_MOMENT})|for (?:just )?(?:a|1|this) (?:{_MOMENT})",
+    f"a (?:{_MOMENT})|for (?:now|today|everyone|everybody|me|us)|(?:will|would|can|could|wont) you",
+    "do you hear(?: me)?|i (?:said|say|tell you|beg you|mean it)|this is an emergency",
+    "its an emergency|nothing else|at all costs|or else|if you can|as (?:fast|soon) as you can",
+    "with immediate effect|without delay|on the spot|absolutely|right in front of (?:me|us|her)",
+    f"(?:dead )?in (?:your|its) tracks|{NAMED}|{SAKE}",
+)
+_FINITE = "is|are|has|have|had|was|fell|hit|cant|cannot|wont|will|needs?|hurts?|does|do|did"
+_OTHERS = r"(?!\w+ing\b|who|what|which|where|when|that\b|to\b|from\b|at\b|in\b|by\b|me\b|us\b)"
+NEXT = _any(
+    "(?:before|or|because|cause|cos|until|till|and|but|there|theres|i|im|youre|hes|shes|theyre) .*",
+    "(?:its|thats|somebody|someone|something|watch|look|mind|careful|wait|let|help|dont|not) .*",
+    r"(?:you|it|he|she|we|they) (?!2|3|all|lot)\w+(?: .*)?",
+    rf"(?:that|this) (?:{_FINITE})\b.*",
+    rf"{_OTHERS}(?:\w+ ){{1,3}}(?:{_FINITE})\b.*",
+)
+"""Another thought that follows: why it is to stop, or what to do then."""
+AFTER = f"(?: {HOW}){{0,6}}(?: {NEXT})?"
+
+# -------------------------------------------------------------------------- what it is doing there
+
+_DRIVES = (
+    "moving|driving|rolling|turning|spinning|rotating|reversing|backing|going|coming|running"
+    "|walking|approaching|advancing|proceeding|wandering|circling|rushing|speeding|accelerating"
+    "|steering|charging|crashing|colliding|pulling|dragging|grabbing|waving|swinging|shaking"
+    "|touching|working|operating|acting|continuing"
+)
+_HARMS = (
+    "hurting|hitting|pushing|crushing|squeezing|squashing|ramming|trapping|pinning|blocking"
+    "|bumping|chasing|following|knocking"
+)
+_SPEAKS = (
+    "playing|calling(?: out)?|drawing|talking|speaking|announcing|celebrating|doing|counting"
+    "|reading"
+)
+PEOPLE_DO = (
+    "arguing|bickering|biting|boasting|bothering|bullying|chatting|cheating|chewing|complaining"
+    "|coughing|crying|cursing|daydreaming|dreaming|drinking|eating|fibbing|fidgeting|fighting"
+    "|flirting|frowning|fussing|giggling|gossiping|grinning|grumbling|guessing|hoping|joking"
+    "|kidding|laughing|lying|moaning|mumbling|nagging|picking|pouting|pretending|quarrelling"
+    "|scratching|shouting|showing|sighing|smiling|smoking|sneezing|snoring|sobbing|squabbling"
+    "|staring|stealing|sulking|swearing|teasing|thinking|whining|whispering|whistling|winking"
+    "|wondering|worrying|yawning|yelling"
+)
+"""What only people do: the robot is not asked to leave it off, though nobody is named."""
+_WHOM = "me|us|him|her|them|you|it|that|this|people|everybody|everyone|anybody|anyone|somebody"
+_WHERE = (
+    "forwards?|backwards?|back|up|around|round|away|off|on|in|out|over|ahead|left|right|sideways"
+    "|closer|nearer|further|faster|so (?:fast|quickly|close|near|much)|(?:this|that) way"
+    "|in circles|in (?:my|our|her|his|the) way|to the (?:left|right|front|back|table)"
+)
+_TOWARDS = "(?:towards?|at|into|against|over|onto|near|behind|after|past|around|round)"
+_PLACE = rf"{_TOWARDS} (?:\w+ )?\w+|to (?:{_WHOM}|user \w+|seat \w+|player \w+)"
+_OF_PLAY = f"to (?:{_WHOM})|(?:the |any )?(?:more )?numbers?|jokes|{ROBOT}|{GAME}"
+_MOVING = _any(
+    f"(?:{_DRIVES}|{_HARMS})(?: (?:{_WHERE}|{_PLACE}|{_WHOM}|{ROBOT}|{GAME})){{0,4}}",
+    rf"(?:{_HARMS}) (?:(?:the|my|our|a) )?(?!your)\w+",
+    f"(?:{_SPEAKS})(?: (?:{_OF_PLAY}))?",
+)
+_OTHERWISE = rf"(?!(?:{PEOPLE_DO})\b)\w+ing"
+
+# ----------------------------------------------------------------------------------- who asks whom
+
+CALL = _any(
+    "no|nope|oh|ah|aah|ow|ouch|ooh|hey|hi|hello|okay|ok|alright|all right|right|well|so|and|but",
+    "just|now|wait|whoa|woah|please|quick|quickly|fast|hurry(?: up)?|help(?: me| us| her| him)?",
+    "listen|look(?: out)?|watch(?: out| it)?|mind out|careful|be careful|sorry|excuse me|danger",
+    "(?:my |oh )?(?:god|gosh|goodness|lord|dear)|jesus|christ|damn|damn it|dammit|hell|come on",
+    f"enough|that(?: i)?s (?:enough|it)|(?:i|we) (?:said|say|repeat|mean)|{NAMED}|{SAKE}|nurse",
+    "somebody|someone|anybody|anyone|guys|immediately|at once|first|really|not another \\w+|ha",
+    "emergency|(?:this is|its) an emergency|then|also|yes|do|stop|halt|end (?:it|this)",
+)
+_MUST = (
+    "must|have to|has to|have got to|has got to|got to|gotta|needs? to|should|ought to|had better"
+    "|better|d better"
+)
+_YOU = f"you|we|i|{ROBOT}|somebody|someone|anybody|anyone"
+_WISH = "want|wants|wanted|need|needs|would like|order|command|beg|ask|tell|am telling"
+_WISHED = "asked|told|ordered|commanded|begged"
+_CAUSE = "make|get|have|let|tell|ask|order|force|command|help|bring"
+_NOBODY = "dont|didnt|doesnt|never|not|nobody"
+ASK = _any(
+    f"(?:{_YOU}|youd|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
+    "you (?:can|could|will|would|may|might)",
+    f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt) (?:{_YOU})",
+    f"why (?:dont|cant|wont|wouldnt|couldnt) (?:{_YOU})",
+    rf"(?!{_NOBODY})\w+ (?:just |really |now )*(?:{_WISH}) (?:{ITSELF}|you) to",
+    f"(?:i|we) (?:just |already )*(?:{_WISHED}) (?:{ITSELF}|you) to",
+    "(?:i|we) (?:really )?(?:think|guess|suppose|believe|suggest)(?: that)?",
+    f"(?:(?:i|we)(?:d like| would like|d want)|id like|wed like) (?:(?:{ITSELF}|you) )?to",
+    "(?:i|we) (?:just |really )*(?:want|need|wish) to|im going to|lets|let us",
+    f"(?:{_CAUSE}) (?:{ROBOT}|{GAME}|it|this|that|everything|yourself)(?: to)?",
+    "(?:(?:it is|its) (?:high )?)?time to|(?:how|where|a way) (?:do|can|could|would) \\w+",
+    "(?:do|does) \\w+ know how to|how to|try to|(?:go|be) and|(?:tell|show) me how to",
+    "how does 1|(?:press|push|pull|do) to|is there a way to|i (?:do not|dont) know how to",
+)
+BEFORE = tuple(re.compile(f"{pattern} ") for pattern in (CALL, ASK))
+"""What any number of times can come before the stopping itself."""
+
+# -------------------------------------------------------------------------------- stopping, in all
+
+STOP = "stop|halt|cease|freeze|abort|brake"
+_WHAT = _any(
+    f"(?: {HOW}){{0,3}} (?:{ITSELF}|{SOMEBODY}){AFTER}",
+    f"(?: {HOW}){{0,3}} (?:it|that|{ROBOT}|{GAME}) (?:from )?{_MOVING}{AFTER}",
+    f"(?: {HOW}){{0,3}} {_MOVING}{AFTER}",
+    f"(?: {HOW}){{0,3}} {_OTHERWISE}(?: {HOW}){{0,6}}",
+    f"(?: {HOW}){{0,3}} {ROBOT} .*",
+    AFTER,
+)
+_STILL = _any(
+    "(?:stand|hold|keep|stay|remain) (?:absolutely |perfectly |completely |very )?(?:still|put)",
+    "stay (?:right |exactly )?(?:where (?:you are|youre)|there|put)|hold it|stand down",
+    "(?:do not|dont|dont you|dont you dare) (?:you )?move(?: any ?more| any further| a muscle)?",
+    "(?:do not|dont) move another (?:inch|step|metre|centimetre)|full stop (?:now|tangy|robot)",
+    "(?:do not|dont) (?:come|go|move|drive) (?:any )?(?:closer|nearer|further|on|anywhere)",
+    "(?:do not|dont) (?:drive|do anything)|do nothing|go no further|no (?:further|closer)",
+    "not another (?:inch|step|move|metre|centimetre)|nobody move|emergency|e ?stop|enough",
+    "that(?: i)?s enough|cut it out|knock it off|shut ?down|power (?:off|down)|switch off",
+    "come to a (?:complete |full )?(?:stop|halt|standstill)|hit the brakes?|brakes?",
+)
+_OFF = "turn|switch|shut|power"
+_CANCEL = "cancel|interrupt|suspend|pause|abandon|break off|call off|quit|terminate|discontinue"
+_PRESS = "hit|press|push|use|pull|activate|trigger|find|get|reach|where is|wheres"
+_SWITCHED = _any(
+    f"(?:{_OFF}) {ITSELF} (?:off|down)|(?:{_OFF}) (?:off|down) {ITSELF}",
+    f"(?:{_CANCEL}|hold) (?:{ROBOT}|{GAME})|quit (?:{ITSELF}|{_MOVING})|unplug (?:{ROBOT}|it)",
+    f"bring {ITSELF} to a (?:complete |full )?(?:stop|halt|standstill)|stop button",
+    f"put (?:a stop|an end) to {ITSELF}|call a halt(?: to {ITSELF})?|pull the plug",
+    "cut (?:the|its) (?:power|engines?|motors?)|put the brakes on|slam on the brakes",
+    f"(?:{_PRESS}) (?:(?:the|that|its) )?(?:red |big |emergency )*(?:e ?)?"
+    "(?:stop|brake|emergency button)(?: button| switch)?",
+    "(?:safety|emergency) (?:stop|halt|brakes?|off|shutdown)",
+    "(?:do|make|(?:(?:i|we) )?need) (?:an|the) emergency (?:stop|halt|shutdown)",
+)
+_FAILS = "wont|doesnt|isnt|does not|will not|is not|cant|didnt"
+_COMPLAINT = (
+    f"(?:why )?(?:(?:{_FAILS}) (?:it|{ROBOT})|(?:it|{ROBOT}|its) (?:just )?(?:{_FAILS}|not))"
+    " (?:stop|stopping|halt)(?: (?:moving|driving|rolling|turning|going))?"
+)
+SENTENCE = re.compile(
+    _any(
+        f"(?:{STOP}){_WHAT}",
+        f"(?:{_STILL}|{_SWITCHED}|{_COMPLAINT}){AFTER}",
+        f"(?:{_CAUSE}) (?:{SOMEBODY})(?: to)? (?:please )?(?:{STOP}){AFTER}",
+        f"(?:(?:i|we) )?(?:want|need|have|get) (?:{ITSELF}|you) stopped{AFTER}",
+        f"(?:{ROBOT}|{GAME}|it|this|that) (?:{_MUST}) be stopped{AFTER}",
+        f"(?:can|could) (?:{ROBOT}|{GAME}|it|this|that) be stopped{AFTER}",
+        f"(?:(?:would|do) you mind|how about) stopping{_WHAT}",
+        f"stop(?:s|ped) (?:{ROBOT}|it|at once|right (?:now|away|there))",  # as it may be heard
+    )
+)
+"""What stops the robot, after all that can come before it."""
+OWN_WORDS = frozenset(re.findall("[a-z]+", "|".join((CALL, ASK, SENTENCE.pattern))))
+
+# ------------------------------------------------------------- at the end of what is said before it
+
+ASKS_FIRST = re.compile(
+    r"(?:where|when|what|who|which|how|why|does|do|did|will|would|is|are|was|has|have|can|could|if)"
+    r"\b"
+)
+ALARM = re.compile(
+    rf"(?:{CALL}|youre|you are|mind|watch|its|hes|shes|theyre|too|{ROBOT})\b.*"
+    r"|.*\b(?:is|are|has|have|fell|hit|hurts|im|theres)\b.*"
+)
+"""What somebody says who is alarmed."""
+CRY = re.compile(rf"(?P<before>.+) (?:{STOP})(?P<what> (?:{ROBOT}|{GAME}|it))?(?: {HOW}){{0,6}}")
+CRIES = frozenset(STOP.split("|"))
+NO_CRY_BEFORE = frozenset(
+    (
+        *("by", "in", "over", "off", "up", "for", "to", "at", "with", "from", "near", "beside"),
+        *("next", "sign", "light", "watch", "press", "gap", "valve", *PEOPLE_DO.split("|")),
+    )
+)
+"""A single word after a verb of stopping that says that nobody cries it."""
+NO_CRY_AFTER = frozenset(
+    (
+        *("to", "dont", "not", "never", "cant", "cannot", "couldnt", "wont", "wouldnt", "shouldnt"),
+        *("doesnt", "didnt", "isnt", "neednt", "mustnt", "will", "would", "can", "could", "shall"),
+        *("should", "may", "might", "must", "do", "does", "did", "i", "you", "he", "she", "we"),
+        *("they", "who", "which", "that", "a", "an", "the", "this", "my", "your", "our", "his"),
+        *("their", "its", "bus", "tram", "train", "coach", "truck", "taxi", "rest", "pit", "full"),
+        *("non", "1", "door", "tab", "whistle", "next", "last", "first", "second", "final"),
+        *("short", "long", "every", "each", "any", "no", "some", "another", "at", "of", "in", "by"),
+        *("with", "for", "from", "or", "than", "ever", "only", "always", "often", "sometimes"),
+        *("says", "say", "said", "sign", "word", "called", "and", "where", "when", "how", "why"),
+        *("if", "people", "buses", "trains", "nonstop", "without", "until", "nearly", "almost"),
+    )
+)
+"""Words after which stopping is a noun, or what somebody does, may do or must not do."""

@@ -1,0 +1,135 @@
+"""What stops the robot, typed or spoken: the aim of a sentence decides, not its first word."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.activity import load_activity, read_activity
+from tangy_profiles.person import load_people
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.stop_sentence import STOPS, stops
+from tests.bench.sentences import FAR, NEAR, WORDINGS
+from tests.learning.stop_sentences import (
+    MENTIONING,
+    MENTIONING_TOO,
+    STOPPING,
+    STOPPING_TOO,
+)
+
+ROOT = Path(__file__).parents[1]
+WORD = st.sampled_from(sorted({w for s in (*STOPPING, *MENTIONING) for w in s.lower().split()}))
+DOORS = (
+    *("help", "?", "undo", "redo", "again 5", "again", "where", "seen", "why", "next", "quit"),
+    *("exit", "leave", "phrases", "voice", "what", "what should I do?", "all right", "all is well"),
+    *("expert", "clear", "faults", "y", "n", "yes", "no", "1", "# stop", ""),
+)
+"""What else is typed where stops are: `#` begins a comment, which nobody asks about."""
+
+
+@pytest.mark.parametrize("sentence", STOPPING[::2])
+def test_what_aims_at_the_robot_or_the_game_stops(sentence: str) -> None:
+    assert stops(sentence)
+    assert stops(sentence.upper()) and stops(f"  {sentence}!! ")
+
+
+@pytest.mark.parametrize("sentence", MENTIONING[::2])
+def test_what_only_mentions_stopping_does_not(sentence: str) -> None:
+    assert not stops(sentence)
+    assert not stops(f"{sentence}.".capitalize())
+
+
+def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too() -> None:
+    missed = [s for s in (*STOPPING[1::2], *STOPPING_TOO) if not stops(s, {"bingo"})]
+    wrongly = [s for s in (*MENTIONING[1::2], *MENTIONING_TOO) if stops(s, {"bingo"})]
+    assert (missed, wrongly) == ([], [])
+
+
+def test_no_other_speech_and_nothing_else_that_is_typed_stops() -> None:
+    said = (*NEAR, *FAR, *WORDINGS, *DOORS[:-2])
+    assert [sentence for sentence in said if stops(sentence)] == []
+
+
+@pytest.mark.parametrize("name", ["bingo", "lanterns"])
+def test_no_phrase_of_an_activity_stops(name: str) -> None:
+    there = load_activity(name) if name == "bingo" else read_activity(ROOT / f"{name}.toml")
+    book = Phrasebook(there, load_people(4))
+    assert [phrase for phrase in book.phrases if stops(phrase, book.game)] == []
+
+
+def test_all_that_is_listened_for_stops() -> None:
+    assert [phrase for phrase in STOPS if not stops(phrase)] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "game", "meant"),
+    [
+        ("stop the lanterns", {"lanterns"}, True),
+        ("stop playing lanterns", {"lanterns"}, True),
+        ("stop the lanterns", set(), False),
+        ("stop teasing the lanterns", {"lanterns"}, False),
+        ("please stop the music quiz", {"music", "quiz"}, True),
+        ("stop and go on", {"stop", "and", "go"}, True),  # a game may be called by any words
+        ("go on", {"stop", "and", "go"}, False),
+    ],
+)
+def test_the_game_is_called_by_its_name(words: str, game: set[str], meant: bool) -> None:
+    assert stops(words, game) is meant
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "stpo",
+        "STOOOP",
+        "please tsop",
+        "stop teh robot",
+        "stop the rboto",
+        "emergancy stop",
+        "e-stop",
+    ],
+)
+def test_who_types_in_a_hurry_is_understood(typed: str) -> None:
+    assert stops(typed)
+
+
+@pytest.mark.parametrize("typed", ["stopthe robot", "stoptherobot", "stopit", "emergencystop"])
+def test_words_that_are_run_together_are_understood(typed: str) -> None:
+    assert stops(typed)
+
+
+@pytest.mark.parametrize("typed", ["spot", "post it", "tops", "shop", "the robot", "stamp"])
+def test_other_words_of_the_same_letters_are_none(typed: str) -> None:
+    assert not stops(typed)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("No! Stop!", True),
+        ("Tangy, please, stop", True),
+        ("she said nothing; stop the robot", True),
+        ("wait - stop", True),
+        ("no, don't stop", False),
+        ("don\N{RIGHT SINGLE QUOTATION MARK}t stop", False),
+        ("the rain stopped, so we went out", False),
+    ],
+)
+def test_each_clause_counts_for_itself(typed: str, meant: bool) -> None:
+    assert stops(typed) is meant
+
+
+@given(st.lists(WORD, max_size=12).map(" ".join))
+def test_who_says_not_to_stop_is_never_taken_for_who_says_stop(words: str) -> None:
+    assert not stops(f"don't stop {words.partition('stop')[0].replace('halt', '')} teasing")
+
+
+@pytest.mark.parametrize(
+    "once",
+    ["please ", "you must ", "stop now the ", "stop going over ", "i want it to ", "the robot "],
+)
+def test_a_long_line_is_judged_at_once(once: str) -> None:
+    assert not stops(once * 60 + "teasing")
