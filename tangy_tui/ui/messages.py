@@ -1,4 +1,4 @@
-"""What the whole program tells its screens."""
+"""What the whole program tells its screens, and what they ask of it."""
 
 from __future__ import annotations
 
@@ -14,3 +14,13 @@ class Stop(Message, bubble=False):
     def __init__(self, reason: str) -> None:
         super().__init__()
         self.reason = reason
+
+
+class OpenStep(Message):
+    """Somebody wants to see a step of a demonstration, which the program opens."""
+
+    def __init__(self, demonstration: str, number: int) -> None:
+        """Ask for step `number`, counted from 1, of the demonstration of this id."""
+        super().__init__()
+        self.demonstration = demonstration
+        self.number = number

@@ -16,6 +16,7 @@ from tangy_tui.learning import library, policies
 from tangy_tui.ui.eyes import Eyes
 from tangy_tui.ui.how_far import how_far
 from tangy_tui.ui.live_games import play_from_home
+from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
 from tangy_tui.ui.storytelling import tell_story_aside
@@ -130,6 +131,12 @@ class Program(SoundingApp):
         from tangy_tui.ui.screens.teach import TeachScreen
 
         self.push_screen(TeachScreen(self.house, teaching))
+
+    def on_open_step(self, event: OpenStep) -> None:
+        """Show a step where it was demonstrated."""
+        from tangy_tui.ui.screens.demonstration import DemonstrationScreen
+
+        self.push_screen(DemonstrationScreen(self.house, event.demonstration, event.number))
 
     def library(self) -> None:
         """Open the screen of all demonstrations."""

@@ -20,6 +20,7 @@ from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.messages import OpenStep
 from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 from tangy_tui.ui.widgets.policy_table import bar
 from tangy_tui.ui.widgets.posteriors import curve
@@ -97,11 +98,9 @@ class WhyDialog(Dialog[None]):
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
         """Open a step in its demonstration."""
-        from tangy_tui.ui.screens.demonstration import DemonstrationScreen
-
         event.stop()
         shown = self._why.steps[event.index]
-        self.app.push_screen(DemonstrationScreen(self._house, shown.demonstration, shown.number))
+        self.post_message(OpenStep(shown.demonstration, shown.number))
 
     def _write(self, width: int) -> list[Line]:
         lines: list[Line] = []
