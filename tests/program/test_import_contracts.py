@@ -1,0 +1,82 @@
+"""What the import contracts refuse, each tried on a copy of the sources."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HOUSE = Path(__file__).parents[2]
+FLOORS = ("tangy_tui", "sim", "hw", "profiles")
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """Copy the sources and the contracts."""
+    shutil.copy(HOUSE / "pyproject.toml", tmp_path)
+    for floor in FLOORS:
+        for source in (HOUSE / floor).rglob("*.py"):
+            to = tmp_path / source.relative_to(HOUSE)
+            to.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, to)
+    return tmp_path
+
+
+def lint(folder: Path) -> str:
+    """Check the contracts of a copy; return what is said of those that are broken."""
+    way = os.pathsep.join(str(folder / floor) for floor in ("", *FLOORS[1:]))
+    check = "from importlinter.cli import lint_imports; raise SystemExit(lint_imports())"
+    done = subprocess.run(  # noqa: S603
+        [sys.executable, "-c", check],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": way, "COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+    )
+    return done.stdout + done.stderr if done.returncode else ""
+
+
+def adds(path: Path, line: str) -> None:
+    """Add an import to a module, inside a function, where it hides best."""
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    path.write_text(f"{before}\n\ndef late() -> None:\n    {line}\n", encoding="utf-8")
+
+
+def test_the_sources_as_they_are_keep_every_contract(copy: Path) -> None:
+    assert lint(copy) == ""
+
+
+@pytest.mark.parametrize(
+    ("module", "line", "named"),
+    [
+        ("tangy_tui/scoreboard.py", "import textual", "tangy_tui.scoreboard"),
+        ("hw/tangy_hw/robot_link.py", "import numpy", "tangy_hw.robot_link -> numpy"),
+        (
+            "hw/tangy_hw/drivers/scip_codec.py",
+            "import tangy_hw.world",
+            "tangy_hw.drivers.scip_codec -> tangy_hw.world",
+        ),
+        (
+            "tangy_tui/ui/widgets/rows.py",
+            "import tangy_tui.ui.screens.play",
+            "tangy_tui.ui.widgets.rows -> tangy_tui.ui.screens.play",
+        ),
+    ],
+)
+def test_an_import_up_the_house_is_refused_by_name(
+    copy: Path, module: str, line: str, named: str
+) -> None:
+    adds(copy / module, line)
+    assert named in lint(copy)
+
+
+def test_a_way_round_by_a_new_module_is_refused(copy: Path) -> None:
+    adds(copy / "tangy_tui/scoreboard.py", "import textual")
+    adds(copy / "tangy_tui/learning/policy.py", "import tangy_tui.scoreboard")
+    said = lint(copy)
+    assert "tangy_tui.learning.policy -> tangy_tui.scoreboard" in said
+    assert "tangy_tui.scoreboard -> textual" in said
