@@ -16,8 +16,9 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import Resolution
+from tangy_tui.learning.forest_cache import ForestCache
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policy import SURE, Decision, ForestSettings, Policy, learn_policy
+from tangy_tui.learning.policy import SURE, Decision, ForestSettings, Grow, Policy, learn_policy
 
 POLICY = "policy learnt"
 ASKS = "to ask"
@@ -136,16 +137,22 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
             f"The policy {kept['name']!r} rests on {len(missing)} demonstrations that are not in "
             "this data folder: run `tangy learn` again."
         )
-    policy = learn_policy(
-        activity,
-        [entries[id].demonstration for id in kept["demonstrations"]],
-        resolutions=[Resolution.from_json(one) for one in kept.get("resolved", ())],
-        settings=ForestSettings(**kept["forest"]),
-        name=str(kept["name"]),
-    )
-    if policy.digest == kept["digest"]:
-        return policy, []
-    return policy, _explain(kept, policy)
+    cache = ForestCache(store.folder)
+
+    def again(grow: Grow) -> Policy:
+        return learn_policy(
+            activity,
+            [entries[id].demonstration for id in kept["demonstrations"]],
+            resolutions=[Resolution.from_json(one) for one in kept.get("resolved", ())],
+            settings=ForestSettings(**kept["forest"]),
+            name=str(kept["name"]),
+            grow=grow,
+        )
+
+    policy = again(cache.grown)
+    if policy.digest != kept["digest"]:
+        policy = again(cache.afresh)  # what was kept may be wrong; what is learnt again is not
+    return policy, [] if policy.digest == kept["digest"] else _explain(kept, policy)
 
 
 def changes(kept: Mapping[str, Any], policy: Policy) -> list[Change]:

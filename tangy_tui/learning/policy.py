@@ -157,11 +157,13 @@ def learn_policy(
     resolutions: Sequence[Resolution] = (),
     settings: ForestSettings = EXACT,
     name: str = "",
+    grow: Grow | None = None,
 ) -> Policy:
     """Fit the forest to demonstrations and ask it about every situation.
 
     The same demonstrations in the same order give the same policy, bit for bit, on the same
     version of scikit-learn. A situation with a conflict that no resolution settles is contested.
+    `grow` answers for a forest (see `grown`, which is the default).
 
     Raises:
         NothingToLearnFrom: the demonstrations hold no step.
@@ -183,7 +185,7 @@ def learn_policy(
         raise NothingToLearnFrom(
             "There is nothing to learn from yet: demonstrate a game first, with tangy teach."
         )
-    forest = grown(settings, tuple(rows), tuple(situations))
+    forest = (grow or grown)(settings, tuple(rows), tuple(situations))
     seen = Counter(situation for situation, _ in shown)
     table: dict[Situation, Decision] = {}
     for situation, votes in zip(situations, forest.votes, strict=True):
@@ -217,6 +219,10 @@ class Forest(NamedTuple):
 
     votes: tuple[tuple[tuple[str, float], ...], ...]
     versions: tuple[tuple[str, str], ...]
+
+
+Grow = Callable[[ForestSettings, tuple[tuple[Situation, str], ...], tuple[Situation, ...]], Forest]
+"""Gives what a forest of these settings, learnt from these rows, answers in these situations."""
 
 
 @lru_cache(maxsize=256)

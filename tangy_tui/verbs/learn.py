@@ -42,6 +42,7 @@ def learn(
     from dataclasses import replace
 
     from tangy_tui.documents import policy_document
+    from tangy_tui.learning.forest_cache import ForestCache
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import (
         changes,
@@ -73,6 +74,7 @@ def learn(
             resolutions=library.resolutions,
             settings=replace(FORESTS[forest], seed=seed),
             name=plain(name)[:40],
+            grow=ForestCache(house.store.folder).afresh,
         )
         policy = unused_name(house.store, policy)
         keep_policy(house.store, policy)
