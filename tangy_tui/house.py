@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.person import Person, folded, load_people
+from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tangy_profiles.game_world import GameWorld
     from tangy_profiles.health import Health
     from tangy_tui.interaction.facilitation import Facilitation
+    from tangy_tui.interaction.forgetting import Forgotten
     from tangy_tui.interaction.memory import Memory
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
@@ -46,9 +47,16 @@ def data_folder(chosen: Path | None) -> Path:
     return user_data_path("tangy", appauthor=False)
 
 
-def teacher_name() -> str:
-    """Return the login name, which is who teaches unless said otherwise."""
-    return os.environ.get("USER") or os.environ.get("USERNAME") or "teacher"
+def teacher_name(given: str | None = None) -> str:
+    """Return who teaches: the name that was given, or else the login name.
+
+    Raises:
+        TangyError: the given name is none that may be kept (see `read_name`).
+    """
+    if given is not None:
+        return read_name(given, "A teacher's name")
+    login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
+    return plain(login).strip()[:LONGEST_NAME].strip() or "teacher"
 
 
 class House:
@@ -175,20 +183,25 @@ class House:
         self.store.prefer_voice(person.id, preference)
         self.read_people()
 
-    def forget(self, person: Person) -> None:
-        """Forget a person's name, how it is said, voice, face, and that they agreed to that.
+    def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
+        """Forget who a person is: name, how it is said, voice, face, and that they agreed to that.
 
-        What they did stays in the log, under an id that says nobody's name.
+        The name goes from words that were typed or said as well, in the log and in the files of
+        the data folder. What they did stays in the log, under an id that says nobody's name.
+
+        Args:
+            person: who.
+            also: other names that they were called by, which are to go, too.
 
         Raises:
             TangyError: some of it cannot be deleted.
         """
-        from tangy_hw.perception.faces.keeping import forget_face
+        from tangy_tui.interaction.forgetting import forget_person
 
-        self.store.forget(person.id)
+        forgotten = forget_person(self.store, self.activity, self.people, person, also)
         self.read_people()
         _forget_spoken()
-        forget_face(self.store, person.id)
+        return forgotten
 
     @property
     def names(self) -> dict[str, str]:

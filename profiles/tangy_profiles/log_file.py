@@ -160,6 +160,28 @@ class LogFile:
                     os.pwrite(held.fileno(), self._mark().encode(), 0)
             held.close()
 
+    def compact(self) -> None:
+        """Write the log anew, so that nothing that was deleted from it is left in its bytes.
+
+        Raises:
+            StoreError: another process reads it, so that its tail has to stay for now.
+        """
+        db = self.db
+        if db is None:
+            return
+        self._fold(db)
+        db.execute("VACUUM")
+        self._fold(db)
+
+    def _fold(self, db: sqlite3.Connection) -> None:
+        """Fold the tail into the log and empty it."""
+        busy, *_ = db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+        if busy:
+            raise self.wrong(
+                "what was erased is still in its tail, for another program is reading it: close "
+                "that, and forget once more"
+            )
+
     @contextmanager
     def in_words(self) -> Iterator[None]:
         """Turn what SQLite or the file system refuse into one sentence."""

@@ -7,18 +7,37 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from tangy_profiles.errors import ProfileError
-from tangy_profiles.reading import read_toml
+from tangy_profiles.errors import ProfileError, TangyError
+from tangy_profiles.reading import plain, read_toml
 from tangy_profiles.state import FRONT
 from tangy_profiles.voice import VoicePreference
 
 MOST_PEOPLE = 8
+LONGEST_NAME = 40  # characters
 AS_EVERYBODY = VoicePreference()
 
 
 def folded(name: str) -> str:
     """Return a name as names are compared: by small letters, an accent however it is written."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
+
+
+def read_name(name: str, of: str = "A name") -> str:
+    """Return a name that may be kept, without spaces around it; `of` says whose it is.
+
+    Raises:
+        TangyError: it is empty, longer than 40 characters, or not all printable.
+    """
+    name = name.strip()
+    if not name:
+        raise TangyError(f"{of} must not be empty.")
+    if not name.isprintable():
+        raise TangyError(
+            f"{of} cannot be {plain(name)!r}: it holds a character that cannot be shown."
+        )
+    if len(name) > LONGEST_NAME:
+        raise TangyError(f"{of} must have at most {LONGEST_NAME} characters.")
+    return name
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 One process writes a folder at a time; any number may read beside it (see `log_file`). Names of
 people stand in a table of their own, and how they are pronounced and spoken to in another, so that
-they can be forgotten while the counts that beliefs are made of stay.
+they can be forgotten while the counts that beliefs are made of stay; a name that stands in what was
+typed or said is erased from there then (`erased_log`), which is the one change to events.
 """
 
 from __future__ import annotations
@@ -18,18 +19,19 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, Self
 
-from tangy_profiles.errors import ProfileError, StoreError, TangyError
+from tangy_profiles.erased_log import count_left, erase_from_log
+from tangy_profiles.erasure import NameEraser
+from tangy_profiles.errors import ProfileError, StoreError
 from tangy_profiles.events import wrong_with
 from tangy_profiles.log_file import FILE, NAMING, LogFile
+from tangy_profiles.person import read_name
 from tangy_profiles.phones import read_name_phones
 from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, fetch, responses_among
-from tangy_profiles.reading import plain
 from tangy_profiles.rows import BadRow, left_out, read_row
 from tangy_profiles.rows import Event as Event
-from tangy_profiles.seal import Seal
+from tangy_profiles.seal import Seal, lost_words
 from tangy_profiles.voice import VoicePreference
 
-LONGEST_NAME = 40  # characters
 WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up a checkpoint
 
 VOID, TAKEN_BACK = "void", "taken back"
@@ -228,16 +230,11 @@ class Store:
         Raises:
             TangyError: the name is empty, longer than 40 characters, or not all printable.
         """
-        if not name.strip():
-            raise TangyError("A name must not be empty.")
-        if not name.isprintable():
-            raise TangyError(f"The name {plain(name)!r} holds a character that cannot be shown.")
-        if len(name.strip()) > LONGEST_NAME:
-            raise TangyError(f"A name must have at most {LONGEST_NAME} characters.")
+        name = read_name(name)
         with self.transaction():
-            if self.names().get(person) != name.strip():
+            if self.names().get(person) != name:
                 self._write("UPDATE speech SET pronunciation = NULL WHERE person = ?", (person,))
-            self._write("INSERT OR REPLACE INTO name VALUES (?, ?)", (person, name.strip()))
+            self._write("INSERT OR REPLACE INTO name VALUES (?, ?)", (person, name))
             self.append("renamed", {}, person=person)
 
     def pronunciations(self) -> dict[str, str]:
@@ -275,24 +272,39 @@ class Store:
             self._write(f"UPDATE speech SET {what} = ? WHERE person = ?", (value, person))  # noqa: S608
             self.append("speech noted", {"what": what}, person=person)
 
-    def forget(self, person: str) -> bool:
+    def forget(self, person: str, eraser: NameEraser | None = None) -> tuple[bool, int]:
         """Delete a person's name, how it is said, and how they like to be spoken to.
 
-        What they did stays in the log, under their id. Logged as "forgotten".
+        What they did stays, under their id. An `eraser` takes the name from the words in the log.
 
         Returns:
-            Whether there was anything to forget.
+            Whether there was anything to forget, and how many events were changed.
         """
         with self.transaction():
             there = any(
                 self._rows(f"SELECT 1 FROM {table} WHERE person = ?", person)  # noqa: S608
                 for table in NAMING
             )
-            if there:
-                for table in NAMING:
-                    self._write(f"DELETE FROM {table} WHERE person = ?", (person,))  # noqa: S608
-                self.append("forgotten", {}, person=person)
-        return there
+            for table in NAMING:
+                self._write(f"DELETE FROM {table} WHERE person = ?", (person,))  # noqa: S608
+            changed = self._erase(eraser) if eraser else 0
+            if there or changed:
+                self.append("forgotten", {"texts": changed} if changed else {}, person=person)
+        if eraser:
+            with self._lock, self._file.in_words():
+                self._file.compact()
+        return there, changed
+
+    def _erase(self, eraser: NameEraser) -> int:
+        if self._file.db is None:
+            raise self._file.wrong("is closed")
+        with self._file.in_words():
+            return erase_from_log(self._file.db, eraser)
+
+    def count_left(self, eraser: NameEraser) -> int:
+        """Count the events in which a name still stands after it was erased from their words."""
+        with self._lock, self._file.in_words():
+            return count_left(self._file.db, eraser) if self._file.db else 0
 
     def check(self) -> list[str]:
         """Read the whole log and return what is wrong with it, a sentence each ([]: nothing)."""
@@ -309,7 +321,7 @@ class Store:
                 if guards < 2:
                     wrong.append(f"{FILE}: the guard against changing events is gone.")
             if lost := self._lost():
-                wrong.append(_lost_words(*lost))
+                wrong.append(lost_words(*lost))
             deque(self.events(), maxlen=0)
         except StoreError as error:
             wrong.append(str(error))
@@ -331,7 +343,7 @@ class Store:
     def _tell_lost(self) -> None:
         """Say if the newest events are gone; a writer notes it, and counts from there on."""
         if lost := self._lost():
-            self.notices.append(_lost_words(*lost))
+            self.notices.append(lost_words(*lost))
             if self.writable:
                 self.append(LOST, {"first": lost[0], "last": lost[1]})
 
@@ -381,14 +393,6 @@ class Store:
                 self.aside.setdefault(row[0], left_out(row[0], row[4], str(bad), rest))
                 if stays:
                     yield stays
-
-
-def _lost_words(first: int, last: int) -> str:
-    which = f"event {first}" if first == last else f"events {first} to {last}"
-    return (
-        f"tangy.db: {which} had been kept and {'is' if first == last else 'are'} gone: the end of "
-        "the log was lost, or this is a copy that was made while Tangy was writing."
-    )
 
 
 def _are_text(*words: object) -> bool:

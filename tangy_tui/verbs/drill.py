@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tangy_profiles.errors import TangyError
-from tangy_profiles.reading import plain
+from tangy_profiles.person import read_name
 from tangy_tui.verbs.common import (
     ActivityName,
     Ascii,
@@ -19,8 +18,6 @@ from tangy_tui.verbs.common import (
     print_line,
 )
 from tangy_tui.verbs.opening import full_screen, open_house, say_notices
-
-LONGEST_WHO = 40  # characters
 
 
 def drill(
@@ -42,9 +39,7 @@ def drill(
     """
     from tangy_tui.house import teacher_name
 
-    name = plain(who if who is not None else teacher_name()).strip()
-    if not name or len(name) > LONGEST_WHO:
-        raise TangyError(f"--who: a name has from 1 to {LONGEST_WHO} characters.")
+    name = teacher_name() if who is None else read_name(who, "--who: a name")
     with open_house(data, activity, users, write=not scores) as house:
         if scores:
             from tangy_tui.drill_lines import sheets_lines

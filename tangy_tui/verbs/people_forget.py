@@ -1,10 +1,13 @@
-"""`tangy people forget`: forget who somebody is, and their face."""
+"""`tangy people forget`: forget who somebody is, their face, and where they are named."""
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Annotated
 
+import typer
+
+from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
@@ -14,31 +17,92 @@ from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
-    from tangy_profiles.store import Store
+    from tangy_tui.house import House
+    from tangy_tui.interaction.forgetting import Forgotten
+
+Yes = Annotated[bool, typer.Option("--yes", help="Do not ask first, for scripts.")]
+Also = Annotated[
+    list[str] | None,
+    typer.Option("--also", metavar="NAME", help="Another name of theirs, such as an earlier one."),
+]
 
 
-def people_forget(person: Who, seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
-    """Forget a person's name, how it is said, voice and face. It cannot be taken back.
+def people_forget(
+    person: Who,
+    also: Also = None,
+    yes: Yes = False,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Forget a person: name, how it is said, voice and face. It cannot be taken back.
 
-    What worked with them is still counted, under an id that says nobody's name.
+    The name also goes from what was typed or said, in the log and in the reports and other files
+    of the data folder. What worked with them is still counted, under an id that says nobody's
+    name. Copies in other folders are yours to delete.
     """
     with open_house(data, "bingo", MOST_PEOPLE) as house:
         known = find_anybody(house, person)
-        written = _written(house.store, known)
-        house.forget(known)
+        if not yes and not _agreed(house, known):
+            print(plain(f"Nothing was forgotten: {known.name} is known as before."))
+            raise typer.Exit(1)
+        forgotten = house.forget(known, also or ())
         if as_json:
-            forgotten = ["name", "pronunciation", "voice", "face"]
-            print_json({"id": known.id, "forgotten": forgotten, "name_left_in_events": written})
+            print_json(_document(known, forgotten))
             return
-        print(plain(f"{known.id}: name, how it is said, voice and face are forgotten."))
-        if written:
-            steps = "1 entry" if written == 1 else f"{written} entries"
-            print(f"What was typed or said with the name stays in {steps} of the log.")
+        for line in _lines(known, forgotten):
+            print(plain(line))
 
 
-def _written(store: Store, person: Person) -> int:
-    """Count the entries of the log in which somebody wrote or said a person's own name."""
-    if person.id not in store.names():
-        return 0
-    name = person.name.casefold()
-    return sum(name in json.dumps(e.body, ensure_ascii=False).casefold() for e in store.events())
+def _agreed(house: House, person: Person) -> bool:
+    """Ask whether a person is to be forgotten.
+
+    Raises:
+        TangyError: there is no terminal to ask on.
+    """
+    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+        raise TangyError(
+            plain(
+                f"To forget {person.name} cannot be taken back: say yes to it on a terminal, or "
+                "add --yes."
+            )
+        )
+    called = person.name if person.name == person.id else f"{person.name} ({person.id})"
+    question = (
+        f"This deletes who {called} is: the name, how it is said, their voice and their face. "
+        f"Where the name was typed or said, or stands in a file in {house.store.folder}, "
+        f"{person.id} takes its place. What worked with them stays, counted for {person.id}. "
+        f"This cannot be taken back. Forget {person.name}?"
+    )
+    return typer.confirm(plain(question), default=False, err=True)
+
+
+def _document(person: Person, forgotten: Forgotten) -> dict[str, object]:
+    return {
+        "id": person.id,
+        "forgotten": ["name", "pronunciation", "voice", "face"],
+        "name_left_in_events": forgotten.events_left,
+        "events_changed": forgotten.events,
+        "files_changed": [str(path) for path in forgotten.files],
+        "files_left": [str(path) for path in forgotten.files_left],
+    }
+
+
+def _lines(person: Person, forgotten: Forgotten) -> list[str]:
+    lines = [f"{person.id}: name, how it is said, voice and face are forgotten."]
+    changed = [
+        _many(forgotten.events, "entry of the log", "entries of the log"),
+        _many(len(forgotten.files), "file", "files"),
+    ]
+    if any(changed):
+        there = " and ".join(filter(None, changed))
+        lines.append(f"{person.id} now stands in place of the name in {there}.")
+    if forgotten.events_left:
+        entries = _many(forgotten.events_left, "entry", "entries")
+        lines.append(f"The name stays in {entries} of the log where it is a teacher's.")
+    lines += [f"Look through this file yourself: {path}" for path in forgotten.files_left]
+    return lines
+
+
+def _many(count: int, one: str, more: str) -> str:
+    return "" if not count else f"{count} {one if count == 1 else more}"

@@ -43,7 +43,7 @@ def who_answers(teacher: str | None, expert: str) -> str:
 
     if expert not in ("", SCRIPTED):
         raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))
-    return plain(teacher or teacher_name())[:40]
+    return teacher_name(teacher)
 
 
 def recall(house: House, wanted: str, *, quiet: bool) -> Policy:

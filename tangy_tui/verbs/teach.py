@@ -70,7 +70,7 @@ def teach(
     from tangy_tui.house import teacher_name
     from tangy_tui.inputs import keys_from_terminal
 
-    who = plain(teacher or teacher_name())[:40]
+    who = teacher_name(teacher)
     if who == "scripted" and script is not None:
         raise TangyError("--teacher scripted gives its own lines: leave out --script.")
 
@@ -156,7 +156,7 @@ def _teach_by_lines(
         "activity": None if house.profile == usual else house.profile,
         "data": None if folder == data_folder(None).absolute() else str(folder),
     }
-    who = None if teaching.teacher == plain(teacher_name())[:40] else teaching.teacher
+    who = None if teaching.teacher == teacher_name() else teaching.teacher
     write: Callable[[str], None] = (lambda _: None) if as_json else common.print_line
     lines = TeachingLines(
         teaching,

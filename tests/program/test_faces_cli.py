@@ -171,7 +171,7 @@ def test_of_somebody_who_is_forgotten_nothing_is_left(tangy: Tangy, data: Path, 
         store.pronounce(id, "R OW Z AH")
         kept = next((data / "faces").glob(f"*-{id}.face")).read_bytes().partition(b"\n")[2]
     (data / "faces" / f".hoglbp1-{id}.face").write_bytes(kept)  # as if writing it had been cut off
-    told = json.loads(tangy("people", "forget", who, "--json", "--data", data).stdout)
+    told = json.loads(tangy("people", "forget", who, "--yes", "--json", "--data", data).stdout)
     assert (told["id"], told["name_left_in_events"]) == (id, 0)
     left = b"".join(path.read_bytes() for path in data.rglob("*") if path.is_file())
     assert name.encode() not in left and b"R OW Z AH" not in left

@@ -1,0 +1,78 @@
+"""Forgetting who a person is: all that names them, wherever in the data folder it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.erasure import NameEraser
+from tangy_profiles.person import Person
+from tangy_profiles.saved_files import erase_from_files
+from tangy_profiles.store import Store
+from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.learning.words import spoken, words_of
+
+
+class Forgotten(NamedTuple):
+    """What came of it: how many events and which files were changed, and what is left.
+
+    `events_left` are events in which the name still stands, as that of a teacher; `files_left` are
+    files that Tangy does not change and that hold it, or may.
+    """
+
+    events: int
+    files: tuple[Path, ...]
+    events_left: int
+    files_left: tuple[Path, ...]
+
+
+def forget_person(
+    store: Store,
+    activity: Activity,
+    people: Sequence[Person],
+    person: Person,
+    also: Sequence[str] = (),
+) -> Forgotten:
+    """Forget a person's name, how it is said, voice and face, and erase the name from all texts.
+
+    The files come first and the name itself last, so that it can be done again if it is cut off.
+
+    Args:
+        store: the log, open for writing, and its folder.
+        activity: whose phrases stay as they are.
+        people: everybody who plays, whose names stay as they are.
+        person: who is to be forgotten.
+        also: other names that they were called by.
+
+    Raises:
+        TangyError: some of it cannot be deleted.
+    """
+    from tangy_hw.perception.faces.keeping import forget_face
+
+    eraser = name_eraser(store, activity, people, person, also)
+    files = erase_from_files(store.folder, eraser)
+    forget_face(store, person.id)
+    _, events = store.forget(person.id, eraser)
+    return Forgotten(events, files.changed, store.count_left(eraser), files.left)
+
+
+def name_eraser(
+    store: Store,
+    activity: Activity,
+    people: Sequence[Person],
+    person: Person,
+    also: Sequence[str] = (),
+) -> NameEraser:
+    """Return what finds the names that a person was given, and nothing else."""
+    given = store.names()
+    own = [name for name in (given.get(person.id, ""), *also) if name]
+    said = [form for name in own for form in (spoken(words_of(name)), " ".join(words_of(name)))]
+    others = {other.id: other.name for other in people} | given
+    stay = [name for id, name in others.items() if id != person.id]
+    table = Phrasebook(activity, people).table
+    stay += [phrase.said for phrase in table.all() if phrase.user is None]
+    stay += [" ".join(phrase.words) for phrase in table.all() if phrase.user is None]
+    stay += [text for b in activity.behaviours.values() for text in (b.name, b.question)]
+    return NameEraser([*own, *said], person.id, but=stay)

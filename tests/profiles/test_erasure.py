@@ -1,0 +1,74 @@
+"""A name is erased wherever it stands as a name, and nothing else changes."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tangy_profiles.erasure import NameEraser
+
+ROSA = NameEraser(["Rosa"], "user2")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "erased"),
+    [
+        (
+            "Rosa",
+            "Go to Rosa, ROSA or rosa: Rosa's card",
+            "Go to user2, user2 or user2: user2's card",
+        ),
+        (
+            "Rosa",
+            "Rosalind has a rosary and prosa; Rosa2",
+            "Rosalind has a rosary and prosa; Rosa2",
+        ),
+        ("Anne-Marie", "go to anne marie", "go to user2"),
+        ("Mary Ann", "Mary, Ann and Mary  Ann", "Mary, Ann and user2"),
+        ("José", "go to jose, Jose\u0301 or JOSÉ", "go to user2, user2 or user2"),
+        ("O'Brien", "O&#x27;Brien, O\u2019Brien, obrien", "user2, user2, user2"),
+        ("Zoë", '{"a": "Zo\\u00eb"} zo%C3%AB', '{"a": "user2"} user2'),
+        ("田中", "田中さん", "user2さん"),
+        ("Mr. X", "ask Mr. X. Mr. Xu stays", "ask user2. Mr. Xu stays"),
+    ],
+)
+def test_a_name_goes_however_it_is_written_and_only_as_a_whole_word(
+    name: str, text: str, erased: str
+) -> None:
+    assert NameEraser([name], "user2").text(text) == erased
+
+
+def test_an_ordinary_word_stays_in_running_text_and_a_phrase_of_the_activity_everywhere() -> None:
+    mark = NameEraser(["Mark"], "user2", but=["mark numbers", "mark", "Mark Lee"])
+    told = mark.text("Tangy went to Mark to mark a card; Mark Lee won.")
+    assert told == "Tangy went to user2 to mark a card; Mark Lee won."
+    assert mark.typed("mark numbers please, then go to mark") == (
+        "mark numbers please, then go to user2"
+    )
+
+
+def test_of_a_body_only_words_change() -> None:
+    body = {"behaviour": "rosa", "teacher": "Rosa", "heard": "go to rosa", "advice": ["ask Rosa"]}
+    assert ROSA.body("demonstration step", body) == {
+        "behaviour": "rosa",
+        "teacher": "Rosa",
+        "heard": "go to user2",
+        "advice": ["ask user2"],
+    }
+    chosen = {"what": "delete"}
+    assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
+
+
+def test_a_page_changes_where_it_is_read_and_not_in_its_tags_or_styles() -> None:
+    page = '<style>.rosa{}</style><p class="rosa" title="Rosa">to rosa</p><rosa>'
+    assert ROSA.page(page) == (
+        '<style>.rosa{}</style><p class="rosa" title="user2">to user2</p><rosa>'
+    )
+
+
+def test_bytes_are_overwritten_so_that_nothing_moves() -> None:
+    data = b"\x00\x12user2Rosa\x05\x00" + json.dumps({"heard": "go to rosa"}).encode() + b"rosary"
+    after = ROSA.overwrite(data)
+    assert len(after) == len(data) and b"user2----" in after and b"go to ----" in after
+    assert after.endswith(b"rosary")

@@ -1,0 +1,194 @@
+"""`tangy people forget`: it asks first, and afterwards nothing in the data folder has the name."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from tangy_profiles.errors import StoreError
+from tangy_profiles.store import Store
+from tangy_tui.house import House
+from tangy_tui.learning.verifying import Reply, Say
+
+Tangy = Callable[..., CompletedProcess[str]]
+
+NAME = "Xanthippe"
+
+
+def teach(folder: Path, *lines: str) -> None:
+    """Teach by typed lines, each with a yes."""
+    house = House(folder)
+    try:
+        teaching = house.teaching("Ada", 3)
+        teaching.begin()
+        for line in lines:
+            teaching.apply(Say(line))
+            teaching.apply(Reply(True))
+    finally:
+        house.close()
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """A data folder in which user2 is called Xanthippe, wherever a name may stand."""
+    folder = tmp_path / "mine"
+    with Store.open(folder) as store:
+        store.rename("user2", NAME)
+        store.pronounce("user2", "Z AE N TH IH P IY")
+        store.rename("user3", "Xanthippe Rose")
+        answered = store.append(
+            "response", {"game": None}, person="user2", strategy="praise", complied=True
+        )
+        of = next(e.uuid for e in store.events() if e.seq == answered)
+        store.append(
+            "void", {"of": of, "why": f"{NAME} was asleep"}, person="user2", strategy="praise"
+        )
+    teach(folder, "greet everyone", "go to XANTHIPPE", "go to xanthippe rose")
+    (folder / "report.html").write_text(f"<p title='{NAME}'>{NAME}'s card, xanthippean</p>")
+    (folder / "robot.log").write_text(f"said: {NAME}, I am coming to you.\n")
+    (folder / "sub").mkdir()
+    (folder / "sub" / "list.json").write_text(json.dumps({"said": "go to xanthippe"}))
+    (folder / "tangy.db.damaged-20260101T000000Z").write_bytes(b"\x00\x9auser2Xanthippe\x00")
+    return folder
+
+
+def bytes_of(folder: Path) -> bytes:
+    return b"\n".join(path.read_bytes() for path in folder.rglob("*") if path.is_file())
+
+
+def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, data: Path) -> None:
+    assert bytes_of(data).lower().count(b"xanthippe") >= 9
+    with Store.open(data, write=False) as store:
+        before = [(e.seq, e.uuid, e.at, e.kind, e.person, e.complied) for e in store.events()]
+    done = tangy("people", "forget", NAME, "--yes", "--json", "--data", data)
+    told = json.loads(done.stdout)
+    assert (done.returncode, told["id"], told["name_left_in_events"]) == (0, "user2", 0)
+    assert told["events_changed"] == 2 and len(told["files_changed"]) == 4
+    left = bytes_of(data).lower().replace(b"xanthippe rose", b"").replace(b"xanthippean", b"")
+    assert b"xanthippe" not in left and b"z ae n th" not in left
+    with Store.open(data) as store:
+        after = [(e.seq, e.uuid, e.at, e.kind, e.person, e.complied) for e in store.events()]
+        assert after[: len(before)] == before and [e[3] for e in after[len(before) :]] == [
+            "forgotten"
+        ]
+        assert store.check() == [] and store.notices == []
+        heard = [e.body["heard"] for e in store.events("demonstration step")]
+        assert heard == ["greet everyone", "go to user2", "go to xanthippe rose"]
+        with pytest.raises(StoreError, match="append only"):
+            store._write("UPDATE event SET body = '{}'")
+
+
+def test_while_another_program_writes_nothing_is_half_forgotten(tangy: Tangy, data: Path) -> None:
+    with Store.open(data):
+        done = tangy("people", "forget", NAME, "--yes", "--data", data)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert NAME in (data / "robot.log").read_text()
+
+
+def test_while_another_program_reads_it_says_that_it_has_to_be_done_again(
+    tangy: Tangy, data: Path
+) -> None:
+    with closing(sqlite3.connect(data / "tangy.db")) as db:
+        db.execute("BEGIN")
+        db.execute("SELECT * FROM event").fetchone()
+        done = tangy("people", "forget", NAME, "--yes", "--data", data)
+        assert done.returncode == 2 and "forget once more" in done.stderr
+    done = tangy("people", "forget", "user2", "--yes", "--data", data)
+    assert done.returncode == 0
+    left = bytes_of(data).lower().replace(b"xanthippe rose", b"").replace(b"xanthippean", b"")
+    assert b"xanthippe" not in left
+
+
+def test_an_earlier_name_goes_with_also(tangy: Tangy, data: Path) -> None:
+    with Store.open(data) as store:
+        store.rename("user2", "Rosa")
+    done = tangy("people", "forget", "Rosa", "--also", NAME, "--yes", "--data", data)
+    assert done.returncode == 0
+    left = bytes_of(data).lower().replace(b"xanthippe rose", b"").replace(b"xanthippean", b"")
+    assert b"xanthippe" not in left and b"rosa" not in left
+
+
+def test_somebody_called_mark_takes_no_word_along(tangy: Tangy, tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.rename("user2", "Mark")
+    teach(tmp_path, "greet everyone", "go to mark")
+    with Store.open(tmp_path) as store:
+        step = store.last("demonstration step")
+        assert step is not None
+        again = {**step.body, "behaviour": "mark numbers", "heard": "mark numbers"}
+        store.append("demonstration step", again)
+    assert tangy("people", "forget", "Mark", "--yes", "--data", tmp_path).returncode == 0
+    with Store.open(tmp_path, write=False) as store:
+        heard = [e.body["heard"] for e in store.events("demonstration step")]
+        behaviours = [e.body["behaviour"] for e in store.events("demonstration step")]
+    assert heard == ["greet everyone", "go to user2", "mark numbers"]
+    assert behaviours[-1] == "mark numbers"
+
+
+def test_a_teacher_of_that_name_stays_and_it_says_so(tangy: Tangy, data: Path) -> None:
+    with Store.open(data) as store:
+        store.rename("user2", "Ada")
+    done = tangy("people", "forget", "Ada", "--yes", "--data", data)
+    assert "The name stays in 1 entry of the log where it is a teacher's." in done.stdout
+    with Store.open(data, write=False) as store:
+        begun = store.last("demonstration begun")
+    assert begun is not None and begun.body["teacher"] == "Ada"
+
+
+def test_without_a_terminal_it_does_not_forget_unasked(tangy: Tangy, data: Path) -> None:
+    done = tangy("people", "forget", NAME, "--data", data)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--yes" in done.stderr and "cannot be taken back" in done.stderr
+    assert done.stderr.count("\n") == 1
+    with Store.open(data, write=False) as store:
+        assert store.names()["user2"] == NAME
+
+
+@pytest.mark.parametrize(("answer", "status", "there"), [("n", 1, True), ("y", 0, False)])
+def test_on_a_terminal_it_says_what_goes_and_waits_for_a_yes(
+    data: Path, answer: str, status: int, there: bool
+) -> None:
+    ours, theirs = pty.openpty()
+    os.write(ours, f"{answer}\n".encode())
+    start = [sys.executable, "-c", "from tangy_tui.cli import main; main()"]
+    command = [*start, "people", "forget", NAME, "--data", str(data)]
+    with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs) as program:  # noqa: S603
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                more = os.read(ours, 4096)
+            except OSError:
+                break
+            if not more:
+                break
+            shown += more
+    os.close(ours)
+    assert program.returncode == status, shown
+    for word in (b"Xanthippe (user2)", b"voice", b"face", b"file", b"cannot be taken back"):
+        assert word in shown
+    with Store.open(data, write=False) as store:
+        assert (store.names().get("user2") == NAME) is there
+
+
+@pytest.mark.parametrize("verb", [("teach", "--plain"), ("play", "--headless")])
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [("x" * 41, "at most 40"), ("a\x1b[2Jb", "cannot be shown"), (" ", "must not be empty")],
+)
+def test_a_teachers_name_has_the_limits_of_other_names(
+    tangy: Tangy, tmp_path: Path, verb: tuple[str, ...], name: str, why: str
+) -> None:
+    done = tangy(*verb, "--teacher", name, "--data", tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "teacher's name" in done.stderr and why in done.stderr
