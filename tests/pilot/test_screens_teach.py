@@ -386,14 +386,17 @@ async def test_how_a_question_looks(
         picture(pilot.app)
 
 
-async def test_the_picture_in_the_readme_shows_the_program_as_it_is(
+async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(
     run: Run, house: House, draw: Callable[[App[None]], str]
 ) -> None:
     kept = Path(__file__).parent / "pictures" / "teach.svg"
     async with run(app=program(house), size=(120, 40)) as pilot:
         await mid_game(pilot, 14)
-        await pilot.press(*"remove mark")
+        await pilot.press(*"remove markers", "enter")
         await pilot.pause()
+        assert isinstance(pilot.app.screen, QuestionDialog)
+        shown = str(pilot.app.screen.query_one("#question", Static).render())
+        assert shown.startswith("Did you say: ask to remove markers") and "Y  yes" in shown
         drawn = draw(pilot.app)
     if os.environ.get("TANGY_NEW_PICTURES"):
         kept.write_text(drawn, encoding="utf-8")
