@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tangy_tui.experiments import figures
-from tangy_tui.experiments.comparison import compare, many, number, percent
+from tangy_tui.experiments.comparison import SOURCES, compare, many, number, percent
 from tangy_tui.experiments.recovery_report import recovery
 from tangy_tui.pages.page import document as page
 from tangy_tui.pages.page import figure, heading, paragraph, table
@@ -41,9 +41,10 @@ def report(document: Document) -> str:
 def _beside(document: Document) -> Iterator[str]:
     yield heading("The paper and here")
     yield table(
-        ("", "paper", "here", "where and why they differ"),
-        [(row.what, row.paper, row.here, row.words) for row in compare(document)],
+        ("", "paper", "here", "which is", "where and why they differ"),
+        [(row.what, row.paper, row.here, row.source, row.words) for row in compare(document)],
     )
+    yield paragraph("; ".join(f"{name}: {words}" for name, words in SOURCES.items()) + ".")
 
 
 def _made_from(document: Document) -> Iterator[str]:
@@ -204,7 +205,32 @@ def _persuasion(document: Document) -> Iterator[str]:
         f"{many(before['n'], 'person', 'people')} who converged, which is who had "
         f"{before['converged_means_in_a_row']} optimal strategies in a row.",
     )
+    if document.get("other_choices"):
+        yield from _other_choices(document["other_choices"])
     yield from _methods(document)
+
+
+def _other_choices(choices: Sequence[Document]) -> Iterator[str]:
+    yield heading("Had it been chosen otherwise")
+    yield paragraph(
+        "The paper says neither how probably its people complied, nor how many optimal strategies "
+        "in a row count as convergence. Without games, for people of whom each prefers one "
+        "strategy:"
+    )
+    yield table(
+        ("complies with the preferred", "with another", "in a row", "mean before", "never", ""),
+        [
+            (
+                number(one["preferred"]),
+                number(one["other"]),
+                one["in_a_row"],
+                number(one["mean"], 1),
+                one["never"],
+                "chosen here" if one["used"] else "",
+            )
+            for one in choices
+        ],
+    )
 
 
 def _methods(document: Document) -> Iterator[str]:

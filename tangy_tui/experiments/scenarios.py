@@ -12,6 +12,7 @@ from tangy_tui.experiments import (
     algorithms,
     incremental,
     mistakes,
+    other_choices,
     persuading,
     published,
     recovering,
@@ -109,10 +110,13 @@ def persuasion(asked: Persuading, where: Where) -> dict[str, Any]:
     groups = -(-asked.people // asked.users)
     played = persuading.run(asked.activity, asked.users, groups, asked.seed, where)
     compared = algorithms.run(strategies, asked.people, asked.seed, where)
+    people = min(asked.people, other_choices.ENOUGH)
+    others = other_choices.run(asked.activity, people, asked.seed, where)
     return {
         "experiment": 2,
         **played,
         **compared,
+        "other_choices": others,
         "paper": dict(published.SCENARIO_TWO),
         "settings": {
             "activity": activity_of(asked.activity).title,

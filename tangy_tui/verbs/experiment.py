@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -124,7 +125,7 @@ def _run(
     report: Path | None,
     as_json: bool,
 ) -> None:
-    from tangy_tui.experiments.comparison import compare
+    from tangy_tui.experiments.comparison import SOURCES, compare
     from tangy_tui.experiments.report import report as page_of
     from tangy_tui.experiments.sweep import Where
     from tangy_tui.house import data_folder
@@ -139,10 +140,13 @@ def _run(
     if report is not None:
         page.write(report, page_of(document))
     if as_json:
-        print_json(document)
+        print_json({**document, "compared": [asdict(row) for row in compare(document)]})
         return
     for row in compare(document):
-        print(f"{row.what}\n  paper: {row.paper}\n  here:  {row.here}\n  {row.words}")
+        print(f"{row.what} ({row.source})\n  paper: {row.paper}\n  here:  {row.here}")
+        print(f"  {row.words}")
+    for name, words in SOURCES.items():
+        print(f"({name}: {words}.)")
     if report is not None:
         print(plain(f"The report is in {report}."))
 

@@ -66,7 +66,8 @@ def test_it_is_told_in_words_too(ran: Ran) -> None:
     rows = compare(ran.document)
     for row in rows:
         assert (
-            f"{row.what}\n  paper: {row.paper}\n  here:  {row.here}\n  {row.words}" in done.stdout
+            f"{row.what} ({row.source})\n  paper: {row.paper}\n  here:  {row.here}\n"
+            f"  {row.words}\n" in done.stdout
         )
 
 
@@ -138,6 +139,26 @@ def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran:
         assert len(told) == 3, "what is gained is said of each method by its name"
 
 
+def test_only_what_was_predicted_is_said_to_agree(ran: Ran) -> None:
+    rows = compare(ran.document)
+    assert {row.source for row in rows} > {"predicted", "fitted"}
+    assert all(row.source == "predicted" for row in rows if "gree" in row.words)
+    for row in rows:
+        assert f">{row.source}</td>" in ran.page
+
+
+def test_what_was_chosen_stands_beside_other_choices(ran: Ran) -> None:
+    if ran.document["experiment"] == 2:
+        choices = ran.document["other_choices"]
+        (used,) = (one for one in choices if one["used"])
+        assert (used["preferred"], used["other"]) == (0.9, 0.4)
+        others = sorted(one["mean"] for one in choices if not one["used"])
+        first, *_ = compare(ran.document)
+        assert first.source == "chosen"
+        assert f"{others[0]:.1f} to {others[-1]:.1f}" in first.words
+        assert ran.page.count("chosen here") == 1
+
+
 def test_neither_curve_hides_the_other_where_both_are_the_same(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         drawing = figures.mistakes(ran.document["teachers"]["with_mistakes"])
@@ -150,7 +171,7 @@ def test_words_follow_the_numbers(ran: Ran) -> None:
     if ran.document["experiment"] == 1:
         near = {**ran.document, "behaviours": {"mean": 61.0, "se": 1.0, "n": 9, "all": []}}
         far = {**near, "behaviours": {**near["behaviours"], "mean": 50.0}}
-        assert "Agrees" in compare(near)[2].words
+        assert compare(near)[2].words.startswith("Within two standard errors.")
         assert compare(far)[2].words.startswith("Lower by 12.")
     else:
         four = {"mean": 10.0, "sd": 3.0, "n": 9}
@@ -159,6 +180,7 @@ def test_words_follow_the_numbers(ran: Ran) -> None:
             "four_users": four,
             "suboptimal_before_convergence": {
                 "mean": 20.0, "sd": 5.0, "se": 1.0, "n": 25, "never": 2,
+                "converged_means_in_a_row": 10,
             },
         }  # fmt: skip
         row = compare(far)[0]

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.experiments import algorithms, figures, persuading, published
+from tangy_tui.experiments import algorithms, figures, other_choices, persuading, published
 from tangy_tui.experiments.comparison import compare
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.interaction.methods import BayesUcb, Thompson
@@ -39,6 +39,15 @@ def test_suboptimal_strategies_before_convergence_are_the_papers() -> None:
         assert sum(shares[-10:]) / 10 > 0.9
 
 
+def test_other_choices_would_have_given_other_figures() -> None:
+    choices = other_choices.run("bingo", 60, SEED, Where(jobs=1))
+    (used,) = (one for one in choices if one["used"])
+    assert (used["preferred"], used["other"], used["in_a_row"]) == (0.9, 0.4, 10)
+    means = [one["mean"] for one in choices]
+    assert min(means) < 7 and max(means) > 20
+    assert used["mean"] == pytest.approx(10.8, abs=3)
+
+
 def test_a_group_comes_out_the_same_alone_and_among_others() -> None:
     settings = {"activity": "bingo", "users": 3}
     together = persuading.play(settings, (SEED, 3))
@@ -67,7 +76,7 @@ def test_who_has_few_interactions_or_never_converges_is_told_of_as_such(
     assert (before["n"], before["mean"], before["never"]) == (0, None, 8)
     first, *_ = compare({**played, "experiment": 2, "paper": dict(published.SCENARIO_TWO)})
     assert "8 never converged" in first.here
-    assert first.words == "Nobody converged here, so there is nothing to compare."
+    assert first.words.startswith("Nobody converged here, so there is nothing to compare.")
     assert figures.optimal_shares(played["users"]).startswith("<svg")
     document = {**played, "paper": dict(published.SCENARIO_TWO)}
     assert figures.before_convergence(document).startswith("<svg")
