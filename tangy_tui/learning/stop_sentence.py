@@ -42,6 +42,7 @@ TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immedi
 """Words that are looked for in what was typed in a hurry."""
 SAME_WORD = 0.7  # likeness from which an unknown word is taken for a slip of one of them
 _PAUSES = re.compile(r"[.!?;:,\n\u2026\u2013\u2014]+|\s-+\s")
+_CLEAR = re.compile(r"\b(?:robot|machine|game|emergency stop|stop tangy)$")
 _DRAWN_OUT = re.compile("s+t+o+p+")
 _LETTERS = sorted("stop")
 _WORDS_OF_THESE_LETTERS = frozenset(("opts", "post", "pots", "spot", "tops"))
@@ -59,6 +60,11 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
     clauses = dict.fromkeys((*parts, whole))
     aimed = any(_is_aimed(_mended(clause, game)) for clause in clauses if clause)
     return aimed or whole.replace(" ", "") in _run_together()
+
+
+def stops_whatever_follows(words: str) -> bool:
+    """Say whether what was said so far stops the robot, and no word after it can change that."""
+    return bool(_CLEAR.search(words)) and stops(words)
 
 
 def _is_aimed(clause: str) -> bool:

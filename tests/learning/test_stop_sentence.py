@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.person import load_people
 from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.stop_sentence import STOPS, stops
+from tangy_tui.learning.stop_sentence import STOPS, stops, stops_whatever_follows
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.learning.stop_sentences import (
     MENTIONING,
@@ -133,3 +133,19 @@ def test_who_says_not_to_stop_is_never_taken_for_who_says_stop(words: str) -> No
 )
 def test_a_long_line_is_judged_at_once(once: str) -> None:
     assert not stops(once * 60 + "teasing")
+
+
+@pytest.mark.parametrize(
+    ("words", "clear"),
+    [
+        ("stop the robot", True),
+        ("please stop the game", True),
+        ("emergency stop", True),
+        ("stop", False),  # ... teasing her
+        ("stop it", False),  # ... from leaking
+        ("do not stop the robot", False),
+        ("the robot", False),
+    ],
+)
+def test_what_names_the_robot_stops_it_whatever_follows(words: str, clear: bool) -> None:
+    assert stops_whatever_follows(words) is clear

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import json
 import os
 import pty
@@ -28,6 +29,7 @@ from tangy_tui.learning.speech.evidence import LONGEST, USUAL, Evidence, Setting
 from tangy_tui.learning.speech.listening import listen, tier_of
 from tangy_tui.learning.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
 from tangy_tui.learning.speech.understanding import understand, wanted
+from tangy_tui.learning.speech.worker import Worker
 from tangy_tui.learning.verifying import Say, Stop
 from tests.hw.sounds import wav
 from tests.real.voices import FESTIVAL, NOISES, Voices
@@ -102,6 +104,20 @@ class Studio:
         self._runner.close()
 
 
+def hands_free(pcm: bytes) -> tuple[float, Evidence]:
+    """Return the first utterance in a sound, and after how many s of it that was known."""
+    answers: list[dict[str, Any]] = []
+    worker = Worker(answers.append)
+    worker.take({"id": 1, "wanted": WANTED.to_json()})
+    worker.take({"id": 2, "begin": "commands", "endpoint": True})
+    pcm += bytes(2 * RATE)
+    for place in range(0, len(pcm), PIECE):
+        worker.take({"pcm": base64.b64encode(pcm[place : place + PIECE]).decode()})
+        if heard := next((answer["heard"] for answer in answers if "heard" in answer), None):
+            return (place + PIECE) / 2 / RATE, Evidence(**heard)
+    raise AssertionError(f"nothing was heard: {answers}")
+
+
 @pytest.fixture(scope="session")
 def voices(tmp_path_factory: pytest.TempPathFactory) -> Voices:
     return Voices(tmp_path_factory.mktemp("voices"))
@@ -141,10 +157,13 @@ class TestVoices:
         assert found == dict.fromkeys(found, "nothing")
 
     @pytest.mark.parametrize("voice", ["slt", "kal16", FESTIVAL])
+    @pytest.mark.parametrize(
+        "words", ["stop", "stop the robot", "emergency stop", "stop the game", "stop right away"]
+    )
     def test_stop_is_heard_from_every_voice(
-        self, studio: Studio, voices: Voices, voice: str
+        self, studio: Studio, voices: Voices, voice: str, words: str
     ) -> None:
-        assert studio.hear(voices.say("stop", voice))[0] == "stop"
+        assert studio.hear(voices.say(words, voice))[0] == "stop"
 
     def test_noises_are_nothing(self, studio: Studio, voices: Voices) -> None:
         found = {name: studio.hear(voices.noise(name))[0] for name in NOISES}
@@ -230,7 +249,10 @@ class TestStream:
 
     @pytest.mark.parametrize(
         ("said", "voice"),
-        [("stop", "slt"), ("stop", "rms"), ("stop", "kal16"), ("tangy stop", "slt")],
+        [
+            *(("stop", "slt"), ("stop", "rms"), ("stop", "kal16"), ("tangy stop", "slt")),
+            *(("stop the robot", "slt"), ("emergency stop", "rms"), ("make it stop", "slt")),
+        ],
     )
     def test_stop_ends_the_utterance_by_itself(
         self, studio: Studio, voices: Voices, said: str, voice: str
@@ -241,6 +263,30 @@ class TestStream:
             return await studio.recogniser.hear(sound)
 
         assert isinstance(understand(studio.run(talk()), BOOK, USUAL), Stop)
+
+    @pytest.mark.parametrize("voice", ["slt", "rms", "awb"])
+    @pytest.mark.parametrize(
+        ("said", "soon"), [("stop the robot", 0.2), ("emergency stop", 0.2), ("make it stop", 0.5)]
+    )
+    def test_hands_free_stop_is_known_before_the_utterance_is_known_to_be_over(
+        self, voices: Voices, said: str, soon: float, voice: str
+    ) -> None:
+        pcm = voices.say(said, voice)
+        loud = [abs(sample) > 1000 for sample in memoryview(pcm).cast("h")]
+        last = (len(loud) - loud[::-1].index(True)) / RATE  # s, where its last sound ends
+        seconds, evidence = hands_free(pcm)
+        assert isinstance(understand(evidence, BOOK, USUAL), Stop)
+        assert seconds - last <= soon
+
+    @pytest.mark.parametrize("voice", ["slt", "rms"])
+    @pytest.mark.parametrize(
+        "said", ["stop teasing her", "stop by the red table", "he stopped playing", "do not stop"]
+    )
+    def test_hands_free_other_sentences_with_stop_are_heard_to_their_end(
+        self, voices: Voices, said: str, voice: str
+    ) -> None:
+        _, evidence = hands_free(voices.say(said, voice))
+        assert not isinstance(understand(evidence, BOOK, USUAL), Stop)
 
     def test_the_answer_comes_soon_after_the_end(
         self, studio: Studio, voices: Voices, capsys: pytest.CaptureFixture[str]

@@ -10,6 +10,7 @@ WINDOW = 0.3  # s, of which the share below has to be speech, or quiet
 RATIO = 0.9
 FEWEST = 4  # frames of speech, 0.12 s; less is a click
 PAUSE = 0.5  # s; the window for recordings, in which nobody waits for an answer
+LEAD = 0.1  # s before an utterance that its words so far are looked for in
 MARGIN = 0.3  # s that are kept before an utterance, and of a recording after it as well
 
 
@@ -44,7 +45,11 @@ class Endpoints:
         return float(self._endpointer.speech_end)
 
     def feed(self, pcm: bytes) -> Iterator[tuple[bool, bytes, bool]]:
-        """Give the speech in these samples: whether it begins here, and whether it is over."""
+        """Give the speech in these samples: whether it begins here, and whether it is over.
+
+        It is given as it comes, with the quiet after it: where it ends is known a window later,
+        and by then what must not wait has to be known.
+        """
         stream = self._rest + pcm
         size = self._endpointer.frame_bytes
         whole = len(stream) - len(stream) % size
@@ -58,25 +63,28 @@ class Endpoints:
             if not spoke and not speech:
                 del self._recent[: -2 * round((self._window + MARGIN) * RATE)]
             if speech:
-                yield not spoke, bytes(speech), not self._endpointer.in_speech
+                fresh = frame if spoke else self._since(self.begin - LEAD)
+                yield not spoke, fresh, not self._endpointer.in_speech
 
     def finish(self) -> bytes:
         """End the stream; return what is left of an utterance that was still going on."""
         speaking: bool = self._endpointer.in_speech
-        speech = self._endpointer.end_stream(self._rest or b"\0\0")
-        self.taken, self._rest, self._recent = (
-            self.taken + len(self._rest),
-            b"",
-            self._recent + self._rest,
-        )
-        return bytes(speech) if speaking and speech else b""
+        self._endpointer.end_stream(self._rest or b"\0\0")
+        rest, self._rest = self._rest, b""
+        self.taken += len(rest)
+        self._recent += rest
+        return rest if speaking else b""
 
     def utterance(self) -> bytes:
         """Return the utterance that was found last, with what lies around it.
 
         Where nothing but words is left of a sound, the decoder is less sure of them.
         """
-        begin = 2 * round(max(0.0, self.begin - MARGIN) * RATE)
+        return self._since(self.begin - MARGIN)
+
+    def _since(self, seconds: float) -> bytes:
+        """Return what was taken from a time on, in s from the start of the stream."""
+        begin = 2 * round(max(0.0, seconds) * RATE)
         return bytes(self._recent[max(0, begin - (self.taken - len(self._recent))) :])
 
 

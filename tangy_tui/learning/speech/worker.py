@@ -33,12 +33,13 @@ from typing import Any, get_args
 
 from tangy_tui.learning.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
-from tangy_tui.learning.stop_sentence import stops
+from tangy_tui.learning.stop_sentence import stops, stops_whatever_follows
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
 PAUSE = 0.2  # s of quiet in which what was said so far is decoded: mostly nothing follows
-STANDS = 0.3  # s for which urgent words have to stand alone
+STANDS = 0.5  # s for which urgent words have to stand alone where it is never quiet
+CLEAR = 0.12  # s for which they have to stand where no word after them can change what is meant
 
 
 class Refused(Exception):
@@ -93,7 +94,7 @@ class Worker:
             case {"end": True}:
                 if id == self._id:
                     if self._endpoints is not None:
-                        self._add(self._endpoints.finish())
+                        self._add(self._endpoints.finish(), shows=True)
                     self._end()
             case {"pieces": str(encoded)}:
                 found = [(round(begin, 3), round(end, 3)) for begin, end in pieces(_sound(encoded))]
@@ -122,7 +123,7 @@ class Worker:
         self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
         self._pcm.clear()
         self._endpoints = Endpoints() if endpoint else None
-        self._pauses = None if endpoint else Pauses()
+        self._pauses = Pauses()
         self._foreseen = None
         if not endpoint:
             self._decoder.begin(expecting)
@@ -131,44 +132,61 @@ class Worker:
         if self._id is None:
             return  # nobody listens just now
         if self._endpoints is None:
-            self._add(sound)
-            if self._stands_alone():
-                self._end()
-            elif self._pauses is not None and len(sound) <= 2 * RATE * LARGEST_PIECE:
-                self._foresee(self._pauses, sound)
+            self._follow(sound)
             return
         for began, speech, over in self._endpoints.feed(sound):
             if began:
                 self._decoder.begin(self._expecting)
                 self._write({"id": self._id, "speaking": True})
-            self._add(speech)
-            if over or len(self._pcm) >= 2 * RATE * LONGEST or self._stands_alone():
+            self._follow(speech)
+            if self._id is not None and (over or len(self._pcm) >= 2 * RATE * LONGEST):
                 self._end()
+            if self._id is None:
                 return
 
-    def _add(self, sound: bytes) -> None:
+    def _follow(self, sound: bytes) -> None:
+        """Take the next piece of an utterance; it is over where its words so far are urgent."""
+        assert self._pauses is not None  # noqa: S101 - an utterance has begun
+        shows = self._endpoints is not None or len(sound) <= 2 * RATE * LARGEST_PIECE
+        spoke = self._pauses.feed(sound)
+        self._add(sound, shows=shows)
+        if self._stands_alone(self._pauses.after_speech):
+            self._end(self._so_far())
+        elif shows:
+            self._foresee(self._pauses.after_speech, spoke=spoke)
+
+    def _add(self, sound: bytes, *, shows: bool) -> None:
         if len(self._pcm) + len(sound) > 2 * RATE * LONGEST and self._endpoints is None:
             sound = sound[: max(0, 2 * RATE * LONGEST - len(self._pcm))]
         if not sound:
             return
         self._pcm += sound
-        if len(sound) <= 2 * RATE * LARGEST_PIECE and self._foreseen is None:
+        if shows and self._foreseen is None:
             words = self._decoder.partial(sound)
             self._stood += len(sound)
             if words != self._shown:
                 self._shown, self._stood = words, 0
                 self._write({"id": self._id, "partial": words})
 
-    def _stands_alone(self) -> bool:
+    def _stands_alone(self, quiet: float) -> bool:
         """Whether the words so far are urgent, and nothing has followed them for a while."""
-        return self._shown in self._urgent and self._stood >= 2 * RATE * STANDS
+        if self._stood < 2 * RATE * CLEAR or not self._is_urgent(self._shown):
+            return False
+        waits = quiet < PAUSE and not stops_whatever_follows(self._shown)
+        return not waits or self._stood >= 2 * RATE * STANDS
 
-    def _foresee(self, pauses: Pauses, sound: bytes) -> None:
+    def _is_urgent(self, words: str) -> bool:
+        return words in self._urgent or (bool(self._urgent) and stops(words))
+
+    def _so_far(self) -> Evidence:
+        """Return the words so far as they are: what is urgent does not wait for a second look."""
+        return Evidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
+
+    def _foresee(self, quiet: float, *, spoke: bool) -> None:
         """Decode in a pause, so that the answer is there when the utterance is said to be over."""
-        spoke = pauses.feed(sound)
-        if self._foreseen is None and pauses.after_speech >= PAUSE:
-            self._foreseen = self._decode(bytes(self._pcm))
-            if self._urgent and stops(self._foreseen.words):
+        if self._foreseen is None and quiet >= PAUSE:
+            self._foreseen = self._decode(self._said())
+            if self._is_urgent(self._foreseen.words):
                 self._end()
         elif self._foreseen is not None and spoke:
             self._foreseen = None
@@ -181,12 +199,15 @@ class Worker:
         evidence: Evidence = self._decoder.decode(pcm, self._expecting)
         return evidence
 
-    def _end(self) -> None:
-        id = self._id
-        pcm, used = bytes(self._pcm), len(self._pcm)
+    def _said(self) -> bytes:
+        """Return the utterance; where it was found, with what lies around it."""
+        return self._endpoints.utterance() if self._endpoints and self._pcm else bytes(self._pcm)
+
+    def _end(self, heard: Evidence | None = None) -> None:
+        id, used = self._id, len(self._pcm)
         if self._endpoints is not None:
-            pcm, used = self._endpoints.utterance() if pcm else b"", self._endpoints.taken
-        heard = self._foreseen or self._decode(pcm)
+            used = self._endpoints.taken
+        heard = heard or self._foreseen or self._decode(self._said())
         self._id = None
         self._pcm.clear()
         self._write({"id": id, "heard": asdict(heard), "used": used})
