@@ -201,8 +201,8 @@ class Hearing:
     def _take(self, heard: Say | Stop | Reply) -> None:
         match heard:
             case Stop(text):
-                self.tell(f"Heard: {text}.", "warn")
                 self._stop()
+                self.tell(f"Heard: {text}.", "warn")
             case Reply(yes):
                 self._answer(yes)
             case Say() if self._listeners:

@@ -99,14 +99,18 @@ def run_live(
     seed: int,
     teacher: str,
     ascii_only: bool,
+    ears: Ears | None = None,
 ) -> int:
-    """Switch the robot on, play on the live screen, and end with it; return the exit status."""
+    """Switch the robot on, play on the live screen, and end with it; return the exit status.
+
+    What stops the robot is heard through the ears, if there are any, and what answers Tangy.
+    """
 
     async def start(program: Program) -> None:
         await play_live(program, opening, policy, games=games, seed=seed, teacher=teacher)
         program.leave()
 
-    return _run(house, start, ascii_only)
+    return _run(house, start, ascii_only, ears)
 
 
 def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_only: bool) -> int:

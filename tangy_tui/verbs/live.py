@@ -13,6 +13,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
+from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_house
 from tangy_tui.verbs.playing import (
     INJECT_HELP,
@@ -89,6 +90,10 @@ def live(
             "them. What is not said it learns when it first sees a card there. Repeatable.",
         ),
     ] = None,
+    mic: Mic = None,
+    hands_free: HandsFree = False,
+    spoken_answers: SpokenAnswers = False,
+    mode: Mode = None,
     seed: common.Seed = None,
     data: common.Data = None,
     as_json: common.Json = False,
@@ -98,22 +103,31 @@ def live(
 
     The robot's profile names its drivers (see the README). With --bench the same drivers speak to
     simulated devices over their own wires. Devices are watched all the time; what goes wrong is
-    diagnosed, and a critical fault stops the robot until staff clear it.
+    diagnosed, and a critical fault stops the robot until staff clear it. With --mic it listens:
+    "stop the robot" stops it at once, and what it asks can be answered by voice.
     """
     from tangy_hw.perception.requests.naming import read_corners
+    from tangy_tui.inputs import keys_from_terminal
+    from tangy_tui.learning.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
     if INJECT_HELP in (inject or ()):
         list_injections(as_json)
         return
     who = who_answers(teacher, expert)
+    listening = Listening(mic, hands_free, spoken_answers, mode)
+    listening.check()
     if inject and not bench:
         raise TangyError("--inject: faults are brought about on the bench alone: add --bench.")
     if bench and (camera or requests or table or card):
         options = "--camera, --requests, --table, --card"
         raise TangyError(f"{options}: the bench brings its own; leave them out.")
     faults = _listed(inject or [])
+    listens = mic == "-" and not (headless or as_json)
+    sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
     screen = not (headless or as_json) and full_screen()
+    if mic is not None and not screen:
+        raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         learnt = recall(house, policy, quiet=as_json)
@@ -141,6 +155,9 @@ def live(
                     seed=number,
                     teacher=who,
                     ascii_only=ascii_only,
+                    ears=listening.ears(
+                        house, Phrasebook(house.activity, house.people), who, sound=sound
+                    ),
                 )
             )
         if not as_json:

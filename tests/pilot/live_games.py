@@ -19,6 +19,7 @@ from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tests.hw.links import FakeLink
 from tests.pilot.conftest import StillClock
+from tests.pilot.ears import FakeEars
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import TangyPilot
@@ -92,14 +93,22 @@ def live_world(house: House, link: HeldLink, kind: type[LiveWorld] = LiveWorld) 
     )
 
 
-def live_program(house: House, world: LiveWorld, policy: Policy) -> Program:
-    """Make a program that opens with the live screen."""
+def live_program(
+    house: House, world: LiveWorld, policy: Policy, ears: FakeEars | None = None
+) -> Program:
+    """Make a program that opens with the live screen, and with ears if it is given any."""
     supervision = house.supervision(policy, 1, asks=True, world=world)
 
     async def start(program: Program) -> None:
         await program.push_screen(LiveScreen(house, supervision, world, teacher="ann"))
 
-    return Program(house, start, kind=TerminalKind(full_screen=True), clock=StillClock())
+    return Program(
+        house,
+        start,
+        kind=TerminalKind(full_screen=True),
+        clock=StillClock(),
+        ears=None if ears is None else ears.ears,
+    )
 
 
 def live(pilot: TangyPilot) -> LiveScreen:

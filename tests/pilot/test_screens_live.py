@@ -16,14 +16,17 @@ from tangy_hw.world import LiveWorld
 from tangy_profiles.health import OK, Reading
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.verifying import Stop
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
+from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import screen_text
+from tests.pilot.ears import FakeEars
 from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
 
 if TYPE_CHECKING:
@@ -118,6 +121,29 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
             link.state = replace(link.state, health=well)
             link.free = True
         await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+
+
+@pytest.mark.parametrize("hands_free", [True, False])
+async def test_a_stop_that_is_said_goes_to_the_robot_itself(
+    run: Run, house: House, world: LiveWorld, link: HeldLink, policy: Policy, hands_free: bool
+) -> None:
+    ears = FakeEars(hands_free=hands_free)
+    async with run(app=live_program(house, world, policy, ears)) as pilot:
+        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        line = pilot.app.screen.query_one(MicrophoneLine)
+        assert ears.asks and ("listening for stop" if hands_free else "t talk") in line.text
+        link.free = False
+        await until(pilot, lambda: live(pilot)._working)
+        if not hands_free:
+            await pilot.press("t")
+            assert ears.state == "listening"
+        ears.hear(Stop("stop the robot"))
+        await until(pilot, lambda: "stop: staff stopped it" in link.told)
+        await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+        assert "Heard: stop the robot." in [told.message for told in pilot.app._notifications]
+        link.free = True
+        await pilot.press("p")
+        await until(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
 
 
 async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(

@@ -73,3 +73,15 @@ def test_a_robot_is_a_toml_file(
         done = tangy(*words)
         assert done.returncode == 2
         assert done.stderr == f"tangy: {notes} is no robot: a robot's file ends in .toml.\n"
+
+
+def test_a_microphone_without_a_screen_and_ways_to_listen_without_one_are_refused(
+    tangy: Callable[..., CompletedProcess[str]],
+) -> None:
+    for words, why in (
+        (("--mic", "socket"), "--mic: Tangy listens in a live game on the screen"),
+        (("--hands-free",), "There is nothing to listen to: name a microphone with --mic."),
+    ):
+        done = tangy("live", "--bench", "--headless", *words)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"tangy: {why}")

@@ -15,50 +15,23 @@ import pytest
 
 from tangy_hw.sound.wav import RATE
 from tests.hw.sounds import wav
+from tests.real.microphone import Laptop
 from tests.real.voices import Voices
 from tests.support.terminal import PATIENCE, ended
 
 if TYPE_CHECKING:
     from tests.real.conftest import OpenTerminal
-    from tests.support.terminal import Terminal, Tmux
+    from tests.support.terminal import Tmux
 
 pytestmark = [
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
     pytest.mark.xdist_group("speech"),
 ]
 
-PIECE = 0.05  # s
-
 
 @pytest.fixture
 def voices(tmp_path: Path) -> Voices:
     return Voices(tmp_path)
-
-
-class Laptop:
-    """`tangy mic` in a process of its own, into which somebody speaks at the speed of speech."""
-
-    def __init__(self, tangy: str, data: Path) -> None:
-        self.process = subprocess.Popen(  # noqa: S603 - our own program
-            [tangy, "mic", "--data", str(data)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-
-    def say(self, terminal: Terminal, pcm: bytes) -> None:
-        """Speak; the terminal is looked at meanwhile."""
-        assert self.process.stdin is not None
-        size = round(2 * RATE * PIECE)
-        for place in range(0, len(pcm), size):
-            self.process.stdin.write(pcm[place : place + size])
-            self.process.stdin.flush()
-            terminal.read(PIECE)
-
-    def end(self) -> None:
-        self.process.kill()
-        self.process.communicate()
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from textual.binding import Binding, BindingType
 
 from tangy_tui.ui.screens import play_keys
 
-NOT_LIVE = ("one_step", "speed", "skip", "talk")
+NOT_LIVE = ("one_step", "speed", "skip")
 """What can be done in a simulated game, and not to a robot among people."""
 
 ALONE, UNSURE, EVERY = "alone", "asks when unsure", "asks each time"
@@ -25,7 +25,8 @@ HELP = (
     "number again, x takes it back, h asks for help for somebody who cannot, b says whose card is "
     "whose. l says that what "
     "somebody did last was done otherwise than was seen. f brings a fault about, on the bench. "
-    "Esc ends the game."
+    "With a microphone, stop and stop the robot stop it at once when they are said, and t talks "
+    "where a key is pushed to talk. Esc ends the game."
 )
 
 BINDINGS: list[BindingType] = [
