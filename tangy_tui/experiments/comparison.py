@@ -291,6 +291,7 @@ def _recovery(document: Document) -> list[Row]:
             f"{there['instances']} in {paper['games']} games, success {percent(there['success'])}",
             f"{here['instances']} in {games}, success {percent(here['success'])}",
             _recovered(here, there["instances"] * scale),
+            "chosen",
         )
         for there, here in zip(paper["faults"], document["faults"], strict=True)
     ]
@@ -322,6 +323,7 @@ def _recovery(document: Document) -> list[Row]:
             "Here every expert mends what was diagnosed; the others are told of below."
             if document["ended"].get(TO_ITS_END, 0) < games
             else "Here every expert mends what was diagnosed.",
+            "chosen",
         ),
     ]
 

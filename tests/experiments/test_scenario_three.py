@@ -191,6 +191,11 @@ def test_words_follow_the_numbers(document: dict[str, Any]) -> None:
     assert "did not come about before its games ended: never-complies" in page
 
 
+def test_what_follows_from_chosen_help_is_no_prediction(document: dict[str, Any]) -> None:
+    sources = [row.source for row in compare(document)]
+    assert sources == ["chosen"] * 4 + ["predicted", "fitted", "chosen"]
+
+
 def test_the_page_says_whether_devices_were_there(document: dict[str, Any]) -> None:
     assert "in simulation" in report(document) and "proves the rules" in report(document)
     benched = {**document, "simulated": False}
