@@ -40,7 +40,7 @@ SOMEBODY = "him|her|them"
 # ------------------------------------------------------------------------------ how, and what else
 
 SAKE = r"for (?:\w+ )?\w+ sake|in (?:gods|heavens) name|in the name of (?:god|heaven)"
-NAMED = "tangy|robot|dear|love|buddy|mate|pal|darling|sweetheart|everybody|everyone|you"
+NAMED = "tangy|robot|dear|love|mister|sir|buddy|mate|pal|darling|sweetheart|everybody|everyone|you"
 _MOMENT = "moment|second|sec|minute|instant|while|bit"
 HOW = _any(
     "now|please|immediately|instantly|here|there|already|altogether|completely|dead|quick|quickly",
@@ -222,6 +222,11 @@ NO_CRY_BEFORE = frozenset(
     )
 )
 """A single word after a verb of stopping that says that nobody cries it."""
+ENDS_A_THOUGHT = frozenset(("this", "that", "and"))
+"""Words before a cry and what is to stop that end another thought, or join it on."""
+FORBIDS = re.compile(
+    r"\b(?:not|never|nobody|(?:do|does|did|wo|would|could|should|need|must)nt)\b|.* to \w+ and$"
+)
 NO_CRY_AFTER = frozenset(
     (
         *("to", "dont", "not", "never", "cant", "cannot", "couldnt", "wont", "wouldnt", "shouldnt"),

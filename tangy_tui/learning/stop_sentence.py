@@ -19,6 +19,8 @@ from tangy_tui.learning.stop_patterns import (
     BEFORE,
     CRIES,
     CRY,
+    ENDS_A_THOUGHT,
+    FORBIDS,
     NO_CRY_AFTER,
     NO_CRY_BEFORE,
     OWN_WORDS,
@@ -96,7 +98,10 @@ def _ends_in_a_cry(clause: str) -> bool:
     if cry is None or ASKS_FIRST.match(clause):
         return False
     before = cry["before"].split(" ")
-    if before[-1] in NO_CRY_AFTER or {"a", "an"}.intersection(before[-3:]):
+    if cry["what"] and before[-1] in ENDS_A_THOUGHT and not FORBIDS.search(cry["before"]):
+        return True
+    named = cry["what"] not in (None, " it")
+    if before[-1] in NO_CRY_AFTER or (not named and {"a", "an"}.intersection(before[-3:])):
         return False
     asks = len(before) > 2 and before[-1] == "please" and before[-2] not in NO_CRY_AFTER
     return asks or bool(cry["what"]) or ALARM.fullmatch(cry["before"]) is not None
