@@ -29,7 +29,7 @@ def erase_from_log(db: sqlite3.Connection, eraser: NameEraser) -> int:
     """
     changed = [
         (after.encode(errors="surrogateescape"), seq)
-        for seq, kind, body in _bodies(db)
+        for seq, kind, body in _bodies(db, eraser)
         if (after := _without(kind, body, eraser)) != body
     ]
     if not changed:
@@ -47,12 +47,12 @@ def erase_from_log(db: sqlite3.Connection, eraser: NameEraser) -> int:
 
 
 def count_left(db: sqlite3.Connection, eraser: NameEraser) -> int:
-    """Count the events in whose bodies the name still stands: as a teacher's, for example."""
-    return sum(eraser.typed(body) != body for _, _, body in _bodies(db))
+    """Count the events in which the name still stands, as a teacher's or that of staff."""
+    return sum(eraser.is_left(body) for _, _, text in _bodies(db, eraser) if (body := _table(text)))
 
 
-def _bodies(db: sqlite3.Connection) -> Iterator[tuple[int, str, str]]:
-    """Yield seq, kind and body of the events whose body is text."""
+def _bodies(db: sqlite3.Connection, eraser: NameEraser) -> Iterator[tuple[int, str, str]]:
+    """Yield seq, kind and body of the events whose body may hold the name."""
     low: int | None = None
     while True:
         after = "TRUE" if low is None else f"seq > {low}"
@@ -62,7 +62,7 @@ def _bodies(db: sqlite3.Connection) -> Iterator[tuple[int, str, str]]:
             (),
         )
         for seq, kind, body in rows:
-            if isinstance(body, str):
+            if isinstance(body, str) and eraser.may_hold(body):
                 yield seq, str(kind), body
         if not rows:
             return
@@ -71,13 +71,17 @@ def _bodies(db: sqlite3.Connection) -> Iterator[tuple[int, str, str]]:
 
 def _without(kind: str, text: str, eraser: NameEraser) -> str:
     """Return the text of a body without the name; one that is no JSON is as running text."""
-    if eraser.typed(text) == text:
-        return text  # most of them
-    try:
-        body: Any = json.loads(text)
-    except (ValueError, RecursionError):
-        body = None
-    if not isinstance(body, dict):
+    body = _table(text)
+    if body is None:
         return eraser.typed(text)
     erased = eraser.body(kind, body)
     return text if erased == body else _to_json(erased)
+
+
+def _table(text: str) -> dict[str, Any] | None:
+    """Read the text of a body; None where it is no JSON, or no table."""
+    try:
+        body = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return body if isinstance(body, dict) else None

@@ -12,22 +12,27 @@ import html
 import json
 import re
 import unicodedata
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from tangy_profiles.events import BODIES
 from tangy_profiles.reading import read_toml
+from tangy_profiles.shapes import Fields
 
 FREE_TEXT = frozenset(
     ("heard", "why", "how", "console", "advice", "speech", "image", "stopped", "what")
 )
 """The keys of an event's body that hold words of people, or sentences of Tangy."""
+WHOSE = frozenset(("teacher", "by", "who"))
+"""The keys that say which teacher or member of staff it was; they may be called the same."""
 CHOSEN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
 """The kinds of event whose `what` is a word of Tangy's own."""
 
+_UNKNOWN = Fields()
 _MARKS = "\u0300-\u036f"  # accents that stand apart
 _TOKEN = re.compile(rf"(?:[^\W_]|[{_MARKS}])+")
 _BETWEEN = r"(?:&(?:\#x?\w+|nbsp|apos);|%20|[\s+\-_'\u2019.]){1,3}"
@@ -62,8 +67,14 @@ class NameEraser:
         self._small = {n for n in self.names if n.casefold() in small or len(n) < 2}
         self._written = {form for name in self._small for form in _as_written(name)}
         self._any = {f for name in self.names if name not in self._small for f in _forms(name)}
+        self._anchors = frozenset(_anchor(form) for form in forms)
         self._typed = self._pattern(forms, (), but)
         self._running = self._pattern(self._any, self._written, but)
+
+    def may_hold(self, text: str) -> bool:
+        """Say at a glance whether a text may hold the name: most of a log does not."""
+        folded = text.casefold()
+        return any(anchor in folded for anchor in self._anchors)
 
     def text(self, text: str) -> str:
         """Erase the name from running text, such as a report."""
@@ -80,9 +91,14 @@ class NameEraser:
     def body(self, kind: str, body: dict[str, Any]) -> dict[str, Any]:
         """Return the body of an event without the name in its free texts."""
         return {
-            key: self._value(value, key == "heard") if self._is_free(kind, key) else value
+            key: self._value(value, key == "heard") if _is_free(kind, key) else value
             for key, value in body.items()
         }
+
+    def is_left(self, body: Mapping[str, Any]) -> bool:
+        """Say whether the name stands in a body as that of a teacher or of staff."""
+        words = (body[key] for key in WHOSE if isinstance(body.get(key), str))
+        return any(self.typed(word) != word for word in words)
 
     def overwrite(self, data: bytes) -> bytes:
         """Overwrite the name in bytes that are no text, so that nothing moves.
@@ -95,14 +111,13 @@ class NameEraser:
                 data = found.sub(lambda match: b"-" * len(match[0]), data)
         return data
 
-    def _is_free(self, kind: str, key: str) -> bool:
-        return key in FREE_TEXT and not (key == "what" and kind in CHOSEN_WORDS)
-
     def _value(self, value: Any, typed: bool) -> Any:
         if isinstance(value, str):
             return self.typed(value) if typed else self.text(value)
         if isinstance(value, list):
             return [self._value(item, typed) for item in value]
+        if isinstance(value, dict):
+            return {key: self._value(item, typed) for key, item in value.items()}
         return value
 
     def _shown(self, match: re.Match[str]) -> str:
@@ -113,7 +128,7 @@ class NameEraser:
         return _SHOWN.sub(lambda a: a[1] + a[2] + self.text(a[3]), match["tag"])
 
     def _put(self, pattern: re.Pattern[str] | None, text: str) -> str:
-        if pattern is None:
+        if pattern is None or not self.may_hold(text):
             return text
         return pattern.sub(lambda m: self.stand_in if m["name"] else m[0], text)
 
@@ -133,6 +148,15 @@ class NameEraser:
         stays = [text for text in but if name.search(text) and _plainest(text) not in own]
         kept = [_one(text, "i") for text in sorted(stays, key=_longest)]
         return re.compile("|".join([*kept, f"(?P<name>{name.pattern})"]))
+
+
+def _is_free(kind: str, key: str) -> bool:
+    """Say whether a key of a body holds words, or what no kind of event of ours has."""
+    if key in FREE_TEXT:
+        return not (key == "what" and kind in CHOSEN_WORDS)
+    body = BODIES.get(kind, _UNKNOWN)
+    known = {*body.needs, *body.may} if isinstance(body, Fields) else {key}
+    return key not in known and key not in WHOSE
 
 
 @cache
@@ -163,6 +187,12 @@ def _as_written(name: str) -> tuple[str, ...]:
 
 def _plainest(text: str) -> str:
     return " ".join(_TOKEN.findall(text.casefold()))
+
+
+def _anchor(form: str) -> str:
+    """Return the longest plain part of a form, which every text that holds it has as well."""
+    parts = re.findall("[a-z0-9]+", form.casefold())
+    return max(parts, key=len) if parts else form.casefold()
 
 
 def _longest(text: str) -> tuple[int, str]:

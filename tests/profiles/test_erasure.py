@@ -56,6 +56,11 @@ def test_of_a_body_only_words_change() -> None:
         "heard": "go to user2",
         "advice": ["ask user2"],
     }
+    other = {"game": "rosa", "note": {"asked": ["Was Rosa well?"]}}
+    assert ROSA.body("game begun", other) == {
+        "game": "rosa",
+        "note": {"asked": ["Was user2 well?"]},
+    }
     chosen = {"what": "delete"}
     assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
 
