@@ -55,7 +55,10 @@ HOW = _any(
     f"(?:dead )?in (?:your|its) tracks|{NAMED}|{SAKE}",
 )
 _FINITE = "is|are|has|have|had|was|fell|hit|cant|cannot|wont|will|needs?|hurts?|does|do|did"
-_OTHERS = r"(?!\w+ing\b|who|what|which|where|when|that\b|to\b|from\b|at\b|in\b|by\b|me\b|us\b)"
+_OTHERS = (
+    r"(?!\w+ing\b|who|what|which|where|when|that\b|to\b|from\b|at\b|in\b|by\b|me\b|us\b"
+    r"|services?\b|room\b|ward\b|exits?\b|doctors?\b)"
+)
 NEXT = _any(
     "(?:before|or|because|cause|cos|until|till|and|but|there|theres|i|im|youre|hes|shes|theyre) .*",
     "(?:its|thats|somebody|someone|something|watch|look|mind|careful|wait|let|help|dont|not) .*",

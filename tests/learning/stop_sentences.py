@@ -733,6 +733,8 @@ MENTIONING_TOO = (
     "it is time to take a break",
     "mark your numbers and stop chatting",
     "tell him to stop copying from my card",
+    "emergency services are called",
+    "the emergency room is full",
     "we stop here every summer",
     "stop by whenever you like",
     "stop picking your nose",
