@@ -23,16 +23,15 @@ from tangy_profiles.events import BODIES
 from tangy_profiles.reading import read_toml
 from tangy_profiles.shapes import Fields
 
-FREE_TEXT = frozenset(
-    ("heard", "why", "how", "console", "advice", "speech", "image", "stopped", "what")
-)
-"""The keys of an event's body that hold words of people, or sentences of Tangy."""
+FREE_TEXT = frozenset(("heard", "how", "what", "why", "stopped"))
+"""The keys of an event's body that hold words of people."""
+SENTENCES = frozenset(("console", "advice", "speech", "image"))
+"""The keys that hold sentences of Tangy, in which a name stands as it is written."""
 WHOSE = frozenset(("teacher", "by", "who"))
 """The keys that say which teacher or member of staff it was; they may be called the same."""
-CHOSEN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
+OWN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
 """The kinds of event whose `what` is a word of Tangy's own."""
 
-_UNKNOWN = Fields()
 _MARKS = "\u0300-\u036f"  # accents that stand apart
 _TOKEN = re.compile(rf"(?:[^\W_]|[{_MARKS}])+")
 _BETWEEN = r"(?:&(?:\#x?\w+|nbsp|apos);|%20|[\s+\-_'\u2019.]){1,3}"
@@ -52,24 +51,38 @@ _SHOWN = re.compile(
 class NameEraser:
     """Puts a stand-in (the person's id) where a name stands."""
 
-    def __init__(self, names: Iterable[str], stand_in: str, *, but: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        names: Iterable[str],
+        stand_in: str,
+        *,
+        said: Iterable[str] = (),
+        but: Collection[str] = (),
+    ) -> None:
         """Learn what to look for.
 
         Args:
-            names: what the person is called, in every form that is to go.
+            names: what the person is called, every name that is to go, as it is written.
             stand_in: what is put in its place.
+            said: how the names stand where they were said.
             but: phrases and other people's names that stay as they are where they hold the name.
         """
         self.names = tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
         self.stand_in = stand_in
-        small = small_words()
-        forms = {form for name in self.names for form in _forms(name)}
-        self._small = {n for n in self.names if n.casefold() in small or len(n) < 2}
-        self._written = {form for name in self._small for form in _as_written(name)}
-        self._any = {f for name in self.names if name not in self._small for f in _forms(name)}
-        self._anchors = frozenset(_anchor(form) for form in forms)
-        self._typed = self._pattern(forms, (), but)
-        self._running = self._pattern(self._any, self._written, but)
+        plain = [name for name in self.names if not _is_small(name)]
+        typed = {form for name in (*self.names, *said) for form in _forms(name)}
+        anywhere = {form for name in plain for form in _forms(name)}
+        small = [name for name in self.names if _is_small(name) and len(_letters(name)) > 1]
+        written = {form for name in small for form in (name, name.title(), name.upper())}
+        self._anchors = frozenset(_anchor(form) for form in typed)
+        self._typed = self._pattern(typed, (), but)
+        self._running = self._pattern(anywhere, written, but)
+        self._exact = self._pattern((), [name for name in plain if len(_letters(name)) > 2], but)
+        self._bytes = [
+            _bytes_pattern(form, stand_in, self._stays([form], but), flags)
+            for forms, flags in ((anywhere, re.I), (written, re.NOFLAG))
+            for form in sorted(forms, key=_longest)
+        ]
 
     def may_hold(self, text: str) -> bool:
         """Say at a glance whether a text may hold the name: most of a log does not."""
@@ -90,10 +103,7 @@ class NameEraser:
 
     def body(self, kind: str, body: dict[str, Any]) -> dict[str, Any]:
         """Return the body of an event without the name in its free texts."""
-        return {
-            key: self._value(value, key == "heard") if _is_free(kind, key) else value
-            for key, value in body.items()
-        }
+        return {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
 
     def is_left(self, body: Mapping[str, Any]) -> bool:
         """Say whether the name stands in a body as that of a teacher or of staff."""
@@ -105,24 +115,24 @@ class NameEraser:
 
         It is looked for beside the person's id as well, as it stands in a table of names.
         """
-        for forms, flags in ((self._any, re.I), (self._written, re.NOFLAG)):
-            for form in sorted(forms, key=len, reverse=True):
-                found = _bytes_pattern(form.encode(), self.stand_in.encode(), flags)
-                data = found.sub(lambda match: b"-" * len(match[0]), data)
+        for found in self._bytes:
+            data = found.sub(lambda m: b"-" * len(m["name"]) if m["name"] else m[0], data)
         return data
 
-    def _value(self, value: Any, typed: bool) -> Any:
+    def _value(self, value: Any, kept: str) -> Any:
+        pattern = {"typed": self._typed, "running": self._running, "exact": self._exact}.get(kept)
         if isinstance(value, str):
-            return self.typed(value) if typed else self.text(value)
+            return self._put(pattern, value)
         if isinstance(value, list):
-            return [self._value(item, typed) for item in value]
-        if isinstance(value, dict):
-            return {key: self._value(item, typed) for key, item in value.items()}
+            return [self._value(item, kept) for item in value]
+        if isinstance(value, dict) and kept == "running":
+            return {key: self._value(item, kept) for key, item in value.items()}
         return value
 
     def _shown(self, match: re.Match[str]) -> str:
         if match["text"]:
-            return self.text(match["text"])
+            alone = html.unescape(match["text"]).strip() in self.names
+            return self.stand_in if alone else self.text(match["text"])
         if match["code"]:
             return match["code"]
         return _SHOWN.sub(lambda a: a[1] + a[2] + self.text(a[3]), match["tag"])
@@ -144,19 +154,50 @@ class NameEraser:
         if not sought:
             return None
         name = re.compile("|".join(sought))
-        own = {_plainest(name) for name in self.names}
-        stays = [text for text in but if name.search(text) and _plainest(text) not in own]
-        kept = [_one(text, "i") for text in sorted(stays, key=_longest)]
+        kept = [_one(text, "i") for text in self._stays([name], but)]
         return re.compile("|".join([*kept, f"(?P<name>{name.pattern})"]))
 
+    def _stays(self, sought: Iterable[str | re.Pattern[str]], but: Collection[str]) -> list[str]:
+        """Return the phrases that hold the name among other words, the longest first."""
+        own = {_plainest(name) for name in self.names}
+        found = [
+            text
+            for text in but
+            if _plainest(text) not in own
+            and any(
+                one.search(text)
+                if isinstance(one, re.Pattern)
+                else one.casefold() in text.casefold()
+                for one in sought
+            )
+        ]
+        return sorted(found, key=_longest)
 
-def _is_free(kind: str, key: str) -> bool:
-    """Say whether a key of a body holds words, or what no kind of event of ours has."""
+
+def _kept_in(kind: str, key: str) -> str:
+    """Say how a name may stand under a key of a body ("": not at all).
+
+    "typed" is what was typed or said, "running" what people wrote, or a key that no kind of event
+    of ours has, and "exact" a sentence of Tangy.
+    """
+    if key == "heard":
+        return "typed"
+    if key in SENTENCES or (kind, key) == ("fault", "why"):
+        return "exact"
     if key in FREE_TEXT:
-        return not (key == "what" and kind in CHOSEN_WORDS)
-    body = BODIES.get(kind, _UNKNOWN)
+        return "" if key == "what" and kind in OWN_WORDS else "running"
+    body = BODIES.get(kind, Fields())
     known = {*body.needs, *body.may} if isinstance(body, Fields) else {key}
-    return key not in known and key not in WHOSE
+    return "" if key in known or key in WHOSE else "running"
+
+
+def _is_small(name: str) -> bool:
+    """Say whether a name is a small word as well, or too short to be told from one."""
+    return name.casefold() in small_words() or len(_letters(name)) < 2
+
+
+def _letters(name: str) -> str:
+    return "".join(_TOKEN.findall(name))
 
 
 @cache
@@ -181,10 +222,6 @@ def _forms(name: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(form for form in (*plainly, *coded) if form))
 
 
-def _as_written(name: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys((name, name.title(), name.upper())))
-
-
 def _plainest(text: str) -> str:
     return " ".join(_TOKEN.findall(text.casefold()))
 
@@ -203,15 +240,23 @@ def _one(text: str, flags: str) -> str:
     """Return the pattern of one form: its words in any spaces, and no letter before or after."""
     tokens = _TOKEN.findall(text)
     coded = "&" in text or "\\" in text or "%" in text
-    inner = _BETWEEN.join(map(re.escape, tokens)) if tokens and not coded else re.escape(text)
+    if tokens and not coded:
+        before, after = text[: text.index(tokens[0])], text[text.rindex(tokens[-1]) :]
+        inner = re.escape(before) + _BETWEEN.join(map(re.escape, tokens))
+        inner += re.escape(after.removeprefix(tokens[-1]))
+    else:
+        inner = re.escape(text)
     if not _UNSPACED.search(text):
         inner = rf"(?<!\w){inner}" if text[0].isalnum() or coded else inner
         inner = rf"{inner}(?![\w{_MARKS}])" if text[-1].isalnum() or coded else inner
     return f"(?{flags}:{inner})" if flags else f"(?:{inner})"
 
 
-def _bytes_pattern(form: bytes, id: bytes, flags: re.RegexFlag) -> re.Pattern[bytes]:
+def _bytes_pattern(
+    form: str, id: str, stays: Iterable[str], flags: re.RegexFlag
+) -> re.Pattern[bytes]:
     """Return what finds a form as a whole word, or at once behind the person's id."""
-    edge, sought = rb"[0-9A-Za-z_\x80-\xff]", re.escape(form)
-    whole = b"(?<!%b)%b(?!%b)" % (edge, sought, edge)
-    return re.compile(b"%b|(?<=%b)%b" % (whole, re.escape(id), sought), flags)
+    edge, sought = rb"[0-9A-Za-z_\x80-\xff]", re.escape(form.encode())
+    kept = b"".join(b"%b|" % re.escape(text.encode()) for text in stays)
+    sides = b"(?<!%b)%b(?!%b)|(?<=%b)%b" % (edge, sought, edge, re.escape(id.encode()), sought)
+    return re.compile(b"%b(?P<name>%b)" % (kept, sides), flags)

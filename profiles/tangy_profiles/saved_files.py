@@ -48,7 +48,7 @@ def erase_from_files(folder: Path, eraser: NameEraser) -> Erased:
             left.append(path)
             continue
         after = _without(path, before, eraser)
-        holds = after != before or eraser.overwrite(before) != before
+        holds = after != before or (_is_binary(before) and eraser.overwrite(before) != before)
         if after != before and not path.is_symlink():
             _replace(path, after)
             changed.append(path)
@@ -72,14 +72,18 @@ def _without(path: Path, content: bytes, eraser: NameEraser) -> bytes:
     """Return the content of a file without the name."""
     if path.name.startswith(f"{FILE}."):  # a copy of the log, or a damaged one
         return eraser.overwrite(content)
-    try:
-        text = content.decode()
-    except UnicodeDecodeError:
+    if _is_binary(content):
         return content
-    if "\0" in text:
-        return content
+    text = content.decode()
     is_page = path.suffix.casefold() in PAGES
     return (eraser.page(text) if is_page else eraser.text(text)).encode()
+
+
+def _is_binary(content: bytes) -> bool:
+    try:
+        return "\0" in content.decode()
+    except UnicodeDecodeError:
+        return True
 
 
 def _replace(path: Path, content: bytes) -> None:

@@ -75,4 +75,4 @@ def name_eraser(
     stay += [phrase.said for phrase in table.all() if phrase.user is None]
     stay += [" ".join(phrase.words) for phrase in table.all() if phrase.user is None]
     stay += [text for b in activity.behaviours.values() for text in (b.name, b.question)]
-    return NameEraser([*own, *said], person.id, but=stay)
+    return NameEraser(own, person.id, said=said, but=stay)

@@ -48,6 +48,17 @@ def test_an_ordinary_word_stays_in_running_text_and_a_phrase_of_the_activity_eve
     )
 
 
+def test_a_said_form_takes_no_word_from_running_text() -> None:
+    mark = NameEraser(["Mark"], "user2", said=["mark"])
+    assert mark.text("Mark has to mark a card") == "user2 has to mark a card"
+    assert mark.typed("go to mark") == "go to user2"
+    letter = NameEraser(["C++"], "user2", said=["c"])
+    assert (
+        letter.text("C++ and c, C") == "C++ and c, C"
+        and letter.page("<b>C++</b>") == "<b>user2</b>"
+    )
+
+
 def test_of_a_body_only_words_change() -> None:
     body = {"behaviour": "rosa", "teacher": "Rosa", "heard": "go to rosa", "advice": ["ask Rosa"]}
     assert ROSA.body("demonstration step", body) == {
@@ -61,6 +72,8 @@ def test_of_a_body_only_words_change() -> None:
         "game": "rosa",
         "note": {"asked": ["Was user2 well?"]},
     }
+    told = {"console": "Help: ask Help.", "why": "Help is there", "recovery": "help"}
+    assert NameEraser(["HELP"], "user2").body("fault", told) == told
     chosen = {"what": "delete"}
     assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
 
@@ -77,3 +90,8 @@ def test_bytes_are_overwritten_so_that_nothing_moves() -> None:
     after = ROSA.overwrite(data)
     assert len(after) == len(data) and b"user2----" in after and b"go to ----" in after
     assert after.endswith(b"rosary")
+
+
+def test_bytes_of_a_phrase_of_the_activity_stay() -> None:
+    number = NameEraser(["Number"], "user2", but=["call number"])
+    assert number.overwrite(b'\x00"call number" number') == b'\x00"call number" ------'
