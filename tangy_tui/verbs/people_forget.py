@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from shutil import get_terminal_size
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -68,13 +70,15 @@ def _agreed(house: House, person: Person) -> bool:
             )
         )
     called = person.name if person.name == person.id else f"{person.name} ({person.id})"
-    question = (
+    what_goes = (
         f"This deletes who {called} is: the name, how it is said, their voice and their face. "
         f"Where the name was typed or said, or stands in a file in {house.store.folder}, "
         f"{person.id} takes its place. What worked with them stays, counted for {person.id}. "
-        f"This cannot be taken back. Forget {person.name}?"
+        "This cannot be taken back."
     )
-    return typer.confirm(plain(question), default=False, err=True)
+    width = min(100, get_terminal_size().columns - 1)
+    print(fill(plain(what_goes), width, break_on_hyphens=False), file=sys.stderr)
+    return typer.confirm(plain(f"Forget {person.name}?"), default=False, err=True)
 
 
 def _document(person: Person, forgotten: Forgotten) -> dict[str, object]:
