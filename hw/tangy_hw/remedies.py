@@ -93,6 +93,9 @@ class Remedies:
     def _look_again(self, remedy: Remedy) -> None:
         """See whether what halted the robot is gone, now that staff say so."""
         commands, link = self._world.commands, self._world.link
+        if link.state.frozen:  # staff have seen that; it stands until it is let go on
+            link.tell("seen to")
+            link.beat()
         commands.do("replan")
         if self._world.lost:  # only looking round can show whether it knows its place
             link.release(by=FAULT)

@@ -14,6 +14,9 @@ from tangy_hw.senses import Senses
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
 from tangy_profiles.robot import Robot
 
+LINK = "link"
+"""The device by which a robot is reached; all that is between the program and its wheels."""
+
 FILMED_PATIENCE = 4.0
 """How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
 
@@ -26,6 +29,7 @@ def reports_of(
     rate: Callable[[], float | None] = lambda: None,
     *,
     failed: Callable[[], str] = str,
+    frozen: Callable[[], float] = float,
     senses: Senses | None = None,
     requests: RequestSource | None = None,
     stepped: bool = False,
@@ -39,6 +43,7 @@ def reports_of(
         ticked: how long ago the robot has looked and decided last, in s.
         rate: how often a second it does.
         failed: what of its control has failed, "" if nothing has.
+        frozen: for how many s its control was frozen, until staff have seen to that.
         senses: what reads pictures, if anything does.
         requests: who asks for help, if anybody can.
         stepped: time stands still while nobody waits for it; cameras film in real time.
@@ -63,6 +68,16 @@ def reports_of(
         return reading._replace(state=ERROR) if failed() else reading
 
     reports["navigator"] = navigator
+
+    linked = reports.get(LINK, lambda: Reading(LINK))
+
+    def link() -> Reading:
+        reading, seconds = linked(), frozen()
+        if not seconds:
+            return reading
+        return reading._replace(state=ERROR, facts={**reading.facts, "frozen": seconds})
+
+    reports[LINK] = link
 
     def filmed(reading: Reading) -> Reading:
         if not stepped:

@@ -1,9 +1,10 @@
 """The robot itself, as the robot process holds it: it drives, speaks, shows, looks, and stops.
 
 Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
-how, and tells the base. What it must not do it does not do, whatever the program wants: while an
-emergency stop is pressed, a device that it drives by is silent, or the program is, it stands still.
-A stop waits behind nothing and latches; only whoever asked for it takes it back by `release`.
+or whoever drives by hand how, and tells the base. What it must not do it does not do, whatever the
+program wants: while an emergency stop is pressed, a device that it drives by is silent, or the
+program is, it stands still; and it stops itself where its control was frozen. A stop waits behind
+nothing and latches; only whoever asked for it takes it back by `release`.
 """
 
 from __future__ import annotations
@@ -16,14 +17,17 @@ from tangy_hw.arrivals import Arrivals
 from tangy_hw.body import Body
 from tangy_hw.devices import STILL, Clock, Picture, Pose, Twist
 from tangy_hw.drive_evidence import DriveEvidence
+from tangy_hw.hand_drive import HandDrive
 from tangy_hw.health import Watchdogs
+from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_hw.passing_time import PassingTime
 from tangy_hw.perception.requests.asking import Ask, RequestSource
 from tangy_hw.performing import Performer
 from tangy_hw.reports import reports_of
 from tangy_hw.senses import Senses
-from tangy_hw.stopping import STAFF, BrokenOff, Stops
+from tangy_hw.stopping import FAULT, STAFF, BrokenOff, Stops
+from tangy_hw.tick_watch import TickWatch
 from tangy_hw.wheels import Wheels
 from tangy_profiles.health import Health, Reading
 from tangy_profiles.robot import Robot
@@ -36,7 +40,6 @@ BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0
 """That it may have to stand still, or be left alone, before it gives up what it does."""
 WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
-BY_HAND_SECONDS = 0.4  # for which a command of somebody who drives by keys holds
 
 
 class LiveRobot:
@@ -71,15 +74,17 @@ class LiveRobot:
         self.alone: Callable[[], str] = str
         """Says why nobody holds the reins any more, "" as long as somebody does."""
         self.left: Callable[[str], None] = lambda why: None
-        """Is called once when nobody has held the reins for a while, with why."""
+        """Is called with why when all that is under way is to be given up."""
         self.going = ""
         """Where it is driving to."""
         self.passing = PassingTime(clock, self._tick, stepped=stepped)
         self._body = body
         self._clock = clock
         self._stepped = stepped
-        self._hand: tuple[Twist, float] | None = None
-        self._wheels = Wheels(body.base)
+        limits = Limits(speed=robot.speed)
+        self.hand = HandDrive(limits)
+        self.watch = TickWatch()
+        self._wheels = Wheels(body.base, limits)
         self._stops = Stops()
         self._alone_since: float | None = None
         self._left_alone = False
@@ -95,6 +100,7 @@ class LiveRobot:
             lambda: clock.now() - self._ticked,
             lambda: self._ticks.rate(clock.now()),
             failed=lambda: self.failed,
+            frozen=lambda: self.watch.frozen,
             senses=senses,
             requests=requests,
             stepped=stepped,
@@ -255,9 +261,12 @@ class LiveRobot:
             self._evidence.blocked = not self.navigator.finds_way(self._wanted)
 
     def drive_by_hand(self, twist: Twist) -> None:
-        """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard."""
+        """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard.
+
+        It is slower before what the scanner sees near, and stands before what is close.
+        """
         self.navigator.cancel()
-        self._hand = twist, self._clock.now() + BY_HAND_SECONDS
+        self.hand.tell(twist, self._clock.now())
 
     async def stop(self, why: str, by: str = STAFF) -> None:
         """Stand still now, hold the arms where they are, and be quiet; it latches, for `by`.
@@ -268,7 +277,7 @@ class LiveRobot:
         await self._halt()
 
     async def _halt(self) -> None:
-        self._hand = None
+        self.hand.end()
         try:
             await self._wheels.stop()
         finally:
@@ -279,6 +288,17 @@ class LiveRobot:
         """Let it move again as far as somebody is concerned, or whoever had stopped it."""
         self._stops.release(by)
         self._evidence.blocked = False
+        if by in ("", FAULT):
+            self.watch.frozen = 0.0
+
+    def watch_ticks(self) -> None:
+        """Watch from now on that no tick comes much too late, unless time stands still between."""
+        if not self._stepped:
+            self.watch.begin()
+
+    def seen_to(self) -> None:
+        """Take it that staff know that its control was frozen; it stands until it is released."""
+        self.watch.frozen = 0.0
 
     def fail(self, device: str, state: str) -> None:
         """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
@@ -335,17 +355,18 @@ class LiveRobot:
         now = self._clock.now()
         passed, self._ticked = now - self._ticked, now
         self._ticks.count(now)
+        if self.watch.tick():
+            self._was_frozen()
         odometry, scan = base.odometry, laser.scan
         command = STILL
         if odometry is not None:
             seen = None if scan is None else scan.value
             command = self.navigator.tick(odometry.value, seen, passed)
             self._evidence.note()
-        if self._hand is not None:
-            twist, until = self._hand
-            command = twist if now < until else STILL
-            if now >= until:
-                self._hand = None
+        by_hand = self.hand.command(
+            None if scan is None else scan.value, now, self.navigator.unseen
+        )
+        command = command if by_hand is None else by_hand
         self._mind()
         if self.hazard:
             command = STILL
@@ -353,6 +374,13 @@ class LiveRobot:
         elif command != STILL or not self._wheels.stand:
             self._wheels.send(command)
         return command != STILL or self.going != ""
+
+    def _was_frozen(self) -> None:
+        """Stop, and give up what was under way, until somebody lets it go on."""
+        why = f"it was frozen for {self.watch.frozen:.1f} s"
+        self._stops.hold(why, FAULT)
+        self._tasks.append(asyncio.create_task(self._halt()))
+        self.left(why)
 
     async def _watch(self) -> None:
         """Look for hazards between ticks, too: a robot that drives has no time to lose."""

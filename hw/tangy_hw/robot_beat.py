@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 from tangy_hw.robot import LiveRobot
+from tangy_hw.senses import CardSeen
 from tangy_profiles.health import Health
 
 MOST_PARTICLES = 60  # that are told, of those by which it finds its place
@@ -27,7 +29,14 @@ def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
         "hazard": robot.hazard,
         "stopped": robot.stopped,
         "failed": robot.failed,
+        "frozen": round(robot.watch.frozen, 1),
+        "held": robot.hand.held,
     }
+
+
+def aged(seen: tuple[CardSeen, float] | None) -> dict[str, Any] | None:
+    """Return what was seen of a card, and how long ago, in s."""
+    return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
 
 
 def _health(health: Health) -> list[list[Any]]:

@@ -26,7 +26,7 @@ from typing import Any
 from tangy_hw.devices import DeviceError, Twist
 from tangy_hw.program_pipe import Answers, end_with, open_lines
 from tangy_hw.robot import LiveRobot
-from tangy_hw.robot_beat import beat_of
+from tangy_hw.robot_beat import aged, beat_of
 from tangy_hw.robot_lines import (
     Asked,
     LineError,
@@ -67,6 +67,7 @@ class RobotProcess:
         self._stepped = stepped
         self._heard = time.monotonic()
         self._doing: dict[int | str, asyncio.Task[None]] = {}
+        self._broken = ""  # why what was under way was given up last
         self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
         self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
         self.robot.alone = self._why_alone
@@ -160,6 +161,8 @@ class RobotProcess:
                 pass
             case "release":
                 self.robot.release(text_of(asked, "by", ""))
+            case "seen to":
+                self.robot.seen_to()
             case "cancel":
                 self.robot.navigator.cancel()
                 self._break_off(text_of(asked, "why", "called off"))
@@ -205,8 +208,6 @@ class RobotProcess:
         self._doing.pop(asked["id"], None)
         if task.cancelled():  # it was broken off before it had begun, and has not answered
             self._answer(asked, failed=self._broken or "called off", broken=True)
-
-    _broken = ""
 
     def _break_off(self, why: str) -> None:
         self._broken = why
@@ -272,8 +273,8 @@ class RobotProcess:
                 name: [sensors.source(name), *astuple(sensors.sight(name))]
                 for name in sensors.cameras
             },
-            "looked": _aged(self._looked),
-            "read": _aged(self._read),
+            "looked": aged(self._looked),
+            "read": aged(self._read),
         }
 
     @property
@@ -326,15 +327,11 @@ class RobotProcess:
         """Tell how it is, again and again."""
         number = 0
         while True:
-            number += 1
-            async with self.robot.passing.still:
-                self._say({"beat": beat_of(self.robot, number)})
+            if not self.robot.watch.overdue:  # it was frozen, and looks at that before it tells
+                number += 1
+                async with self.robot.passing.still:
+                    self._say({"beat": beat_of(self.robot, number)})
             await asyncio.sleep(BEAT_SECONDS)
-
-
-def _aged(seen: tuple[CardSeen, float] | None) -> Answer | None:
-    """Return what was seen of a card, and how long ago, in s."""
-    return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
 
 
 async def run() -> int:

@@ -51,7 +51,9 @@ class RobotState:
     """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
 
     `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
-    `failed` what has failed of its control, for which only another robot process helps.
+    `failed` what has failed of its control, for which only another robot process helps. `frozen` is
+    for how many s its control stood still, until staff have seen to that; `held` is what it does
+    about who drives it by hand: "" as told, "slow", or "stands".
     """
 
     number: int = 0
@@ -66,6 +68,8 @@ class RobotState:
     hazard: str = ""
     stopped: str = ""
     failed: str = ""
+    frozen: float = 0.0
+    held: str = ""
 
     @classmethod
     def from_json(cls, body: dict[str, Any]) -> RobotState:
@@ -83,6 +87,8 @@ class RobotState:
             body["hazard"],
             body["stopped"],
             body["failed"],
+            body["frozen"],
+            body["held"],
         )
 
 

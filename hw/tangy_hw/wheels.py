@@ -1,4 +1,7 @@
-"""Commands to a base, each of which goes its own way: none is carried out after a later stop."""
+"""Commands to a base, each of which goes its own way: none is carried out after a later stop.
+
+All that drives a base from here goes through `Wheels.send`, and no faster than its limits.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,17 @@ from contextlib import suppress
 from functools import partial
 
 from tangy_hw.devices import STILL, Base, DeviceError, Twist
+from tangy_hw.navigation.limits import Limits
 
 
 class Wheels:
     """Tells a base how to drive, without waiting for it."""
 
-    def __init__(self, base: Base) -> None:
+    def __init__(self, base: Base, limits: Limits) -> None:
+        """Take charge of a base that may drive so."""
         self.driven = STILL
         """What it was told last."""
-        self._base = base
+        self._base, self._limits = base, limits
         self._sent: asyncio.Task[None] | None = None
         self._again = False
 
@@ -26,7 +31,12 @@ class Wheels:
         return self.driven == STILL and not self._again
 
     def send(self, command: Twist) -> None:
-        """Tell the base; a command that could not be handed over is followed by the next."""
+        """Tell the base; a command that could not be handed over is followed by the next.
+
+        One that is faster than the base may drive is carried out on the same arc, as fast as it
+        may; one that is no number stands still.
+        """
+        command = self._limits.clamped(command)
         halting = command == STILL and self.driven != STILL
         if halting:
             self._call_off()

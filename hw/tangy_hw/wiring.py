@@ -74,6 +74,7 @@ class Wired:
             await self.robot.start()
             await self._senses.prepare()
             await self._wake()
+            self.robot.watch_ticks()  # what takes its time at the start is over
         except BaseException:
             await self._open.aclose()
             raise
@@ -181,7 +182,7 @@ def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation |
     """Return what finds place and way: the robot's own navigation where it has one, or ours."""
     if own is not None:
         return Entrusted(own)
-    from tangy_hw.navigation.pursuit import Limits
+    from tangy_hw.navigation.limits import Limits
 
     known = read_map(Path(setup.map)) if setup.map else map_of_room(room, people=len(setup.people))
     start = None if setup.start is None else Pose(*setup.start)

@@ -85,6 +85,21 @@ class TestGoing:
         assert navigator.device == "navigator" and navigator.facts == {"path": "clear"}
         assert navigator.age == 0.25
 
+    def test_it_knows_of_the_table_s_top_which_no_laser_sees(self) -> None:
+        robot = DrivenRobot()
+        robot.run(0.3)
+        ahead = robot.navigator.unseen
+        middle = ahead[np.abs(ahead[:, 1]) < 0.1]
+        assert len(ahead) == 0 or len(middle)
+        robot.navigator.go(Pose(5.0, 4.3, pi / 2))
+        assert robot.arrives()
+        edge = robot.navigator.unseen
+        nearest = edge[np.abs(edge[:, 1]) < 0.1]
+        assert nearest[:, 0].min() == pytest.approx(0.7, abs=0.1)
+        robot.navigator.place(None)
+        robot.run(0.1)
+        assert len(robot.navigator.unseen) == 0
+
 
 class TestFaults:
     def test_wheels_that_do_not_turn_are_counted_in_seconds(self) -> None:

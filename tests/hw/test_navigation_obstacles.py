@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from tangy_hw.devices import STILL, Pose
+from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.obstacles import Obstacles
+from tests.bench.people_drives import MAP, drives
 from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 
 
@@ -64,3 +68,27 @@ class TestObstacles:
         robot.boxes.clear()
         robot.run(3)
         assert len(robot.navigator.obstacles) == 0
+
+    def test_what_the_map_has_is_told_from_what_it_has_not(self) -> None:
+        obstacles = Obstacles(MAP)
+        points = np.array([(0.0, 3.0), (1.3, 5.1), (5.0, 3.0), (0.5, 3.0), (-40.0, 3.0)])
+        assert obstacles.among(points).tolist() == [False, False, True, True, True]
+
+
+class TestPeople:
+    """Drives among people in a simulated room; `tests.bench.people_drives` makes more of them."""
+
+    @pytest.mark.parametrize("scene", ["standing", "gap", "beside", "steps in"])
+    def test_nobody_who_stands_or_steps_in_and_stands_is_touched(self, scene: str) -> None:
+        for drive in drives(scene, 2, seed=7):
+            assert drive.arrived and drive.told == ""
+            assert drive.nearest > 0.05 and not drive.stood
+
+    def test_before_somebody_who_stepped_in_it_drives_slowly(self) -> None:
+        (drive,) = drives("steps in", 1, seed=11)
+        assert drive.near and np.median(drive.near) <= Limits().careful
+
+    def test_without_anybody_nothing_slows_it_down(self) -> None:
+        """It takes as long as it took before it kept away from people."""
+        for drive, seconds in zip(drives("alone", 2, seed=7), (16.3, 15.0), strict=True):
+            assert drive.arrived and drive.time == pytest.approx(seconds, abs=0.5)

@@ -10,8 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangy_hw.devices import STILL, Pose, Scan, Twist
+from tangy_hw.navigation.clearance import free_ahead
+from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.occupancy import FREE, map_of_room
 from tangy_hw.navigation.planning import (
+    BESIDE,
+    FOOTPRINT,
+    KEEP,
     RADIUS,
     PlanError,
     inflate,
@@ -21,7 +26,7 @@ from tangy_hw.navigation.planning import (
     resample,
 )
 from tangy_hw.navigation.poses import lengths
-from tangy_hw.navigation.pursuit import Limits, Pursuit, free_ahead
+from tangy_hw.navigation.pursuit import Pursuit
 from tangy_profiles.room import load_room
 from tests.hw.raycast import driven, look, room_sides, sides
 
@@ -69,6 +74,37 @@ class TestPlanning:
         path = plan(MAP, (5, 1.2), (5, 4.3), chair)
         assert path is not None and path.length > 3.1
         assert lengths(path.points - chair).min() >= RADIUS
+
+    @pytest.mark.parametrize("at", [(5.0, 2.5), (4.6, 3.0), (5.3, 2.0)])
+    def test_ways_keep_room_for_a_torso_and_more_from_where_somebody_stands(
+        self, at: tuple[float, float]
+    ) -> None:
+        legs = np.array([(at[0] + x, at[1] + y) for x in (-0.1, 0.1) for y in (-0.06, 0.06)])
+        path = plan(MAP, (5, 1.2), (5, 4.3), legs)
+        assert path is not None
+        assert lengths(path.points - at).min() >= FOOTPRINT + 0.37
+
+    def test_between_two_who_stand_together_there_is_no_way_and_it_goes_round_them(self) -> None:
+        pair = np.array([[4.4, 2.5], [5.6, 2.5]])
+        path = plan(MAP, (5, 1.2), (5, 4.3), pair)
+        assert path is not None and path.length > 3.5
+        for one in pair:
+            assert lengths(path.points - one).min() >= KEEP
+
+    @pytest.mark.parametrize("far", [0.5, 0.6, 0.7, 0.9])
+    @pytest.mark.parametrize("side", range(4))
+    def test_a_goal_beside_somebody_is_reached_and_nobody_is_come_nearer_to(
+        self, far: float, side: int
+    ) -> None:
+        goal, angle = (3.0, 2.5), side * pi / 2
+        person = np.array([[goal[0] + far * np.cos(angle), goal[1] + far * np.sin(angle)]])
+        for ends in (((7.0, 2.5), goal), (goal, (7.0, 2.5))):
+            path = plan(MAP, *ends, person)
+            assert path is not None
+            assert lengths(path.points - person).min() >= min(far, KEEP) - 0.06
+
+    def test_a_goal_that_would_have_it_touch_somebody_has_no_way_just_now(self) -> None:
+        assert plan(MAP, (7, 2.5), (3, 2.5), np.array([[3.0 + BESIDE - 0.05, 2.5]])) is None
 
     def test_there_is_no_way_through_a_wall_of_chairs(self) -> None:
         chairs = np.column_stack((np.arange(0, 10.1, 0.2), np.full(51, 2.5)))

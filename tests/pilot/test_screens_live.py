@@ -297,6 +297,56 @@ async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLin
         assert not isinstance(pilot.app.screen, DrivingDialog)
 
 
+async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(80, 24)) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("d")
+        await until(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
+        told = screen_text(pilot.app)
+        for words in ("slows down near people", "cannot see behind itself", "scanner is silent"):
+            assert words in told
+        for held, words in (("slow", "Tangy drives slowly."), ("stands", "Tangy stands. Turn")):
+            link.state = replace(link.state, held=held)
+            await until(pilot, lambda words=words: words in screen_text(pilot.app))  # type: ignore[misc]
+        link.state = replace(link.state, held="")
+        await pilot.press("down")
+        await until(pilot, lambda: "Something is" not in screen_text(pilot.app))
+        link.state = replace(link.state, hazard="laser scanner says nothing")
+        await until(
+            pilot, lambda: "stands still: laser scanner says nothing." in screen_text(pilot.app)
+        )
+        link.state = replace(link.state, hazard="")
+        await pilot.press("escape")
+
+
+async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
+    run: Run, program: Program, link: HeldLink, house: House
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await paused_after(pilot, link, 2)
+        link.state = replace(link.state, frozen=5.0)
+        await until(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
+        await pilot.pause(0.5)
+        noted = [event.body["what"] for event in house.store.events(STAFF)]
+        assert noted.count("the robot process was frozen for 5.0 s") == 1
+
+
+async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await paused_after(pilot, link, 2)
+        live(pilot)._supervision.leave()
+        assert live(pilot)._at_rest
+        link.state = replace(link.state, frozen=5.0)
+        link.released.clear()
+        await pilot.press("p")
+        await until(pilot, lambda: link.released == [""])
+        assert "may move again" in screen_text(pilot.app)
+
+
 async def test_a_call_is_said_again_and_taken_back(
     run: Run, program: Program, link: HeldLink, world: LiveWorld, house: House
 ) -> None:

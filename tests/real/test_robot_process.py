@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from statistics import median, quantiles
+from typing import Any
 
 import pytest
 
@@ -34,6 +35,8 @@ BRAKES = 0.4  # s that the bench's wheels take to stand from .5 m/s, and a tick 
 TRIALS = 20
 SCANS, FIRST_SCAN, TICK = 0.1, 0.05, 0.05  # s of the bench's time
 SAID = 0.35  # s after which it is known that the robot process has ended
+TABLE = 5.0  # m: where its near edge is
+FROZEN = 3.0  # s, long after the link is known to be silent
 PATIENCE = 30.0
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
@@ -218,6 +221,64 @@ def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
 
     link.restart()
     assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
+
+
+def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
+    bench: Bench, link: RobotLink
+) -> None:
+    drive = link.ask("go", to=[8.0, 3.0, 1.57])
+    wait_until(lambda: speed(bench) > 0.25, "the robot drives")
+    assert link.pid is not None
+    os.kill(link.pid, signal.SIGSTOP)
+    try:
+        assert seconds_to_stop(bench) <= BASE_STOPS
+        wait_until(lambda: link.silent != "", "it is said that nothing is heard")
+        time.sleep(FROZEN)
+        stood = bench.do("truth")["truth"]["pose"]
+    finally:
+        os.kill(link.pid, signal.SIGCONT)
+
+    with pytest.raises(BrokenOff, match="it was frozen for"):
+        drive.result(PATIENCE)
+    link.release("staff")
+    with pytest.raises(BrokenOff, match="it was frozen for"):
+        link.do("go", to=[8.0, 3.0, 1.57])
+    assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
+    assert link.beat().frozen >= FROZEN
+    link.release("fault")
+    assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
+    assert link.beat().frozen == 0.0
+
+
+def test_driven_by_hand_at_the_table_it_is_no_faster_than_it_may_and_stands_before_it(
+    bench: Bench, link: RobotLink
+) -> None:
+    """The table's top is above the scanner: that it is there, the map has to tell."""
+    fastest = 0.0
+
+    def drive(forward: float, turn: float, until: Callable[[dict[str, Any]], bool]) -> None:
+        nonlocal fastest
+        ends = time.monotonic() + PATIENCE
+        while time.monotonic() < ends:
+            link.tell("drive", forward=forward, turn=turn)
+            truth: dict[str, Any] = bench.do("truth")["truth"]
+            fastest = max(fastest, abs(truth["commanded"][0]))
+            assert not truth["bumped"]
+            if until(truth):
+                return
+            time.sleep(0.05)
+        raise AssertionError(f"{forward}, {turn}: it did not come about")
+
+    drive(5.0, 0.0, lambda _: link.state.held == "stands")
+    wait_until(lambda: speed(bench) < 0.01, "it stands")
+    assert 0.4 < fastest <= 0.5
+    near = bench.do("truth")["truth"]["pose"][1]
+    assert 0.3 < TABLE - near < 0.6  # the robot's radius, and a hand
+    drive(-5.0, 0.0, lambda truth: truth["pose"][1] < near - 0.1)
+    drive(0.0, 1.0, lambda truth: abs(truth["pose"][2]) > 2.8)
+    drive(0.3, 0.0, lambda truth: truth["commanded"][0] > 0.1)
+    bench.do("inject", kind="laser-disconnected")
+    drive(0.3, 0.0, lambda truth: not truth["moving"] and "laser" in link.state.hazard)
 
 
 def test_lines_that_make_no_sense_are_answered_and_the_robot_process_lives(bench: Bench) -> None:

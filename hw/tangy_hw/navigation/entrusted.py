@@ -32,6 +32,7 @@ class Entrusted:
         """Why it failed or is blocked: one sentence."""
         self.path = None
         self.obstacles: Floats = np.zeros((0, 2))
+        self.unseen: Floats = np.zeros((0, 2))
         self.particles: Floats = np.zeros((0, 3))
         self._navigation = navigation
         self._goal: Pose | None = None

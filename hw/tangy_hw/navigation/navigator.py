@@ -13,13 +13,24 @@ import numpy as np
 from numpy.random import Generator
 
 from tangy_hw.devices import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.clearance import AWAY, REACH, Seen
 from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
-from tangy_hw.navigation.planning import RADIUS, Path, PlanError, check_goal, plan
-from tangy_hw.navigation.poses import HERE, Floats, between, lengths
-from tangy_hw.navigation.pursuit import Limits, Pursuit
+from tangy_hw.navigation.planning import (
+    BESIDE,
+    KEEP,
+    RADIUS,
+    Path,
+    PlanError,
+    check_goal,
+    near_ends,
+    plan,
+)
+from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, placed
+from tangy_hw.navigation.pursuit import Pursuit
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]
@@ -33,6 +44,7 @@ PROGRESS, PROGRESS_SECONDS = 0.5, 10.0  # metres that must be made in so long
 SPIN = 0.5  # rad/s while it looks around
 LOOKS_ROUND = 2  # full turns without having found itself until it gives the drive up
 ASTRAY = 0.5  # metres off its path at which it looks for another
+INTO = 0.05  # metres by which a path must come nearer to an obstacle than it should, to be left
 LOOK_AHEAD = 50  # points of the path that are watched for obstacles: 2.5 m
 TAKEN = 0.6  # metres gone on another way until it is said to be one: it may end as well
 SLOW = 0.1  # m/s: a robot that drives faster stops before it takes another way
@@ -50,6 +62,7 @@ class Navigator:
         *,
         limits: Limits | None = None,
         radius: float = RADIUS,
+        keep: float = KEEP,
         laser: Pose = HERE,
         people: Floats | None = None,
     ) -> None:
@@ -60,7 +73,8 @@ class Navigator:
             rng: where chance comes from.
             start: where the robot is, within some 10 cm; None: it may be anywhere.
             limits: how it may drive.
-            radius: how near its middle may come to anything, in metres.
+            radius: how near its middle may come to what is on the map, in metres.
+            keep: how near it may come to what is not, which may be somebody, in metres.
             laser: where the scanner sits on the robot.
             people: where people may be (n, 2), near whom it drives gently.
         """
@@ -74,7 +88,7 @@ class Navigator:
         self.path: Path | None = None
         self.slip = 0.0
         self.still = 0.0
-        self._radius, self._laser = radius, laser
+        self._radius, self._keep, self._laser = radius, keep, laser
         self._localisation = Localisation(map_, rng, start, laser)
         self._obstacles = Obstacles(map_, laser)
         self._disagreement = Disagreement(laser)
@@ -154,6 +168,19 @@ class Navigator:
     def obstacles(self) -> Floats:
         """What it sees and the map does not have (n, 2)."""
         return self._obstacles.points
+
+    @property
+    def unseen(self) -> Floats:
+        """What the map keeps it out of and no laser sees, such as a table's top (n, 2).
+
+        It is told in the robot's frame, as far as the robot knows where it is.
+        """
+        estimate = self._estimate
+        if estimate is None or not estimate.found:
+            return np.zeros((0, 2))
+        pose, edge = estimate.pose, self.map.keep_out_edge
+        edge = edge[lengths(edge - (pose.x, pose.y)) < REACH]
+        return placed(edge, between(pose, HERE))
 
     @property
     def particles(self) -> Floats:
@@ -255,7 +282,8 @@ class Navigator:
             self._block("Something stands in every way there.")
 
     def _plan(self, pose: Pose, goal: Pose) -> Path | None:
-        return plan(self.map, (pose.x, pose.y), (goal.x, goal.y), self.obstacles, self._radius)
+        ends = (pose.x, pose.y), (goal.x, goal.y)
+        return plan(self.map, *ends, self.obstacles, self._radius, self._keep)
 
     def _take(self, path: Path, goal: Pose, pose: Pose) -> None:
         """Follow a way; one that leaves the way that was given up is told when it has been gone."""
@@ -290,13 +318,13 @@ class Navigator:
             self.state, self._way, self._detour = "replanned", "replanned", None
         obstacles = self.obstacles
         wary_of = np.vstack((self.people, obstacles))
-        twist = pursuit.command(pose, odometry.twist, scan, dt, wary_of)
+        twist = pursuit.command(pose, odometry.twist, scan, dt, wary_of, self._seen(pose, scan))
         if pursuit.state == "arrived":
             self.state, self._way = "arrived", "clear"
             self._stop_following()
             return STILL
         stands = pursuit.state == "waiting"
-        if stands or _touches(ahead[:LOOK_AHEAD], obstacles, self._radius - 0.05):
+        if stands or self._touches(ahead[:LOOK_AHEAD], obstacles, pose, goal):
             self._waited += dt
         else:
             self._waited = 0.0
@@ -315,6 +343,21 @@ class Navigator:
             return STILL
         return twist
 
+    def _seen(self, pose: Pose, scan: Scan) -> Seen:
+        """Return what the scanner sees around, and what of it the map does not have."""
+        points = endpoints(scan, REACH, self._laser)
+        return Seen(points, self._obstacles.among(placed(points, pose)))
+
+    def _touches(self, path: Floats, obstacles: Floats, pose: Pose, goal: Pose) -> bool:
+        """Say whether a path comes nearer to an obstacle than ways keep, and than it is now."""
+        if not len(path) or not len(obstacles):
+            return False
+        beside = near_ends(obstacles, ((pose.x, pose.y), (goal.x, goal.y)), self._keep)
+        keep = np.where(beside, BESIDE, self._keep) - INTO
+        keep = np.minimum(keep, lengths(obstacles - (pose.x, pose.y)) - AWAY)
+        apart = ((path[::2, None] - obstacles[None]) ** 2).sum(axis=2)
+        return bool((apart < np.maximum(keep, 0.0) ** 2).any())
+
     def _progressed(self, pose: Pose, dt: float) -> bool:
         """Say whether it comes forward; wheels that do not grip are not the way's fault."""
         far = self._mark is None or hypot(pose.x - self._mark[0], pose.y - self._mark[1]) > PROGRESS
@@ -322,13 +365,6 @@ class Navigator:
             self._mark, self._marked = (pose.x, pose.y), 0.0
         self._marked += dt
         return self._marked < PROGRESS_SECONDS
-
-
-def _touches(path: Floats, obstacles: Floats, radius: float) -> bool:
-    """Say whether any of the obstacles stands in a path."""
-    if not len(path) or not len(obstacles):
-        return False
-    return bool((((path[::2, None] - obstacles[None]) ** 2).sum(axis=2) < radius**2).any())
 
 
 def _leaves(path: Floats, other: Floats, by: float = 0.3) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tangy_hw.devices import Pose, Scan
 from tangy_hw.navigation.likelihood import NEAREST
@@ -39,6 +40,16 @@ class Obstacles:
         hit &= self._new
         self._hits[hit] = np.minimum(self._hits[hit] + 1, 20)
         self._age[hit] = 0.0
+
+    def among(self, points: Floats) -> NDArray[np.bool_]:
+        """Say of points on the floor (n, 2) whether the map does not have them."""
+        cells = np.floor((points - self._map.origin) / self._map.resolution).astype(np.intp)
+        rows, columns = cells[:, 1], cells[:, 0]
+        inside = (rows >= 0) & (columns >= 0) & (rows < self._map.shape[0])
+        inside &= columns < self._map.shape[1]
+        found = np.ones(len(points), dtype=np.bool_)
+        found[inside] = self._new[rows[inside], columns[inside]]
+        return found
 
     def _clear(self, pose: Pose, scan: Scan) -> None:
         """Forget what is old, and what a beam goes through now."""

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import binary_erosion, distance_transform_edt
 
 from tangy_hw.navigation.poses import Floats
 from tangy_profiles.room import Point, Room
@@ -58,6 +58,13 @@ class OccupancyMap:
     def obstacles(self) -> Mask:
         """What the robot must not touch: walls, what is kept out of, and the unknown."""
         return np.asarray((self.cells != FREE) | self.keep_out)
+
+    @cached_property
+    def keep_out_edge(self) -> Floats:
+        """The middles of the outermost cells that are kept out of (n, 2), in metres."""
+        inner = binary_erosion(self.keep_out)
+        rows, columns = np.nonzero(self.keep_out & ~inner)
+        return np.column_stack((columns + 0.5, rows + 0.5)) * self.resolution + self.origin
 
     @cached_property
     def seen_distance(self) -> NDArray[np.float32]:

@@ -7,6 +7,7 @@ length times the mean of the costs at its ends), and is then straightened where 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, hypot, inf
@@ -20,11 +21,20 @@ from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import Floats, lengths
 from tangy_profiles.errors import TangyError
 
-RADIUS = 0.32  # metres: what stands nearer to the robot's middle than this would be touched
+FOOTPRINT = 0.25  # metres from the robot's middle to its edge
+RADIUS = FOOTPRINT + 0.07  # metres from its middle within which what is on the map would be touched
+KEEP = FOOTPRINT + 0.37
+"""Metres from its middle to what the map does not have, which may be somebody: a torso of .22 m
+stands over the legs that are seen, with .15 m to spare."""
+BESIDE = FOOTPRINT + 0.2
+"""Metres that are left to somebody who stands beside where a way begins or ends: a way does not
+begin and end elsewhere for that, and the torso over the legs is still not touched."""
 COMFORT = 0.25  # metres over which the cost of being near something falls to a third
 DISLIKE = 4.0  # how much dearer a metre is right beside something than far off it
+SQUEEZE = 12.0  # how much dearer again one is that is nearer to somebody than ways keep
 STEP = 0.05  # metres between the points of a path
 OUT = 0.5  # metres by which a robot that stands too near to something may get away from it
+SLACK = 0.1  # metres: two cells, within which an end and its surroundings are told apart
 
 
 class PlanError(TangyError):
@@ -57,20 +67,58 @@ class Path:
     cost: float
 
 
-def inflate(map_: OccupancyMap, blocked: Floats | None = None, radius: float = RADIUS) -> Costs:
-    """Return what each cell costs, with more obstacles at the points `blocked` (n, 2)."""
-    free = ~map_.obstacles
+def inflate(
+    map_: OccupancyMap,
+    blocked: Floats | None = None,
+    radius: float = RADIUS,
+    keep: float = KEEP,
+    ends: Sequence[tuple[float, float]] = (),
+) -> Costs:
+    """Return what each cell costs, with more obstacles at the points `blocked` (n, 2).
+
+    Args:
+        map_: what is there.
+        blocked: what is there as well, and may be somebody.
+        radius: how near the robot's middle may come to what is on the map, in metres.
+        keep: how near it may come to what is blocked, in metres.
+        ends: where a way begins and ends: beside what stands there it may come nearer.
+    """
+    distance = _distance(map_, ~map_.obstacles)
+    spare = distance - radius
+    closed, squeezed = distance < radius, np.zeros(map_.shape, dtype=np.bool_)
     if blocked is not None and len(blocked):
-        free[map_.cells_of(blocked)] = False
-    if free.all():
-        distance = np.full(map_.shape, max(map_.size))
-    else:
-        # exact, as scipy's, in a sixth of its time
-        cells = cv2.distanceTransform(free.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        distance = np.asarray(cells, dtype=np.float64) * map_.resolution
-    cost = 1.0 + DISLIKE * np.exp((radius - distance) / COMFORT)
-    cost[distance < radius] = inf
+        beside = near_ends(blocked, ends, keep)
+        for points, hard in ((blocked[~beside], keep), (blocked[beside], min(BESIDE, keep))):
+            if len(points):
+                free = np.ones(map_.shape, dtype=np.bool_)
+                free[map_.cells_of(points)] = False
+                away = _distance(map_, free)
+                closed |= away < hard
+                squeezed |= away < keep
+                spare = np.minimum(spare, away - keep)
+                distance = np.minimum(distance, away)
+    cost = 1.0 + DISLIKE * np.exp(-spare / COMFORT) + SQUEEZE * squeezed
+    cost[closed] = inf
     return Costs(map_, cost, distance)
+
+
+def near_ends(
+    blocked: Floats, ends: Sequence[tuple[float, float]], keep: float = KEEP
+) -> NDArray[np.bool_]:
+    """Say of points (n, 2) whether a way that begins and ends there cannot keep off them."""
+    near = np.zeros(len(blocked), dtype=np.bool_)
+    for end in ends:
+        near |= lengths(blocked - end) < keep + SLACK
+    return near
+
+
+def _distance(map_: OccupancyMap, free: NDArray[np.bool_]) -> Floats:
+    """Return how far it is from each cell to the nearest that is not free, in metres."""
+    if free.all():
+        return np.full(map_.shape, max(map_.size))
+    # exact, as scipy's, in a sixth of its time
+    cells = cv2.distanceTransform(free.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.asarray(cells, dtype=np.float64) * map_.resolution
 
 
 def nearest_free(costs: Costs, x: float, y: float, within: float = inf) -> tuple[float, float]:
@@ -97,11 +145,13 @@ def plan(
     goal: tuple[float, float],
     blocked: Floats | None = None,
     radius: float = RADIUS,
+    keep: float = KEEP,
 ) -> Path | None:
     """Find the cheapest way from one point to another; None if there is none.
 
     A robot that stands nearer to something than it should first gets away from it. A goal that only
-    the obstacles of `blocked` (n, 2) take away is no error: there is no way to it just now.
+    the obstacles of `blocked` (n, 2) take away is no error: there is no way to it just now. From
+    those the way keeps `keep` metres, but where somebody stands beside its beginning or its end.
 
     Raises:
         PlanError: the goal lies outside the map, or where the map says that something is.
@@ -109,7 +159,7 @@ def plan(
     costs = inflate(map_, None, radius)
     _check(costs, goal, radius)
     if blocked is not None and len(blocked):
-        costs = inflate(map_, blocked, radius)
+        costs = inflate(map_, blocked, radius, keep, (start, goal))
     if not np.isfinite(costs.at(*goal)):
         return None
     try:

@@ -8,13 +8,14 @@ left a point of the path at the distance L lies.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import atan2, hypot, inf, sqrt
+from math import atan2, hypot, sqrt
 from typing import Literal
 
 import numpy as np
 
 from tangy_hw.devices import STILL, Pose, Scan, Twist
+from tangy_hw.navigation.clearance import REACH, Seen, room_ahead, speed_in
+from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
 
 State = Literal["driving", "turning", "waiting", "arrived"]
@@ -26,50 +27,6 @@ AIMED = 0.1  # radians off at which it begins to drive
 THERE, FACING = 0.05, 0.04  # metres and radians off the goal at which it has arrived
 PASSED = 0.15  # metres from the goal from which on it is not driven after any more
 CREEP = 0.03  # m/s: slower than this is standing
-
-
-@dataclass(frozen=True)
-class Limits:
-    """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
-
-    `radius` is the robot's own, `gap` what it always keeps free ahead. Within `wary` of people it
-    drives at no more than `gentle`.
-    """
-
-    speed: float = 0.5
-    turn: float = 1.0
-    gain: float = 0.5
-    brake: float = 0.6
-    spin_up: float = 2.0
-    radius: float = 0.25
-    gap: float = 0.12
-    wary: float = 1.2
-    gentle: float = 0.25
-
-
-def free_ahead(points: Floats, curvature: float, half: float) -> float:
-    """Return how many metres a robot's middle can go on an arc until it touches one of the points.
-
-    Args:
-        points: what is around (n, 2), in the robot's frame.
-        curvature: of the arc, 1/m, positive to the left.
-        half: half the width that must be free, in metres.
-    """
-    if not len(points):
-        return inf
-    x, y = points[:, 0], points[:, 1]
-    if abs(curvature) < 0.02:
-        hit = (np.abs(y) < half) & (x > 0)
-        off, along = y[hit], x[hit]
-    else:
-        centre = 1.0 / curvature
-        away = np.hypot(x, y - centre) - abs(centre)
-        angle = np.arctan2(x, np.sign(curvature) * (centre - y))
-        hit = (np.abs(away) < half) & (angle > 0) & (angle < 2.0)
-        off, along = away[hit], angle[hit] * abs(centre)
-    if not len(along):
-        return inf
-    return float(np.min(along - np.sqrt(half**2 - off**2)))
 
 
 class Pursuit:
@@ -112,7 +69,13 @@ class Pursuit:
         return self.path[self._at :]
 
     def command(
-        self, pose: Pose, twist: Twist, scan: Scan, dt: float, wary_of: Floats | None = None
+        self,
+        pose: Pose,
+        twist: Twist,
+        scan: Scan,
+        dt: float,
+        wary_of: Floats | None = None,
+        seen: Seen | None = None,
     ) -> Twist:
         """Return how to drive for the next `dt` seconds.
 
@@ -122,6 +85,7 @@ class Pursuit:
             scan: what the laser sees now.
             dt: seconds until the next command.
             wary_of: where people may be (n, 2), in the frame of the path.
+            seen: what of the scan may be somebody; None: all of it.
         """
         if self.state == "arrived":
             return STILL
@@ -131,7 +95,11 @@ class Pursuit:
         if off < THERE or (off < PASSED and (self._close or goal.x < 0)):
             self._close = off < PASSED
             return self._face(pose, twist, dt)
-        return self._drive(pose, twist, scan, dt, wary_of)
+        return self._drive(pose, twist, seen or self._seen(scan), dt, wary_of)
+
+    def _seen(self, scan: Scan) -> Seen:
+        points = endpoints(scan, REACH, self.laser)
+        return Seen(points, np.ones(len(points), dtype=np.bool_))
 
     def _advance(self, pose: Pose) -> None:
         """Go along the path to the point nearest to the robot, never back."""
@@ -147,30 +115,30 @@ class Pursuit:
         return self._turn(off, twist, dt)
 
     def _drive(
-        self, pose: Pose, twist: Twist, scan: Scan, dt: float, wary_of: Floats | None
+        self, pose: Pose, twist: Twist, seen: Seen, dt: float, wary_of: Floats | None
     ) -> Twist:
         limits = self.limits
         look = min(FURTHEST, NEAREST + PER_SPEED * abs(twist.forward))
         gone = self.left - self._left[self._at :]
         beyond = int(np.searchsorted(gone, look))
         target = self.path[min(self._at + beyond, len(self.path) - 1)]
-        seen = between(pose, Pose(float(target[0]), float(target[1]), 0.0))
-        off = atan2(seen.y, seen.x)
+        to = between(pose, Pose(float(target[0]), float(target[1]), 0.0))
+        off = atan2(to.y, to.x)
         if abs(off) > AIM or (self._aiming and abs(off) > AIMED):
             self._aiming = True
             self.state = "turning"
             return self._turn(off, twist, dt)
         self._aiming = False
-        far = max(hypot(seen.x, seen.y), 0.1)
-        curvature = 2 * seen.y / far**2
+        far = max(hypot(to.x, to.y), 0.1)
+        curvature = 2 * to.y / far**2
         left = max(self.left, hypot(self.path[-1][0] - pose.x, self.path[-1][1] - pose.y))
         most = min(limits.speed, sqrt(2 * limits.brake * left) * 0.8, left * 1.5 + CREEP)
         if abs(curvature) > 0.01:
             most = min(most, limits.turn / abs(curvature))
-        points = endpoints(scan, laser=self.laser)
-        free = free_ahead(points, curvature, limits.radius + 0.02) - limits.gap
-        if free < left:  # what stands behind the goal is none of this way's business
-            most = min(most, sqrt(2 * limits.brake * max(0.0, free)))
+        room = room_ahead(seen, curvature, limits)
+        if room.free + limits.gap > left:  # what stands behind the goal leaves it free
+            room = room._replace(free=max(room.free, left))
+        most = min(most, speed_in(room, limits))
         if wary_of is not None and len(wary_of):
             near = float(lengths(wary_of - (pose.x, pose.y)).min())
             most = min(most, limits.gentle) if near < limits.wary else most

@@ -42,6 +42,11 @@ class Wayfinder(Protocol):
         ...
 
     @property
+    def unseen(self) -> Floats:
+        """What must not be touched and no laser sees, (n, 2) in the robot's frame, if known."""
+        ...
+
+    @property
     def particles(self) -> Floats:
         """The poses it thinks possible (n, 3)."""
         ...

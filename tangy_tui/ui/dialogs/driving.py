@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -14,12 +13,24 @@ from textual.widgets import Static
 from tangy_hw.devices import Twist
 from tangy_tui.ui.base import Dialog
 
-FORWARD, TURN = 0.3, 0.6  # m/s and rad/s: slower than it drives by itself
+if TYPE_CHECKING:
+    from tangy_hw.robot_link import RobotLink
+
+FORWARD, BACK, TURN = 0.3, 0.1, 0.6
+"""m/s, m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
+TELL_SECONDS = 0.1  # between two looks at what the robot does about it
 
 TEXT = (
-    "↑ and ↓ drive, ← and → turn, as long as a key is held. While you drive, Tangy stops for "
-    "nobody and nothing in its way: look where it goes. Space stands still; esc ends."
+    "↑ and ↓ drive, ← and → turn, as long as you hold the key. Space stops; esc ends.\n\n"
+    "Tangy slows down near people and things that its laser scanner sees, and stops before it "
+    "reaches them. Then turn, or back away. It cannot see behind itself or over its scanner: look "
+    "there yourself. It backs up slowly. While the scanner is silent, Tangy does not drive."
 )
+HELD = {
+    "slow": "Something is near: Tangy drives slowly.",
+    "stands": "Something is close: Tangy stands. Turn, or back away.",
+}
+"""What is said where the robot does not drive as it is told."""
 
 
 class DrivingDialog(Dialog[None]):
@@ -35,16 +46,10 @@ class DrivingDialog(Dialog[None]):
     ]
     HELP = TEXT
 
-    def __init__(self, drive: Callable[[Twist], None], hazard: Callable[[], str]) -> None:
-        """Make the dialog.
-
-        Args:
-            drive: tells the robot how to drive, for a moment.
-            hazard: says why it stands still, "" if it may drive.
-        """
+    def __init__(self, link: RobotLink) -> None:
+        """Make the dialog for the robot at the other end of a link."""
         super().__init__(None)
-        self._drive = drive
-        self._hazard = hazard
+        self._link = link
 
     def compose(self) -> ComposeResult:
         """Say what the keys do."""
@@ -53,11 +58,29 @@ class DrivingDialog(Dialog[None]):
         box.border_subtitle = Content("↑ ↓ ← → drive   esc ends")
         yield box
 
+    def on_mount(self) -> None:
+        """Look all the time what the robot does."""
+        self.set_interval(TELL_SECONDS, self._tell)
+
+    def _tell(self) -> None:
+        """Say why it does not drive as it is told; that stays there until the next key."""
+        state = self._link.state
+        why = self._link.silent or state.hazard
+        words = f"Tangy stands still: {why}." if why else HELD.get(state.held, "")
+        if words:
+            self._say(words)
+
+    def _drive(self, twist: Twist) -> None:
+        self._link.tell("drive", forward=twist.forward, turn=twist.turn)
+
+    def _say(self, words: str) -> None:
+        self.query_one("#hazard", Static).update(Content(words))
+
     def action_drive(self, forward: int, turn: int) -> None:
         """Drive for a moment, or stand still."""
-        self._drive(Twist(forward * FORWARD, turn * TURN))
-        why = self._hazard()
-        self.query_one("#hazard", Static).update(Content(f"It stands still: {why}" if why else ""))
+        self._drive(Twist(forward * (FORWARD if forward > 0 else BACK), turn * TURN))
+        self._say("")
+        self._tell()
 
     def action_close(self) -> None:
         """Stand still, and drive no more."""

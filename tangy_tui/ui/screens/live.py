@@ -34,7 +34,7 @@ from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
-from tangy_tui.ui.screens import live_keys
+from tangy_tui.ui.screens import live_keys, live_words
 from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
 from tangy_tui.ui.screens.live_marks import track
@@ -47,9 +47,6 @@ TRACK_SECONDS = 0.2
 REST_SECONDS = 5.0  # in which what it does is broken off
 SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
-LOOKS_ROUND = "Tangy does not know where it stands: it turns on the spot, then drives to the front."
-STOPPED = "staff stopped it"
-TOOK_OVER = "You say what Tangy does next."
 
 
 class LiveScreen(PlayScreen):
@@ -81,6 +78,7 @@ class LiveScreen(PlayScreen):
         self._turn = asyncio.Lock()
         """Whoever has it has the supervision, and the robot."""
         self._seen_doing = ""
+        self._frozen = 0.0
         self._seats = Seats(house.name)
         self._cards = LiveCards(house, supervision, world, self._write)
 
@@ -107,7 +105,7 @@ class LiveScreen(PlayScreen):
     async def _begin_game(self) -> list[Event]:
         await self._going.wait()
         if self._world.lost:
-            self._write(LOOKS_ROUND, "warn")
+            self._write(live_words.LOOKS_ROUND, "warn")
         self._world.link.release()  # staff have said that all is well
         return await self._beside(self._supervision.begin)
 
@@ -134,7 +132,7 @@ class LiveScreen(PlayScreen):
             return await self._beside(work)
         finally:
             if self._stopped:  # that one was not told
-                self._world.link.stop(STOPPED, by=STAFF)
+                self._world.link.stop(live_words.STOPPED, by=STAFF)
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
@@ -149,7 +147,7 @@ class LiveScreen(PlayScreen):
         decision = supervision.policy.decide(state.situation)
         if self._taking_over:
             self._taking_over = False
-            supervision.game.ask(TOOK_OVER, "Say what it does.", "took over")
+            supervision.game.ask(live_words.TOOK_OVER, "Say what it does.", "took over")
             if supervision.question is not None:
                 await self._ask(supervision.question, wanted=True)
                 if supervision.question is not None:  # it was left without an answer
@@ -208,12 +206,17 @@ class LiveScreen(PlayScreen):
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot itself, before the playing screen draws anything."""
-        self._world.link.stop(STOPPED, by=STAFF)
+        self._world.link.stop(live_words.STOPPED, by=STAFF)
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
+        link = self._world.link
+        if self._at_rest and link.state.frozen:  # in a game that is a fault, and cleared as one
+            link.release()
+            self._tell_now(live_words.MAY_MOVE, "dim")
+            return
         if self._stopped and self._supervision.halted is None:
-            self._world.link.release(by=STAFF)
+            link.release(by=STAFF)
         super().action_pause()
 
     def action_autonomy(self) -> None:
@@ -249,13 +252,7 @@ class LiveScreen(PlayScreen):
         going = self._going.is_set()
         self._going.clear()
         self._nudge.set()
-        link = self._world.link
-        await self.app.push_screen_wait(
-            DrivingDialog(
-                lambda twist: link.tell("drive", forward=twist.forward, turn=twist.turn),
-                lambda: link.state.hazard,
-            )
-        )
+        await self.app.push_screen_wait(DrivingDialog(self._world.link))
         self._faults.note("staff drove the robot by keys")
         if going and not self._stopped:
             self._going.set()
@@ -369,6 +366,10 @@ class LiveScreen(PlayScreen):
         if (doing := self._doing()) != self._seen_doing:
             self._seen_doing = doing
             self._show_status()
+        if state.frozen and not self._frozen:
+            self._write(live_words.WAS_FROZEN.format(state.frozen), "bad")
+            self._faults.note(f"the robot process was frozen for {state.frozen:.1f} s")
+        self._frozen = state.frozen
         track(room, state)
 
     async def _come_to_rest(self) -> None:

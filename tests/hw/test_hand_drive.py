@@ -1,0 +1,142 @@
+"""Driving by hand, and that nothing is ever driven faster than the robot may."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_hw.devices import STILL, Scan, Stamped, Twist
+from tangy_hw.hand_drive import HOLDS_SECONDS, HandDrive
+from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.wheels import Wheels
+from tangy_profiles.robot import load_robot
+from tests.hw.live_bodies import ToldBody
+from tests.hw.ros_links import soon
+from tests.hw.test_robot_lines import Spoken, spoken
+
+LIMITS = Limits()
+BEAMS, FIRST = 271, -math.radians(135)
+
+
+def scan(**ahead: float) -> Scan:
+    """Return what is seen: nothing, or something as far off to the named sides."""
+    ranges = np.full(BEAMS, np.inf)
+    for side, far in ahead.items():
+        ranges[{"front": 135, "left": 225, "right": 45}[side] + np.arange(-9, 10)] = far
+    return Scan(FIRST, math.radians(1), ranges, 30.0)
+
+
+def drive(twist: Twist, around: Scan | None) -> tuple[Twist | None, str]:
+    hand = HandDrive(LIMITS)
+    hand.tell(twist, 0.0)
+    return hand.command(around, 0.1), hand.held
+
+
+class TestHandDrive:
+    def test_a_command_holds_for_a_moment_and_then_it_stands(self) -> None:
+        hand = HandDrive(LIMITS)
+        assert hand.command(scan(), 0.0) is None
+        hand.tell(Twist(0.3, 0.0), 1.0)
+        assert hand.command(scan(), 1.0 + HOLDS_SECONDS - 0.01) == Twist(0.3, 0.0)
+        assert hand.command(scan(), 1.0 + HOLDS_SECONDS) == STILL
+        assert hand.command(scan(), 2.0) is None
+
+    def test_it_says_what_it_does_about_a_command(self) -> None:
+        assert drive(Twist(0.3, 0.0), scan(front=2.9)) == (Twist(0.3, 0.0), "")
+        assert drive(Twist(0.3, 0.0), scan(front=1.0)) == (Twist(LIMITS.careful, 0.0), "slow")
+        assert drive(Twist(0.3, 0.0), scan(front=0.5)) == (STILL, "stands")
+        assert drive(Twist(-0.1, 0.0), scan(front=0.3)) == (Twist(-0.1, 0.0), "")
+        assert drive(Twist(0.0, 0.3), scan(front=0.3)) == (Twist(0.0, 0.3), "")
+
+    def test_it_stands_before_what_only_the_map_knows_of(self) -> None:
+        hand = HandDrive(LIMITS)
+        hand.tell(Twist(0.3, 0.0), 0.0)
+        assert hand.command(scan(), 0.1, np.array([[0.35, 0.1]])) == STILL
+
+    def test_without_a_scan_it_stands(self) -> None:
+        assert drive(Twist(0.3, 0.0), None) == (STILL, "stands")
+        assert drive(Twist(0.0, 0.3), None) == (STILL, "stands")
+
+    async def test_the_robot_drives_by_the_newest_scan_and_not_at_all_by_an_old_one(self) -> None:
+        async with spoken() as one:
+            laser = one.parts.laser
+            laser.scan = Stamped(scan(), 0.0, 1)
+            await one.take(do="drive", forward=9.0, turn=0.0)
+            one.robot._tick()
+            laser.scan = Stamped(scan(front=0.5), 0.0, 2)
+            one.robot._tick()
+            assert one.state().held == "stands"
+            laser.scan, laser.age = Stamped(scan(), 0.0, 3), 5.0
+            one.robot._tick()
+            assert one.robot._wheels.driven == STILL
+            assert "laser scanner says nothing" in one.state().hazard
+            laser.age = 0.0
+            await asyncio.sleep(0)  # the command to stand is handed over
+            await one.take(do="drive", forward=9.0, turn=0.0)
+            one.robot._tick()
+            assert one.robot._wheels.driven == Twist(one.robot.robot.speed, 0.0)
+
+
+NUMBERS = st.floats() | st.sampled_from([5.0, -5.0, 0.51, 1e308, math.nan, math.inf, -math.inf])
+TWISTS = st.builds(Twist, NUMBERS, NUMBERS)
+
+
+def may_drive(told: list[Any], speed: float) -> None:
+    """Look whether nothing that a base was told is faster than it may be."""
+    for twist in told:
+        if twist == "stop":
+            continue
+        assert all(map(math.isfinite, twist))
+        assert abs(twist.forward) <= speed and abs(twist.turn) <= LIMITS.turn
+
+
+class TestClamp:
+    @given(TWISTS, st.floats(0.05, 3.0))
+    def test_a_twist_is_slowed_down_on_its_own_arc(self, twist: Twist, speed: float) -> None:
+        limits = replace(LIMITS, speed=speed)
+        clamped = limits.clamped(twist)
+        may_drive([clamped], speed)
+        if all(map(math.isfinite, twist)) and clamped != twist and clamped != STILL:
+            assert clamped.forward * twist.turn == pytest.approx(clamped.turn * twist.forward)
+        if not all(map(math.isfinite, twist)):
+            assert clamped == STILL
+
+    @given(TWISTS)
+    async def test_the_wheels_are_told_nothing_faster(self, twist: Twist) -> None:
+        parts = ToldBody()
+        wheels = Wheels(parts.base, LIMITS)
+        wheels.send(twist)
+        if wheels._sent is not None:
+            await soon(wheels._sent)
+        assert len(parts.told) == 1
+        may_drive(parts.told, LIMITS.speed)
+        may_drive([wheels.driven], LIMITS.speed)
+
+    @given(TWISTS, TWISTS, st.sampled_from(["line", "hand", "navigator", "both"]))
+    async def test_nothing_above_the_profile_s_speed_reaches_the_base_whoever_asks(
+        self, one: Twist, other: Twist, way: str
+    ) -> None:
+        process = Spoken()
+        process.parts.laser.scan = Stamped(scan(), 0.0, 1)
+        robot, told = process.robot, process.parts.told
+        driver = other if way in ("navigator", "both") else STILL
+        with patch.object(Navigator, "tick", return_value=driver):
+            if way == "line":
+                line = json.dumps({"do": "drive", "forward": one.forward, "turn": one.turn})
+                await process.process.take(line.encode())
+            elif way in ("hand", "both"):
+                robot.drive_by_hand(one)
+            robot._tick()
+        if robot._wheels._sent is not None:
+            await soon(robot._wheels._sent)
+        may_drive(told, load_robot().speed)
