@@ -199,6 +199,30 @@ class TestFaults:
         assert bench.laser.connected == 2
         assert bench.laser.scan is not None and bench.laser.scan.seq == 2
 
+    @pytest.mark.parametrize("noise", [b"\xff\x00?\n", b"noise", b"99b\n0000\n", b"MD"])
+    async def test_noise_before_each_reply_loses_no_scan(self, bench: Bench, noise: bytes) -> None:
+        bench.server.cable = lambda sent: noise + sent
+        await bench.attach()
+        for _ in range(5):
+            assert np.abs(await bench.turn(ROOM) - ROOM).max() <= 0.0005
+        assert bench.laser.missed == 0 and bench.laser.spoilt >= 5
+        assert bench.laser.reading().state == "WARN"  # somebody should see to the cable
+
+    async def test_replies_that_lose_their_end_take_no_other_with_them(self, bench: Bench) -> None:
+        await bench.attach()
+        sent = 0
+
+        def cuts(reply: bytes) -> bytes:
+            nonlocal sent
+            sent += 1
+            return reply[: len(reply) * 2 // 3] if sent % 2 else reply
+
+        bench.server.cable = cuts
+        for turn in range(1, 6):
+            assert bench.server.send(ROOM, 100 * turn) == 1  # this one is cut
+            bench.turns = turn
+            assert np.abs(await bench.turn(ROOM) - ROOM).max() <= 0.0005
+
     async def test_one_that_says_nothing_any_more_is_asked_again(
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:

@@ -21,6 +21,7 @@ from tangy_hw.drivers.scip_codec import (
     ScipError,
     decode,
     decode_all,
+    found_again,
     joined,
     named,
     optics,
@@ -221,7 +222,7 @@ class ScipLaser:
             try:
                 async with asyncio.timeout(ANSWER_SECONDS):
                     while True:
-                        reply = await self._next()
+                        reply = await self._next(command)
                         if reply.echo == command:
                             break
                 break
@@ -232,8 +233,8 @@ class ScipLaser:
             raise _Refusal(f"cannot measure: {problem}")
         return reply
 
-    async def _next(self) -> Reply:
-        """Return the next sound reply.
+    async def _next(self, echo: bytes) -> Reply:
+        """Return the next sound reply, and find the one of this echo behind what came before it.
 
         Raises:
             OSError: the connection has ended.
@@ -245,8 +246,12 @@ class ScipLaser:
                     raise ConnectionResetError("the connection has ended")
                 whole, self._rest = split(self._rest + came)
                 self._replies.extend(whole)
+            came = self._replies.popleft()
+            reply = found_again(came, echo)
+            if reply is not came:
+                self._damaged()
             try:
-                return parse(self._replies.popleft())
+                return parse(reply)
             except ScipError:
                 self._damaged()
 
@@ -259,7 +264,7 @@ class ScipLaser:
         while True:
             try:
                 async with asyncio.timeout(ANSWER_SECONDS):
-                    reply = await self._next()
+                    reply = await self._next(command)
             except TimeoutError:
                 # On a bench that stands still no time has passed, and nothing is wrong.
                 if self._clock() - heard >= SILENT_SECONDS:

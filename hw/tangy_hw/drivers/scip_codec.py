@@ -130,6 +130,16 @@ def split(buffer: bytes) -> tuple[list[bytes], bytes]:
     return [one.lstrip(b"\n") for one in whole if one.strip(b"\n")], rest
 
 
+def found_again(reply: bytes, echo: bytes) -> bytes:
+    """Return a reply from its echo on, without what stands before that.
+
+    It may be noise of a bad cable, or what is left of a reply that lost its end. Where the echo
+    does not stand in it, the reply is returned as it is.
+    """
+    at = reply.rfind(echo + b"\n")
+    return reply[at:] if at > 0 else reply
+
+
 def parse(reply: bytes) -> Reply:
     """Read one reply, without its empty line.
 

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import os
 import tty
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Protocol
 
 import numpy as np
@@ -42,6 +42,8 @@ class ScipServer:
         self.sent = 0
         """Scans that at least one client got."""
         self.port = 0
+        self.cable: Callable[[bytes], bytes] = bytes
+        """What becomes of a reply on its way."""
         self._closed = False
         self._now = 0
         self._wires: set[_Wire] = set()
@@ -188,7 +190,7 @@ class _Connection(asyncio.Protocol):
 
     def _send(self, answer: bytes) -> None:
         if self._transport is not None:
-            self._transport.write(answer)
+            self._transport.write(self._server.cable(answer))
 
 
 class _Port:
@@ -225,7 +227,7 @@ class _Port:
             self._server._heard(self, came)
 
     def _send(self, answer: bytes) -> None:
-        self._waiting += answer
+        self._waiting += self._server.cable(answer)
         self._flush()
 
     def _flush(self) -> None:
