@@ -50,8 +50,9 @@ def draw_map(
     """Draw a map from a log of scans, or from a room's profile, and write it as ROS does.
 
     A log gives the poses that stand in it; `--match` is for logs in which only the wheels counted
-    them, and good for a room, not for a whole building. What stands on the floor for the robot but
-    not for its laser, as a table's top, is written beside the map, as FILE-keep-out.yaml.
+    them, and good for a room, not for a whole building: a map that does not close is refused. What
+    stands on the floor for the robot but not for its laser, as a table's top, is written beside
+    the map, as FILE-keep-out.yaml.
     """
     if (source is None) == (room is None):
         raise TangyError("Say what to draw: a log of scans or a map, or else --room NAME.")
@@ -101,6 +102,7 @@ def _of_file(path: Path) -> tuple[OccupancyMap, dict[str, Any]]:
 def _of_log(
     path: Path, resolution: float, match: bool, *, tell: bool
 ) -> tuple[OccupancyMap, dict[str, Any]]:
+    from tangy_hw.navigation.agreement import TORN, contradicted
     from tangy_hw.navigation.aligning import aligned
     from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
     from tangy_hw.navigation.scan_log import read_log
@@ -115,8 +117,17 @@ def _of_log(
 
     if match:
         scans = aligned(scans, done)
+    map_ = map_of_scans(scans, resolution)
+    share = contradicted(scans, map_)
+    if match and share > TORN:
+        raise TangyError(
+            plain(f"{path}: the map does not close. After matching, {share:.0%} of the beams ")
+            + f"contradict it (at most {TORN:.0%} in a map that closed), so walls stand in it "
+            "twice. Give a log of a smaller area, or one that a mapping program has corrected, "
+            "without --match."
+        )
     document = {"source": "log", "file": str(path), "scans": len(logged), "used": len(scans)}
-    return map_of_scans(scans, resolution), {**document, "matched": match}
+    return map_, {**document, "matched": match, "contradicted": round(share, 4)}
 
 
 def _written(map_: OccupancyMap, yaml: Path | None, png: Path | None) -> list[str]:
@@ -146,6 +157,7 @@ def _show(map_: OccupancyMap, found: dict[str, Any], ascii_only: bool) -> None:
     )
     if "scans" in found:
         told += f"; {found['used']} of {found['scans']} scans drawn"
+        told += f"; {found['contradicted']:.0%} of the beams contradict the map"
     print(f"{told}.")
     if found["written"]:
         print(plain("Written: " + ", ".join(found["written"])))

@@ -13,6 +13,7 @@ from typer.testing import CliRunner, Result
 
 from tangy_hw.devices import Pose
 from tangy_hw.navigation.map_files import read_map
+from tangy_hw.navigation.poses import compose
 from tangy_profiles.errors import TangyError
 from tangy_profiles.room import load_room
 from tangy_tui.verbs.map import draw_map
@@ -44,7 +45,35 @@ def log_of_a_room(path: Path) -> Path:
     return path
 
 
+def log_that_slips(path: Path, slip: Pose) -> Path:
+    """Write what a laser sees while a robot goes round a room twice; then its wheels slip."""
+    lines = []
+    places = [(1.5 + 0.2 * n, 1.5, 0.1 * n) for n in range(35)] * 2
+    for number, (x, y, heading) in enumerate(places):
+        scan = look(room_sides(ROOM), Pose(x, y, heading), beams=181, angle=pi)
+        ranges = " ".join(f"{one:.3f}" for one in np.minimum(scan.ranges, 81.91))
+        told = compose(slip, Pose(x, y, heading)) if number >= 35 else Pose(x, y, heading)
+        where = f"{told.x} {told.y} {told.heading}"
+        lines.append(f"FLASER 181 {ranges} {where} {where} {number} robot {number}\n")
+    path.write_text("".join(lines))
+    return path
+
+
 class TestMap:
+    def test_how_well_matched_scans_close_is_said(self, tmp_path: Path) -> None:
+        log = log_that_slips(tmp_path / "a.log", Pose(0.05, 0.05, 0.0))
+        told = json.loads(tangy_map(log, "--match", "--json").stdout)
+        assert told["matched"] and told["contradicted"] < 0.05
+        shown = tangy_map(log, "--match").stdout
+        assert f"{told['contradicted']:.0%} of the beams contradict the map" in shown
+
+    def test_a_map_that_does_not_close_is_refused_and_nothing_written(self, tmp_path: Path) -> None:
+        log, png = log_that_slips(tmp_path / "a.log", Pose(2.0, 1.5, 0.9)), tmp_path / "a.png"
+        with pytest.raises(TangyError, match="the map does not close"):
+            tangy_map(log, "--match", "--png", png)
+        assert not png.exists()
+        assert json.loads(tangy_map(log, "--json").stdout)["contradicted"] > 0.15
+
     def test_the_map_of_a_room_is_written_as_ros_reads_it(self, tmp_path: Path) -> None:
         done = tangy_map("--room", "common-room", "--yaml", tmp_path / "room.yaml", "--json")
         told = json.loads(done.stdout)

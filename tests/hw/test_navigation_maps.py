@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from tangy_hw.devices import Pose, Scan
+from tangy_hw.navigation.agreement import TORN, contradicted
 from tangy_hw.navigation.aligning import aligned
 from tangy_hw.navigation.drawing import map_lines
 from tangy_hw.navigation.map_files import MapFileError, read_map, write_map
@@ -182,6 +183,22 @@ class TestScans:
         drifted = [abs(one.pose.x - t.x) + abs(one.pose.y - t.y)
                    for one, t in zip(counted, truth, strict=True)]  # fmt: skip
         assert max(off) < 0.1 < 0.4 < max(drifted)
+
+    def test_how_well_a_map_closed_is_told_by_beams_that_contradict_it(self) -> None:
+        counted, _ = scans_of_a_tour(1.04, 0.05)
+        found = aligned(counted)
+        assert contradicted(found, map_of_scans(found)) < TORN / 3
+        assert contradicted(counted, map_of_scans(counted)) > TORN
+        half = len(found) // 2
+        away = [Placed(one.scan, compose(Pose(0.6, 0.3, 0.0), one.pose)) for one in found[half:]]
+        torn = [*found[:half], *away]
+        assert contradicted(torn, map_of_scans(torn)) > TORN
+
+    def test_of_nothing_nothing_is_contradicted(self) -> None:
+        empty = Placed(Scan(0.0, 0.1, np.array([np.inf, np.inf]), 30.0), Pose(0, 0, 0))
+        wall = Placed(Scan(0.0, 0.1, np.array([2.0, 2.1]), 30.0), Pose(0, 0, 0))
+        made = map_of_scans([wall])
+        assert contradicted([], made) == contradicted([empty], made) == 0.0
 
     def test_a_map_that_would_be_too_large_is_refused(self) -> None:
         scan = Scan(0.0, 0.1, np.array([5.0, 6.0]), 30.0)
