@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from math import pi
 from random import Random
-from typing import Any
+from typing import Any, assert_never
 
 from tangy_hw.card_views import CardViews
 from tangy_hw.commands import Commands
@@ -192,6 +192,10 @@ class LiveWorld:
                 return None, self._go(FRONT)
             case "finish":
                 self.over = True
+            case "none" | "clear wrong marks" | "set missing marks" | "bring card closer":
+                pass  # it is said and shown; what people do about it is seen below
+            case forgotten:
+                assert_never(forgotten)
         if not behaviour.persuades or tracker.place == FRONT:
             return None, True
         if behaviour.effect == "none" and tracker.place not in self.requests.signs:

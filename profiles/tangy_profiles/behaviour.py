@@ -11,10 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from string import Formatter
 from types import MappingProxyType
+from typing import Literal, cast, get_args
 
 from tangy_profiles.reading import Table, nearest
 
-EFFECTS = (
+Effect = Literal[
     "none",  # something is said or shown
     "draw",  # the next number is called
     "clear wrong marks",  # the attended person is asked to take markers off
@@ -23,8 +24,12 @@ EFFECTS = (
     "go to user",
     "go to front",
     "finish",  # the activity is over
-)
-"""What a behaviour does to the world. A world implements these; an activity chooses among them."""
+]
+"""What a behaviour does to the world: a closed set, among which an activity chooses.
+
+Each world matches every one of them, so that mypy names the places where a new one is forgotten.
+"""
+EFFECTS: tuple[Effect, ...] = get_args(Effect)
 
 CLOSINGS = ("never", "always", "when correct")
 PLACES = ("front", "attended", "here")
@@ -44,7 +49,7 @@ class Behaviour:
 
     name: str
     question: str
-    effect: str
+    effect: Effect
     place: str
     posture: str
     image: str
@@ -101,7 +106,7 @@ def read_behaviour(entry: Table, strategies: dict[str, str], states: list[str]) 
     return Behaviour(
         name=name,
         question=entry.text("question", name),
-        effect=entry.choice("effect", EFFECTS),
+        effect=cast(Effect, entry.choice("effect", EFFECTS)),
         place=entry.choice("place", PLACES),
         posture=entry.text("posture"),
         image=_template(entry, "image"),

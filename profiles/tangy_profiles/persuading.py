@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Literal, cast, get_args
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import Table, nearest, plain
 
-METHODS = ("thompson", "bayes-ucb")
+MethodName = Literal["thompson", "bayes-ucb"]
+METHODS: tuple[MethodName, ...] = get_args(MethodName)
 PRIORS = ("uniform", "people")
 PERIODS = ("interaction", "day")
 DEFAULT = "default"
@@ -29,7 +30,7 @@ class Persuading:
     interaction, or from one day, to the next (1: everything).
     """
 
-    method: str = "thompson"
+    method: MethodName = "thompson"
     prior: str = "uniform"
     forgetting: float = 1.0
     forgetting_per: str = "interaction"
@@ -40,9 +41,16 @@ class Persuading:
 
     @classmethod
     def from_json(cls, body: Mapping[str, Any]) -> Persuading:
-        """Read a choice that `to_json` wrote; what is not there is as in the paper."""
+        """Read a choice that `to_json` wrote; what is not there is as in the paper.
+
+        Raises:
+            ProfileError: there is no such method.
+        """
+        method = str(body.get("method", cls.method))
+        if method not in METHODS:
+            raise ProfileError(plain(f"There is no method {method!r}: {nearest(method, METHODS)}"))
         return cls(
-            str(body.get("method", cls.method)),
+            method,
             str(body.get("prior", cls.prior)),
             float(body.get("forgetting", cls.forgetting)),
             str(body.get("forgetting_per", cls.forgetting_per)),
@@ -59,7 +67,7 @@ def read_persuading(table: Table) -> Persuading:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
     chosen = Persuading(
-        table.choice("method", METHODS, PAPER.method),
+        cast(MethodName, table.choice("method", METHODS, PAPER.method)),
         table.choice("prior", PRIORS, PAPER.prior),
         table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
         table.choice("forgetting_per", PERIODS, PAPER.forgetting_per),

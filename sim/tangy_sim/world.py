@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from random import Random
+from typing import assert_never
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
@@ -54,15 +55,6 @@ class SimulatedWorld:
         self._cards = Random(f"{seed}/cards")
         self._uniform = Random(f"{seed}/users").random
         self._compliance = Random(f"{seed}/compliance")
-        self._effects = {
-            "draw": self._draw,
-            "clear wrong marks": self._clear_wrong_marks,
-            "set missing marks": self._set_missing_marks,
-            "bring card closer": self._bring_card_closer,
-            "go to user": self._go_to_user,
-            "go to front": self._go_to_front,
-            "finish": self._finish,
-        }
         self.begin()
 
     def begin(self) -> ActivityState:
@@ -97,8 +89,7 @@ class SimulatedWorld:
             return Outcome(False, 0.0, (), None)
         succeeded = tracker.allows(behaviour)
         beside = tracker.place
-        effect = self._effects.get(behaviour.effect)
-        numbers = effect(action) if effect is not None else ()
+        numbers = self._take_effect(action)
         if numbers is None:
             succeeded, numbers = False, ()
         response: Response | None = None
@@ -151,6 +142,28 @@ class SimulatedWorld:
         return 0.0
 
     # Effects return the numbers that they were about, or None if they came to nothing.
+
+    def _take_effect(self, action: Action) -> tuple[int, ...] | None:
+        """Let an action have its effect; return the numbers that were called, None if it failed."""
+        match action.behaviour.effect:
+            case "none":
+                return ()
+            case "draw":
+                return self._draw(action)
+            case "clear wrong marks":
+                return self._clear_wrong_marks(action)
+            case "set missing marks":
+                return self._set_missing_marks(action)
+            case "bring card closer":
+                return self._bring_card_closer(action)
+            case "go to user":
+                return self._go_to_user(action)
+            case "go to front":
+                return self._go_to_front(action)
+            case "finish":
+                return self._finish(action)
+            case forgotten:
+                assert_never(forgotten)
 
     def _draw(self, _: Action) -> tuple[int, ...] | None:
         if self._calls >= len(self._order):

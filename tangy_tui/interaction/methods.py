@@ -11,10 +11,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
-from typing import Protocol
+from typing import Protocol, assert_never
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
-from tangy_profiles.persuading import Persuading
+from tangy_profiles.persuading import MethodName, Persuading
 
 Counts = Mapping[str, tuple[int, int]]
 """One person's responses: strategy -> how often they complied, and did not."""
@@ -187,9 +187,19 @@ class Forgetting:
         return self.inner.scores(beliefs, rng)
 
 
+def _plain(name: MethodName) -> Method:
+    match name:
+        case "thompson":
+            return Thompson()
+        case "bayes-ucb":
+            return BayesUcb()
+        case forgotten:
+            assert_never(forgotten)
+
+
 def method_of(chosen: Persuading, earlier: Sequence[Counts] = ()) -> Method:
     """Make the method that was chosen in words; `earlier` are the counts of everybody else."""
-    method: Method = Thompson() if chosen.method == "thompson" else BayesUcb()
+    method = _plain(chosen.method)
     if chosen.prior == "people":
         method = EarlierPeople(method, earlier)
     if chosen.forgetting < 1:

@@ -14,7 +14,13 @@ from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.persuading import PAPER, Persuading, read_persuading, spoken_persuading
+from tangy_profiles.persuading import (
+    METHODS,
+    PAPER,
+    Persuading,
+    read_persuading,
+    spoken_persuading,
+)
 from tangy_profiles.reading import Table
 from tangy_tui.interaction.memory import counted
 from tangy_tui.interaction.methods import (
@@ -315,3 +321,18 @@ def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
         read_persuading(Table({"method": "tomson"}, "x.toml", "persuasion."))
     with pytest.raises(ProfileError, match="is not a key here; did you mean 'forgetting'"):
         read_persuading(Table({"forgeting": 0.9}, "x.toml"))
+
+
+def test_each_method_can_be_made_and_has_words_for_people() -> None:
+    from tangy_tui.ui.dialogs import method as dialog
+
+    assert set(dialog.METHODS) == set(METHODS)
+    assert {method_of(Persuading(name)).words for name in METHODS} == {
+        "Thompson sampling",
+        "Bayes-UCB",
+    }
+
+
+def test_a_method_that_is_not_known_is_refused_and_not_taken_for_another() -> None:
+    with pytest.raises(ProfileError, match="There is no method 'thomson': did you mean"):
+        Persuading.from_json({"method": "thomson"})

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from random import Random
+from typing import assert_never
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
@@ -191,6 +192,12 @@ class People:
                 self._driven_to = sitter.id if sitter is not None else ""
             case "finish":
                 self.game.over = True
+            case "none" | "clear wrong marks" | "set missing marks" | "bring card closer":
+                pass  # they do it when they comply
+            case "go to front":
+                pass  # nobody waits for that
+            case forgotten:
+                assert_never(forgotten)
         if sitter is not None and behaviour.persuades:
             self._persuaded(sitter, behaviour, heard)
         if not self.game.opened:

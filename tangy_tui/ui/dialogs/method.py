@@ -11,14 +11,14 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_profiles.persuading import Persuading
+from tangy_profiles.persuading import MethodName, Persuading
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 
 KeyT = TypeVar("KeyT")
 
-METHODS = {
+METHODS: dict[MethodName, str] = {
     "thompson": "Thompson sampling, as in the paper",
     "bayes-ucb": "Bayes-UCB: tries less, settles sooner",
 }
