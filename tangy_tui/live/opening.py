@@ -173,7 +173,7 @@ def open_robot(
     if not house.robot.drivers:
         raise DeviceError(
             f"{house.robot.file.name} names no drivers, so there is no robot to be reached: "
-            "try --bench, or name them as the README tells."
+            "try --bench, or name them as docs/robots.md tells."
         )
     from tangy_hw.drivers.chest_pairing import keep_pairing
     from tangy_hw.perception.faces.keeping import read_faces

@@ -34,7 +34,7 @@ def bench() -> Iterator[Bench]:
 
 
 def robot_file(bench: Bench, folder: Path) -> Path:
-    """Write the file of the robot that the bench is, as the README tells."""
+    """Write the file of the robot that the bench is, as docs/robots.md tells."""
     at = bench.wires.rosbridge
     drivers = [
         "[drivers]",
