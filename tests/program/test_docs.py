@@ -88,5 +88,10 @@ def test_commands_are_found_in_the_pages() -> None:
 def test_the_readme_is_short_and_names_the_other_pages() -> None:
     text = (HOUSE / "README.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 200
-    for page in (page for page in PAGES if page.name != "README.md"):
-        assert page.name in text
+    for page in PAGES:
+        named = (
+            text
+            if page.parent.name != "decisions"
+            else (HOUSE / "docs/architecture.md").read_text()
+        )
+        assert page.name in named or page.name == "README.md"
