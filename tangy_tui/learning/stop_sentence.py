@@ -36,7 +36,7 @@ STOPS = (
     *("robot stop", "make the robot stop", "emergency stop", "emergency", "stop the game"),
     *("stop this game", "stop the game now", "make it stop", "stop right away", "stop at once"),
     *("stop immediately", "stop this", "stop everything", "stop driving", "stop where you are"),
-    *("stop the machine", "you have to stop", "stand still", "freeze"),
+    *("stop the machine", "stand still", "freeze"),
 )
 """What is listened for in the first place: as it is said most, with the words that it takes."""
 

@@ -410,7 +410,7 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
         live(pilot)._world.observe()
         live(pilot)._picture._show_scene(0, drive=False, pace=0)
         drawn = ""
-        for _ in range(200):  # the game goes on beside the screen until it is held
+        for _ in range(600):  # the game goes on beside the screen until it is held
             live(pilot)._track()
             live(pilot)._show_status()
             await pilot.pause(0.05)
