@@ -101,8 +101,8 @@ def live(
 ) -> None:
     """Let Tangy facilitate games with its devices, by the policy it has learnt.
 
-    The robot's profile names its drivers (see docs/robots.md). With --bench the same drivers speak to
-    simulated devices over their own wires. Devices are watched all the time; what goes wrong is
+    The robot's profile names its drivers (see docs/robots.md). With --bench the same drivers speak
+    to simulated devices over their own wires. Devices are watched all the time; what goes wrong is
     diagnosed, and a critical fault stops the robot until staff clear it. With --mic it listens:
     "stop the robot" stops it at once, and what it asks can be answered by voice.
     """
