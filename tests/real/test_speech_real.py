@@ -481,6 +481,7 @@ class TestWorker:
             "from tangy_tui.learning.speech.evidence import Wanted\n"
             "from tangy_tui.learning.speech.recogniser import Recogniser\n"
             "async def run():\n"
+            "    asyncio.get_running_loop().slow_callback_duration = 60.0\n"
             "    recogniser = Recogniser(log=Path(sys.argv[2]))\n"
             "    await recogniser.start(Wanted(('tell a joke', 'xhqzr', 'a(b')))\n"
             "    first, sound = recogniser.pid, asyncio.Queue()\n"
