@@ -196,7 +196,7 @@ def test_no_damage_to_rows_ends_what_reads_the_log(_every_kind: Path, several: A
 
 
 @pytest.mark.slow
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=500, deadline=None)
 @given(several=st.lists(damages(), min_size=1, max_size=20))
 def test_no_amount_of_damage_to_rows_ends_what_reads_the_log(
     _every_kind: Path, several: Any

@@ -138,11 +138,12 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
                 terminal.read(0.1)
         finally:
             os.kill(robot, signal.SIGCONT)
-        terminal.until("It is gone now")
+        # it answers again, and says that it was frozen: that stands until staff have seen to it
+        terminal.until("it reports a failure")
         assert "Also wrong" not in terminal.text
         terminal.settle()
         terminal.type("a")
-        terminal.until("c to clear")
+        terminal.until("or c when all is well")
         terminal.type("c")
         terminal.until("5 facilitate")  # the game has gone on
         house = House(folder, write=False)
