@@ -12,7 +12,6 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import shown_steps
-from tangy_tui.learning.forest_cache import ForestCache
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import kept_policies, load_policy, place_of
 from tangy_tui.learning.policy import Decision, Policy, learn_policy
@@ -71,8 +70,7 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
     if kind == "policy" or not shown:
         words = {*known, *_teachers(library.finished), "last"}
         raise TangyError(plain(f"There is no policy or teacher {wanted!r}: {nearest(name, words)}"))
-    cache = ForestCache(store.folder)
-    return learn_policy(activity, shown, name=name, grow=cache.grown), []
+    return learn_policy(activity, shown, name=name), []
 
 
 def _teachers(demonstrations: Iterable[Demonstration]) -> dict[str, None]:

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
+from math import isclose
 from pathlib import Path
 from typing import Any
 
@@ -122,5 +123,7 @@ def _read(path: Path, situations: int, behaviours: set[str]) -> Forest | None:
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
     whole = len(votes) == situations and all(votes)
+    whole = whole and all(isclose(sum(share for _, share in one), 1, abs_tol=1e-6) for one in votes)
+    whole = whole and all(0 < share <= 1 for one in votes for _, share in one)
     known = {behaviour for one in votes for behaviour, _ in one} <= behaviours
     return Forest(votes, versions) if whole and known else None

@@ -21,7 +21,9 @@ def _any(*ways: str) -> str:
 DETERMINER = (
     "all of (?:the|this|that)|all(?: the| this| your)?|any|the|this|that|your|our|its|these|those"
 )
-PASSION = "whole|entire|bloody|stupid|damned?|darn|silly|crazy|mad|blasted|poor|big|little|horrible"
+PASSION = (
+    "whole|entire|bloody|stupid|damn(?:ed)?|darn|silly|crazy|mad|blasted|poor|big|little|horrible"
+)
 BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
 LIMBS = "base|wheels?|motors?|engines?|arms?|hands?|head|movements?|motions?|moving|driving"
 PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"

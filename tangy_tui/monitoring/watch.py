@@ -21,6 +21,9 @@ from tangy_tui.monitoring.recovery import Event, Recovery
 NOT_SHOWN: Evidence = {"situation.shown": False}
 """The evidence that nobody has shown what to do in a situation."""
 
+HIDING = frozenset(("mismatch.card", "mismatch.what was asked about"))
+"""What a fault of a device explains if it hides cards: what is unseen then is nobody's refusal."""
+
 
 class Watch:
     """Finds the faults of a game. `begin` each game."""
@@ -105,7 +108,8 @@ class Watch:
     def _compare(self, acted: Acted) -> list[Event]:
         self._recovery.seconds += acted.outcome.seconds
         known, self._seen = self._seen, self.devices
-        explained = any(one.rule.device for one in diagnose(self.book, self._seen))
+        faults = diagnose(self.book, self._seen)
+        explained = any(not HIDING.isdisjoint(one.rule.also) for one in faults)
         execution, mismatches = self._detector.compare(acted, explained=explained)
         if not execution and self._seen is known:
             return []

@@ -74,7 +74,17 @@ def test_what_was_tampered_with_is_found_out_and_put_right(taught: Path) -> None
 
 @pytest.mark.parametrize(
     "text",
-    ["", "{", "[]", "null", '{"votes": 3}', '{"votes": [], "versions": []}', "[" * 100_000, "\0"],
+    [
+        "",
+        "{",
+        "[]",
+        "null",
+        '{"votes": 3}',
+        '{"votes": [], "versions": []}',
+        "[" * 100_000,
+        "\0",
+        "NaN",
+    ],
 )
 def test_a_file_that_holds_something_else_is_passed_over(
     text: str, activity: Activity, rows: Rows, tmp_path: Path
@@ -120,3 +130,16 @@ def test_to_look_at_a_policy_loads_no_forest(taught: Path) -> None:
     assert [one.returncode for one in done] == [0, 0]
     assert done[1].stderr.strip() == "not loaded"
     assert done[0].stdout == done[1].stdout
+
+
+@pytest.mark.parametrize("share", ["NaN", "Infinity", "-1.0", "0.25"])
+def test_votes_that_cannot_be_are_grown_anew(
+    share: str, activity: Activity, rows: Rows, tmp_path: Path
+) -> None:
+    situations, cache = tuple(all_situations(activity)), ForestCache(tmp_path)
+    first = cache.grown(EXACT, rows, situations)
+    (file,) = kept(tmp_path)
+    told = json.loads(file.read_text())
+    told["votes"][0] = [[told["votes"][0][0][0], "SHARE"]]
+    file.write_text(json.dumps(told).replace('"SHARE"', share))
+    assert cache.grown(EXACT, rows, situations) == first

@@ -47,6 +47,17 @@ def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
     assert ended(events).stopped is None
 
 
+@pytest.mark.parametrize("beside", ["arm-failed@3", "requests-silent@3", "voice-dead@3"])
+def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
+    supervise: Supervise, monkeypatch: pytest.MonkeyPatch, beside: str
+) -> None:
+    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    for seed in range(1, 7):
+        events = play(supervise("card-out-of-sight~1", beside, seed=seed))
+        visits = Counter(visit for visit, _ in in_vain(events))
+        assert max(visits.values(), default=0) <= MOST
+
+
 @pytest.mark.parametrize("kind", ["never-complies@8", "card-out-of-sight~1"])
 def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str
