@@ -19,7 +19,7 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.navigation.entrusted import Entrusted
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.occupancy import map_of_room
+from tangy_hw.navigation.occupancy import map_of_room, with_feet
 from tangy_hw.navigation.wayfinding import Wayfinder
 from tangy_hw.perception.requests.asking import DEVICE as REQUESTS
 from tangy_hw.perception.requests.asking import RequestSource
@@ -184,9 +184,12 @@ def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation |
         return Entrusted(own)
     from tangy_hw.navigation.limits import Limits
 
-    known = read_map(Path(setup.map)) if setup.map else map_of_room(room, people=len(setup.people))
+    count = len(setup.people)
+    known = map_of_room(room, people=count)
+    if setup.map:
+        known = with_feet(read_map(Path(setup.map)), room, count)
     start = None if setup.start is None else Pose(*setup.start)
-    seats = room.seated(len(setup.people))
+    seats = room.seated(count)
     return Navigator(
         known,
         np.random.default_rng(setup.seed),

@@ -214,6 +214,14 @@ def beside(rng: Generator) -> Drive:
             return Drive(start, goal, [Person(x, y, rng.uniform(-pi, pi))], rng)
 
 
+def at_the_wall(rng: Generator) -> Drive:
+    """Somebody leans against the wall that the robot drives along, ankles .08 to .2 m off it."""
+    start = Pose(1.0, rng.uniform(0.45, 0.6), 0.0)
+    goal = Pose(rng.uniform(6.0, 8.0), rng.uniform(0.45, 0.6), 0.0)
+    person = Person(rng.uniform(3.0, 4.5), rng.uniform(0.14, 0.26), 0.0)
+    return Drive(start, goal, [person], rng)
+
+
 def steps_in(rng: Generator) -> Drive:
     """Somebody steps from aside into the way of a robot that drives, and stands there."""
     while True:
@@ -289,6 +297,7 @@ SCENES: dict[str, Callable[[Generator], Drive]] = {
     "steps in": steps_in,
     "yielding": yielding,
     "walking": walking,
+    "wall": at_the_wall,
 }
 
 

@@ -11,7 +11,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from tangy_hw.devices import Pose, Scan, Twist
-from tangy_hw.navigation.occupancy import seat_legs, table_legs
+from tangy_hw.navigation.occupancy import chair_legs, seat_feet, table_legs
 from tangy_hw.navigation.poses import compose
 from tangy_profiles.room import Room
 
@@ -39,7 +39,9 @@ def room_sides(room: Room, *more: tuple[float, float, float, float]) -> Segments
 
     A leg is a cross of 6 cm, which casts the same shadow as a round one with half the sides.
     """
-    stand = [*table_legs(room), *(leg for seat in room.seats for leg in seat_legs(room, seat))]
+    stand = table_legs(room)
+    for seat in room.seats:
+        stand += [*chair_legs(seat), *seat_feet(room, seat)]
     legs = [(p.x - dx, p.y - dy, p.x + dx, p.y + dy) for p in stand for dx, dy in CROSS]
     return np.vstack((sides((0, 0, room.width, room.depth), *more), legs))
 

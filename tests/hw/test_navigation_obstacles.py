@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tangy_hw.devices import STILL, Pose
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.obstacles import Obstacles
-from tests.bench.people_drives import MAP, drives
+from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet
+from tests.bench.people_drives import MAP, ROOM, drives
 from tests.hw.navigated import CHAIR, ROW, DrivenRobot, at_seat
 
 
@@ -73,6 +76,21 @@ class TestObstacles:
         obstacles = Obstacles(MAP)
         points = np.array([(0.0, 3.0), (1.3, 5.1), (5.0, 3.0), (0.5, 3.0), (-40.0, 3.0)])
         assert obstacles.among(points).tolist() == [False, False, True, True, True]
+
+    def test_a_person_close_to_a_wall_or_a_table_leg_is_no_part_of_it(self) -> None:
+        leg = table_legs(ROOM)[0]
+        at_the_wall = [(3.0, off) for off in (0.0, 0.05, 0.17, 0.2)]
+        at_the_table = [(leg.x + off, leg.y) for off in (0.0, 0.05, 0.17, 0.2)]
+        for points in (at_the_wall, at_the_table):
+            assert Obstacles(MAP).among(np.array(points)).tolist() == [False, False, True, True]
+
+    def test_a_person_who_moves_the_feet_under_the_table_stays_on_the_map(self) -> None:
+        foot = seat_feet(ROOM, ROOM.seats[0])[0]
+        moved = np.array([(foot.x - 0.06, foot.y + 0.12), (foot.x, foot.y - 0.15)])
+        assert Obstacles(MAP).among(moved).tolist() == [False, False]
+        recorded = replace(MAP, feet=np.zeros_like(MAP.feet))
+        assert Obstacles(recorded).among(moved).tolist() == [False, True]  # a chair leg, nothing
+        assert Obstacles(with_feet(recorded, ROOM)).among(moved).tolist() == [False, False]
 
 
 class TestPeople:

@@ -10,7 +10,8 @@ from tangy_hw.navigation.likelihood import NEAREST
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import HERE, Floats, compose, endpoints, placed, wrap
 
-OFF = 0.2  # metres from everything on the map at which a thing is not on it
+OFF = 0.1  # metres from all that is on the map beyond which a return is not of it
+FIDGETING = 0.2  # the same where people sit who move their feet
 RANGE = 6.0  # metres beyond which a beam is too uncertain to plan by
 SURE = 3  # scans in which a cell was hit until it counts
 KEPT = 30.0  # seconds after which what is not seen any more is forgotten
@@ -23,7 +24,8 @@ class Obstacles:
     def __init__(self, map_: OccupancyMap, laser: Pose = HERE) -> None:
         self._map = map_
         self._laser = laser
-        self._new = map_.seen_distance > OFF
+        # a person beside a wall or a table is no part of it: as near as a scan and a pose are sure
+        self._new = map_.seen_distance > np.where(map_.feet, FIDGETING, OFF)
         self._hits = np.zeros(map_.shape, dtype=np.int16)
         self._age = np.zeros(map_.shape, dtype=np.float32)
 

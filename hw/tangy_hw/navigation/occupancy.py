@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -23,6 +23,7 @@ MARGIN = 0.5  # metres of the unknown around a room, so that beams through doors
 LEG_INSET = 0.1  # metres from the table's edge to the middle of a leg
 CHAIR, FEET = 0.42, 0.3  # metres between the legs of a chair; from its middle to somebody's feet
 SEAT = 0.3  # metres around a seat that are kept out of
+FIDGET = 0.2  # metres around drawn feet in which those of a person who sits there may be
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,16 +34,19 @@ class OccupancyMap:
     lowest y, column 0 the lowest x. `origin` is the outer corner of that first cell, in metres.
     `keep_out` (rows, columns) marks what a laser does not see and the robot must not touch all the
     same: a table has legs at the height of a laser, and a top at the height of the robot.
+    `feet` (rows, columns) marks where people who sit move their feet about.
     """
 
     cells: Cells
     resolution: float
     origin: tuple[float, float]
     keep_out: Mask = field(default_factory=lambda: np.zeros((0, 0), dtype=np.bool_))
+    feet: Mask = field(default_factory=lambda: np.zeros((0, 0), dtype=np.bool_))
 
     def __post_init__(self) -> None:
-        if self.keep_out.size == 0:
-            object.__setattr__(self, "keep_out", np.zeros(self.cells.shape, dtype=np.bool_))
+        for name in ("keep_out", "feet"):
+            if getattr(self, name).size == 0:
+                object.__setattr__(self, name, np.zeros(self.cells.shape, dtype=np.bool_))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -113,12 +117,16 @@ def table_legs(room: Room) -> list[Point]:
     ]
 
 
-def seat_legs(room: Room, seat: Point) -> list[Point]:
-    """Return where the legs of a chair are, and the feet of somebody who faces the table."""
+def chair_legs(seat: Point) -> list[Point]:
+    """Return where the legs of the chair at a seat are."""
     half = CHAIR / 2
+    return [Point(seat.x + x, seat.y + y) for x in (-half, half) for y in (-half, half)]
+
+
+def seat_feet(room: Room, seat: Point) -> list[Point]:
+    """Return where the feet are of a person at a seat who faces the table."""
     towards = FEET if room.table[1] > seat.y else -FEET
-    chair = [Point(seat.x + x, seat.y + y) for x in (-half, half) for y in (-half, half)]
-    return [*chair, *(Point(seat.x + x, seat.y + towards) for x in (-0.13, 0.13))]
+    return [Point(seat.x + x, seat.y + towards) for x in (-0.13, 0.13)]
 
 
 def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None) -> OccupancyMap:
@@ -141,7 +149,8 @@ def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None)
     corner = -(side + 0.5) * resolution  # so that a wall runs through the middle of its cells
     drawn = OccupancyMap(cells, resolution, (corner, corner))
     seats = room.seats if people is None else room.seated(people)
-    legs = [*table_legs(room), *(leg for seat in seats for leg in seat_legs(room, seat))]
+    feet = [foot for seat in seats for foot in seat_feet(room, seat)]
+    legs = [*table_legs(room), *(leg for seat in seats for leg in chair_legs(seat)), *feet]
     rows_of, columns_of = drawn.cells_of(np.array([(leg.x, leg.y) for leg in legs]))
     cells[rows_of, columns_of] = OCCUPIED
     xs = corner + (np.arange(cells.shape[1]) + 0.5) * resolution
@@ -150,4 +159,21 @@ def map_of_room(room: Room, resolution: float = 0.05, people: int | None = None)
     drawn.keep_out[np.ix_((ys >= near) & (ys <= far), (xs >= left) & (xs <= right))] = True
     for seat in seats:
         drawn.keep_out[np.hypot(xs[None, :] - seat.x, ys[:, None] - seat.y) <= SEAT] = True
-    return drawn
+    return with_feet(drawn, room, people)
+
+
+def with_feet(map_: OccupancyMap, room: Room, people: int | None = None) -> OccupancyMap:
+    """Return a map of a room on which is marked where people who sit there move their feet.
+
+    Args:
+        map_: the map, in the room's frame, drawn or recorded.
+        room: the room.
+        people: how many sit there; None: on all of the room's seats.
+    """
+    xs = map_.origin[0] + (np.arange(map_.shape[1]) + 0.5) * map_.resolution
+    ys = map_.origin[1] + (np.arange(map_.shape[0]) + 0.5) * map_.resolution
+    marked = np.zeros(map_.shape, dtype=np.bool_)
+    for seat in room.seats if people is None else room.seated(people):
+        for foot in seat_feet(room, seat):
+            marked |= np.hypot(xs[None, :] - foot.x, ys[:, None] - foot.y) <= FIDGET
+    return replace(map_, feet=marked)
