@@ -12,10 +12,7 @@ from tangy_hw.health import Report
 from tangy_hw.perception.requests.asking import RequestSource
 from tangy_hw.senses import Senses
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
-from tangy_profiles.robot import Robot
-
-LINK = "link"
-"""The device by which a robot is reached; all that is between the program and its wheels."""
+from tangy_profiles.robot import FROZEN, LINK, Robot
 
 FILMED_PATIENCE = 4.0
 """How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
@@ -75,7 +72,7 @@ def reports_of(
         reading, seconds = linked(), frozen()
         if not seconds:
             return reading
-        return reading._replace(state=ERROR, facts={**reading.facts, "frozen": seconds})
+        return reading._replace(state=ERROR, facts={**reading.facts, FROZEN: seconds})
 
     reports[LINK] = link
 

@@ -316,7 +316,6 @@ class LiveWorld:
         place, patience = self.tracker.place, self.activity.patience
         person = self.who(place)
         began = before = self.link.time
-        reminded = False
         while True:
             done = self._is_done(action.behaviour, numbers)
             now = self.link.time
@@ -327,11 +326,6 @@ class LiveWorld:
                 if action.behaviour.effect == "none" or self.cards.view is None:
                     return None  # a sign that stays up may be forgotten, or want something else
                 return Response(person, action.strategy, False, False, now - began)
-            if now - began > patience and not reminded:
-                reminded = True
-                name = self.name_of(place)
-                words = self.activity.fill(action.image, name, numbers)
-                self.say("", Picture(words, asks=name))
             before = now
 
     def _is_done(self, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:

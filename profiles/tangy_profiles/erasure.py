@@ -9,7 +9,9 @@ in running text the small word that some names are ("will", "may").
 from __future__ import annotations
 
 import html
+import itertools
 import json
+import math
 import re
 import unicodedata
 from collections.abc import Collection, Iterable, Mapping
@@ -32,6 +34,11 @@ WHOSE = frozenset(("teacher", "by", "who"))
 OWN_WORDS = frozenset(("demonstrations edited", "speech noted", "taken back"))
 """The kinds of event whose `what` is a word of Tangy's own."""
 
+MOST_SPELLINGS = 128
+"""Of a name with special letters; of one with more of them fewer mixtures are looked for."""
+
+_SPELT_OUT = {"ä": ("ae",), "ö": ("oe",), "ü": ("ue",), "å": ("aa",), "ø": ("o", "oe"),
+              "æ": ("ae",), "œ": ("oe",), "ß": ("ss",), "ł": ("l",), "đ": ("d",)}  # fmt: skip
 _MARKS = "\u0300-\u036f"  # accents that stand apart
 _TOKEN = re.compile(rf"(?:[^\W_]|[{_MARKS}])+")
 _BETWEEN = r"(?:&(?:\#x?\w+|nbsp|apos);|%20|[\s+\-_'\u2019.]){1,3}"
@@ -211,15 +218,29 @@ def small_words() -> frozenset[str]:
 
 def _forms(name: str) -> tuple[str, ...]:
     """Return the ways in which a name may be written in a file, in whatever letters."""
-    composed = unicodedata.normalize("NFC", name)
-    apart = unicodedata.normalize("NFD", name)
-    bare = unicodedata.normalize("NFC", _ACCENTS.sub("", unicodedata.normalize("NFKD", name)))
-    plainly = [name, composed, apart, bare]
+    plainly = [name]
+    for spelling in _spellings(unicodedata.normalize("NFC", name)):
+        plainly += [spelling, unicodedata.normalize("NFD", spelling)]
     plainly += [_APOSTROPHES.sub("", form) for form in plainly]
     plainly += [form.casefold() for form in plainly]
     coded = [json.dumps(form)[1:-1] for form in plainly]
     coded += [html.escape(form) for form in plainly] + [quote(form) for form in plainly]
     return tuple(dict.fromkeys(form for form in (*plainly, *coded) if form))
+
+
+def _spellings(name: str) -> list[str]:
+    """Return a name with each of its special letters as it is, without accents, or spelt out."""
+    letters = [tuple(dict.fromkeys((letter, *_plainer(letter)))) for letter in name]
+    if math.prod(map(len, letters)) > MOST_SPELLINGS:  # then all of them in the same way
+        return ["".join(options[min(way, len(options) - 1)] for options in letters)
+                for way in range(3)]  # fmt: skip
+    return ["".join(chosen) for chosen in itertools.product(*letters)]
+
+
+def _plainer(letter: str) -> tuple[str, ...]:
+    """Return what people type for a letter that their keyboard does not have."""
+    bare = _ACCENTS.sub("", unicodedata.normalize("NFKD", letter))
+    return (unicodedata.normalize("NFC", bare), *_SPELT_OUT.get(letter.casefold(), ()))
 
 
 def _plainest(text: str) -> str:

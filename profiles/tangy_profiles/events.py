@@ -242,6 +242,7 @@ BODIES: Mapping[str, Check] = {
             "world": one_of(*GAME_WORLDS),
         },
     ),
+    "game world set": Fields({"game": text, "world": one_of(*GAME_WORLDS)}, {"by": text}),
     "game step": Fields(
         {
             "game": text,

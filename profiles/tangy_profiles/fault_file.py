@@ -111,6 +111,7 @@ def _read_rule(entry: Table, robot: Robot, known: Mapping[str, str]) -> FaultRul
         advice=_texts(entry, "advice"),
         when=() if fallback else _alternatives(entry, known, robot),
         also=entry.words("also", known, ()),
+        continues=entry.words("continues", default=()),
         device=entry.choice("device", (*robot.devices, ""), ""),
         tries=entry.whole("tries", 1, 10, 1),
         remedy=entry.choice("remedy", OWN_REMEDIES, ""),

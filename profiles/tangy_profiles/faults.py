@@ -130,7 +130,8 @@ class FaultRule:
     `also` are the symptoms that follow from the fault as well: a rule further down has nothing to
     say about them. `recovery` is a ladder: what does not help leads to its next rung, and after
     the last one an expert is asked. `tries` bounds each rung. A `bearable` fault may stay: Tangy
-    goes on without what is broken. `advice` are the staff's steps, in their words.
+    goes on without what is broken. `advice` are the staff's steps, in their words. While one of
+    the faults that it `continues` (codes) is there, it is that one, of which more is known now.
     """
 
     code: str
@@ -141,6 +142,7 @@ class FaultRule:
     advice: tuple[str, ...]
     when: tuple[tuple[Condition, ...], ...] = ()
     also: tuple[str, ...] = ()
+    continues: tuple[str, ...] = ()
     device: str = ""
     tries: int = 1
     remedy: str = ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -15,6 +15,15 @@ from tangy_profiles.reading import Table, nearest, plain, read_toml
 LOOKS_AT = ("cards",)
 """What the profile can say that a camera looks at."""
 
+
+LINK = "link"
+"""The device by which a robot is reached: all that is between the program and its wheels."""
+
+FROZEN = "frozen"
+"""What the link tells of the robot's own program: for how many s it stood still."""
+
+LINK_STALE_SECONDS = 0.25
+LONGEST_SECONDS = 1e6
 
 GAZES = ("card", "face")
 """What the robot turns its eyes to."""
@@ -237,7 +246,16 @@ def _devices(top: Table) -> dict[str, Device]:
         )
         facts.close()
         entry.close()
-    return devices
+    return _with_link(devices)
+
+
+def _with_link(devices: Mapping[str, Device]) -> dict[str, Device]:
+    """Return devices with the link, which every robot has, whether its file tells of it or not."""
+    link = devices.get(LINK) or Device(LINK, "link to the robot", LINK_STALE_SECONDS, {})
+    says = "seconds for which the robot's own program stood still"
+    facts = {FROZEN: Measure(says, low=0.0, high=LONGEST_SECONDS), **link.facts}
+    known = {LINK: replace(link, facts=MappingProxyType(facts))}
+    return {**devices, **known} if LINK in devices else {**known, **devices}
 
 
 def _drivers(top: Table, devices: Mapping[str, Device]) -> dict[str, Driver]:

@@ -9,6 +9,8 @@ from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld, game_wo
 from tangy_profiles.store import Event, Store
 
 BEGUN, STEP = "game begun", "game step"
+SET = "game world set"
+"""The kind of event with which staff say in which world a game was played."""
 
 
 class GameWorlds:
@@ -24,16 +26,32 @@ class GameWorlds:
     def all(self) -> Mapping[str, GameWorld]:
         """The world of every game, by its id, in the order of the log."""
         unmarked: dict[str, Event] = {}
-        for event in self._store.events(BEGUN, after=self._read):
+        said: dict[str, GameWorld] = {}
+        for event in self._store.events(BEGUN, SET, after=self._read):
             self._read = event.seq
             game = str(event.body.get("game"))
             world = game_world(event.body.get("world"))
+            if event.kind == SET:
+                said |= {game: world} if world is not None else {}
+                continue
             self._worlds[game] = world or SIMULATED
             if world is None and "world" not in event.body:
                 unmarked[game] = event
         if unmarked:
             self._worlds.update(_told_by_time(self._store, unmarked))
+        self._worlds.update(said)
         return self._worlds
+
+    def set(self, game: str, world: GameWorld, by: str = "") -> None:
+        """Say in which world a game was played; beliefs are counted anew by that.
+
+        Args:
+            game: its id.
+            world: the world.
+            by: who says so.
+        """
+        if self.all.get(game) != world:
+            self._store.append(SET, {"game": game, "world": world, "by": by})
 
     @property
     def last(self) -> GameWorld:

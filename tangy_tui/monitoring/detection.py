@@ -14,7 +14,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
-from tangy_profiles.robot import Robot
+from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome
 from tangy_tui.interaction.facilitation import Acted, refused
 from tangy_tui.learning.effects import Effects, Mismatch
@@ -24,7 +24,7 @@ OWED_BY_PEOPLE = ("what was asked about", "request")
 no fault of the robot's."""
 
 
-LINK, AWAITS_SECONDS = "link", 0.1  # s, as long as a scanner's data may be older than the link's
+AWAITS_SECONDS = 0.1  # s, as long as a scanner's data may be older than the link's
 OTHERS, FEWER = "others' requests", "fewer"
 
 

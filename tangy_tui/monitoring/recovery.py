@@ -107,9 +107,8 @@ class Recovery:
 
     def knows(self, diagnosis: Diagnosis, person: str | None) -> bool:
         """Say whether this is a fault that is there already, and not another one."""
-        return any(
-            fault.code == diagnosis.rule.code and fault.person == person for fault in self._there
-        )
+        same = {diagnosis.rule.code, *diagnosis.rule.continues}
+        return any(fault.code in same and fault.person == person for fault in self._there)
 
     def keep(self, diagnosis: Diagnosis, acted: Acted | None, person: str | None) -> list[Event]:
         """Keep a new diagnosis as a fault; a critical one stops the robot before anything else."""

@@ -204,11 +204,13 @@ def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list
 
 def still_there_words(fault: Fault, supervision: Supervision) -> str:
     """Say whether a fault is still there; empty where the devices cannot tell."""
-    rule = supervision.book.rule(fault.code)
+    book, evidence = supervision.book, supervision.devices
+    rule = book.rule(fault.code)
     if rule.fallback or not rule.device:
         return ""
-    evidence = supervision.devices
-    conditions = rule.matched(evidence)
+    known_better = (one for one in book.rules if fault.code in one.continues)
+    rules = (*known_better, rule)
+    conditions = next(filter(None, (one.matched(evidence) for one in rules)), None)
     if conditions is None:
         keys = "press c to clear." if fault.acknowledged else "press a, and c to clear."
         return f"It is gone now: {keys}"

@@ -71,7 +71,10 @@ async def play_live(
 
 
 async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:
-    """Switch a robot on behind a dialog; None where it was called off, or could not be."""
+    """Switch a robot on behind a dialog; None where it was called off, or could not be.
+
+    It may have come on at the very moment at which it was called off: then it goes off again.
+    """
     from tangy_hw.cancellation import Cancelled
     from tangy_tui.ui.dialogs.message import MessageDialog
     from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
@@ -83,7 +86,8 @@ async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:
     opening = asyncio.ensure_future(asyncio.to_thread(robot.open))
     opening.add_done_callback(_heard)
     try:
-        return await asyncio.shield(opening)
+        world = await asyncio.shield(opening)
+        return None if dialog.called_off else world
     except Cancelled:
         return None
     except TangyError as error:

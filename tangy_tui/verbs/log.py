@@ -1,4 +1,4 @@
-"""`tangy log`: the games that were played, step by step, and the report of a session."""
+"""`tangy log`: the games that were played, step by step, where, and the report of a session."""
 
 from __future__ import annotations
 
@@ -117,6 +117,39 @@ def log_report(
     else:
         for line in session_lines(session):
             print_line(plain(line))
+
+
+@app.command("world")
+def log_world(
+    game: Which,
+    world: Annotated[
+        str, typer.Argument(metavar="WORLD", help="Where it was played: simulated, bench, live.")
+    ],
+    by: Annotated[str, typer.Option("--by", help="Who says so; stands in the log.")] = "",
+    data: Data = None,
+    as_json: Json = False,
+) -> None:
+    """Say where a game was played, if the list of games has that wrong.
+
+    Games of version 0.6.0 and before do not tell that themselves, and it is guessed by their times.
+    What people did counts only for games of the same world.
+    """
+    from tangy_profiles.game_world import read_game_world
+    from tangy_profiles.store import Store
+    from tangy_tui.house import data_folder
+    from tangy_tui.interaction.game_worlds import GameWorlds
+    from tangy_tui.monitoring.games import find_game, read_games
+
+    wanted = read_game_world(world)
+    with Store.open(data_folder(data)) as store:
+        say_notices(store.notices)
+        found = find_game(read_games(store), game)
+        GameWorlds(store).set(found.id, wanted, plain(by))
+        (now,) = (one for one in read_games(store) if one.id == found.id)
+    if as_json:
+        print_json(now.to_json())
+    else:
+        print_line(plain(f"Game {now.number} counts as a {now.world} game."))
 
 
 @contextmanager

@@ -266,6 +266,8 @@ class TestPairing:
         assert check.right("1234-5678", "b")  # another address is another matter
         for number in range(MOST_WRONG_OF_ALL - MOST_WRONG):
             assert not check.right("0", f"many-{number}")
+            if number == 10 * MOST_WRONG:  # some who guess keep nobody else out
+                assert check.right("12345678", "c")
         with pytest.raises(TooManyCodes):
             check.right("12345678", "c")
         now += WINDOW_SECONDS

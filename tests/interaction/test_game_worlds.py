@@ -50,6 +50,19 @@ def test_each_world_has_its_own_beliefs(tmp_path: Path) -> None:
         assert [believed(store, world) for world in GAME_WORLDS] == [(6, 2), (3, 1), (1, 4)]
 
 
+def test_staff_can_say_where_a_game_was_played(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        game(store, "a", None, 5, 1)
+        game(store, "b", LIVE, 2)
+        worlds = GameWorlds(store)
+        worlds.set("a", LIVE, "Ada")
+        worlds.set("b", BENCH)
+        worlds.set("b", BENCH)  # it is that already: nothing is logged
+        assert dict(worlds.all) == dict(GameWorlds(store).all) == {"a": LIVE, "b": BENCH}
+        assert [event.body["world"] for event in store.events("game world set")] == [LIVE, BENCH]
+        assert [believed(store, world) for world in GAME_WORLDS] == [(1, 1), (3, 1), (6, 2)]
+
+
 def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         assert GameWorlds(store).last == SIMULATED

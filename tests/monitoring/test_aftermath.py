@@ -6,7 +6,7 @@ import pytest
 
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Evidence, FaultBook
-from tangy_profiles.health import Health, Reading
+from tangy_profiles.health import ERROR, Health, Reading
 from tangy_profiles.robot import load_robot
 from tangy_sim.body import WELL
 from tangy_tui.house import House
@@ -15,6 +15,7 @@ from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
 from tangy_tui.monitoring.detection import device_evidence
 from tangy_tui.monitoring.diagnosis import diagnose
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.ui.fault_words import still_there_words
 from tests.monitoring.conftest import codes, moves
 
 ROBOT = load_robot()
@@ -128,6 +129,34 @@ def test_a_stall_of_the_robot_is_one_fault_and_over_when_it_is_cleared(
     told = game.clear("Ada") + game.look()
     assert moves(told) == ["cleared"] and game.halted is None
     assert [fault.code for fault in game.faults] == ["link-lost"]
+
+
+def frozen(seconds: float) -> Health:
+    """Return readings of a robot that answers again and tells for how long it stood still."""
+    link = Reading("link", 0.0, ERROR, {"frozen": seconds})
+    return tuple(link if r.device == "link" else r for r in WELL)
+
+
+def test_a_robot_that_was_frozen_unnoticed_is_told_as_that_and_not_as_a_lost_link(
+    game: Supervision, robot: Robot
+) -> None:
+    robot.readings = frozen(LONG)
+    assert codes(game.look()) == ["control-frozen"]
+    assert game.halted is not None and "stood still" in game.halted.console
+
+
+def test_a_silence_that_was_a_freeze_is_the_same_fault_known_better(
+    game: Supervision, robot: Robot
+) -> None:
+    robot.readings = silent(*ROBOT.devices)
+    told = game.look()
+    robot.readings = frozen(LONG)
+    assert codes(told + game.look()) == ["link-lost"]
+    assert game.halted is not None
+    assert "stood still: 4" in still_there_words(game.halted, game)
+    robot.readings = WELL
+    game.acknowledge("Ada")
+    assert moves(game.clear("Ada") + game.look()) == ["cleared"]
 
 
 def test_what_has_not_come_back_when_staff_clear_the_cause_halts_the_robot_again(

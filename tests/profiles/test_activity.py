@@ -78,6 +78,17 @@ def test_an_action_is_a_posture_a_speech_an_image_a_place_and_a_strategy(
     assert activity.action(behaviour, None, None).strategy == activity.plain_strategy == "neutral"
 
 
+def test_strategies_that_press_people_are_known_where_a_file_does_not_name_them(
+    tmp_path: Path, activity: Activity
+) -> None:
+    (line,) = [line for line in SHIPPED.splitlines() if line.startswith("pressing_strategies")]
+    quiet = read_activity(written(tmp_path, SHIPPED.replace(line, "")))
+    assert quiet.pressing == activity.pressing == ("scarcity",)
+    said = SHIPPED.replace(line, "pressing_strategies = []")
+    none = read_activity(written(tmp_path, said))
+    assert none.pressing == ()
+
+
 def test_every_speech_and_screen_can_be_filled_in(activity: Activity, lanterns: Activity) -> None:
     for one in (activity, lanterns):
         for behaviour in one.behaviours.values():

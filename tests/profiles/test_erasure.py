@@ -27,6 +27,8 @@ ROSA = NameEraser(["Rosa"], "user2")
         ("Anne-Marie", "go to anne marie", "go to user2"),
         ("Mary Ann", "Mary, Ann and Mary  Ann", "Mary, Ann and user2"),
         ("José", "go to jose, Jose\u0301 or JOSÉ", "go to user2, user2 or user2"),
+        ("Élise Müller", "Elise Müller, Élise Muller, elise mueller", "user2, user2, user2"),
+        ("Søren Weiß", "Soren Weiß, SÖREN Weiss, soeren weiss", "user2, SÖREN Weiss, user2"),
         ("O'Brien", "O&#x27;Brien, O\u2019Brien, obrien", "user2, user2, user2"),
         ("Zoë", '{"a": "Zo\\u00eb"} zo%C3%AB', '{"a": "user2"} user2'),
         ("田中", "田中さん", "user2さん"),

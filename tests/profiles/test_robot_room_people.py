@@ -10,6 +10,7 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.fault_file import load_faults
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import Point, load_room
@@ -84,6 +85,18 @@ def test_a_mistake_in_a_body_is_one_line(
         load_robot(str(changed(tmp_path, ROBOT, old, new)))
     for words in ("mine.toml: ", *said):
         assert words in str(caught.value)
+
+
+def test_every_robot_has_a_link_that_tells_when_its_program_stood_still(tmp_path: Path) -> None:
+    told = """[[devices]]
+name = "link"
+label = "link to the robot"
+stale_after = 0.25
+"""
+    without = load_robot(str(changed(tmp_path, ROBOT, told, "")))
+    assert without.devices["link"] == load_robot().devices["link"]
+    assert "frozen" in without.devices["link"].facts
+    assert load_faults(without).rule("control-frozen").critical
 
 
 def test_an_unknown_robot_or_room_is_refused_with_the_nearest() -> None:

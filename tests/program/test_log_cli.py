@@ -61,6 +61,15 @@ def test_the_list_has_every_game_in_order(tangy: Tangy, played: Path) -> None:
     assert all(len(line) <= 80 for line in shown.splitlines())
 
 
+def test_staff_say_where_a_game_was_played(tangy: Tangy, played: Path) -> None:
+    done = tangy("log", "world", 2, "bench", "--by", "Ada", "--data", played)
+    assert (done.returncode, done.stdout) == (0, "Game 2 counts as a bench game.\n")
+    games = json.loads(tangy("log", "list", "--json", "--data", played).stdout)
+    assert [game["world"] for game in games] == ["simulated", "bench", "simulated"]
+    wrong = tangy("log", "world", 2, "benhc", "--data", played)
+    assert (wrong.returncode, "did you mean 'bench'?" in wrong.stderr) == (2, True)
+
+
 def test_an_empty_folder_has_no_games(tangy: Tangy, tmp_path: Path) -> None:
     done = tangy("log", "list", "--data", tmp_path / "none")
     assert (done.returncode, "tangy play" in done.stdout) == (0, True)

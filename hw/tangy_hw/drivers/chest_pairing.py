@@ -19,9 +19,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-DIGITS = 8  # of a code: a hundred million of them, at twenty a minute
+DIGITS = 8  # of a code: at 500 a minute, all of them take months of trying
 KEY_BYTES = 32
-MOST_WRONG, MOST_WRONG_OF_ALL = 5, 20  # codes, from one address and from all, in a window
+MOST_WRONG, MOST_WRONG_OF_ALL = 5, 500  # codes, from one address and from all, in a window
 WINDOW_SECONDS = 60.0
 MOST_ADDRESSES = 256  # whose wrong codes are remembered
 FILE = "tablets.json"

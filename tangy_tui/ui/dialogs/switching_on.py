@@ -35,7 +35,8 @@ class SwitchingOnDialog(Dialog[None]):
         super().__init__(None)
         self._title = clean(title)
         self._call_off = call_off
-        self._called_off = False
+        self.called_off = False
+        """Whether somebody wants it left off."""
         self._shown = asyncio.Event()
 
     def compose(self) -> ComposeResult:
@@ -60,8 +61,8 @@ class SwitchingOnDialog(Dialog[None]):
 
     def action_call_off(self) -> None:
         """Leave the robot off."""
+        self.called_off = True
         self._call_off()
-        self._called_off = True
         for text in self.query(Static):
             text.update(self._text())
 
@@ -71,7 +72,7 @@ class SwitchingOnDialog(Dialog[None]):
 
     def _text(self) -> Content:
         head = (f"Switching {self._title} on ...", "bold")
-        if self._called_off:
+        if self.called_off:
             return Content.assemble(head, "\n\n", CALLED_OFF)
         return Content.assemble(
             head, "\n\n", TELLS, "\n\n", ("ESC", "$success bold"), "  leave it off"
