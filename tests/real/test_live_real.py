@@ -139,7 +139,7 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
         finally:
             os.kill(robot, signal.SIGCONT)
         # it answers again, and says that it was frozen: that stands until staff have seen to it
-        terminal.until("own program stood still")
+        terminal.until("program stood still")
         assert "Also wrong" not in terminal.text
         terminal.settle()
         terminal.type("a")
