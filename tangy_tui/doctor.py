@@ -14,18 +14,18 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tangy_hw.audio.arecord import list_microphones
+from tangy_hw.audio.player import examine_output
+from tangy_hw.audio.synthesis import examine_voice
+from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.camera_devices import list_cameras
-from tangy_hw.sound.arecord import list_microphones
-from tangy_hw.sound.player import examine_output
-from tangy_hw.sound.synthesis import examine_voice
-from tangy_hw.sound.wav import SoundError
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.log_check import log_problems
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import Sources
+    from tangy_hw.perception.camera_hub import Sources
     from tangy_profiles.activity import Activity
     from tangy_profiles.robot import Robot
 
@@ -85,7 +85,7 @@ def examine_robot(
         folder: the data folder, which knows the tablets that are paired.
     """
     from tangy_hw.drivers.chest_pairing import keep_pairing
-    from tangy_hw.trial import try_robot
+    from tangy_hw.robot_process.self_test import try_robot
 
     pairing = {}
     if folder is not None and any(driver.kind == "page" for driver in robot.drivers.values()):

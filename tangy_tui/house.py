@@ -365,7 +365,7 @@ class House:
 
 def _forget_spoken() -> None:
     """Empty the cache of spoken lines, if there is one; a name is not kept back by it."""
-    from tangy_hw.sound.synthesis import Synthesiser, VoiceError, cache_folder
+    from tangy_hw.audio.synthesis import Synthesiser, VoiceError, cache_folder
 
     folder = cache_folder()
     with suppress(OSError, VoiceError):

@@ -14,7 +14,7 @@ from tangy_profiles.robot import Device, Robot
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
     from tangy_hw.drivers.camera_state import Sight
-    from tangy_hw.sensors import CardSight
+    from tangy_hw.perception.camera_hub import CardSight
 
 CAMERA_STATES = {
     "OPENING": "no picture yet",
@@ -39,8 +39,7 @@ Clock = Callable[[], float]
 
 
 class Sensing(AbstractAsyncContextManager[Any, Any], Protocol):
-    """A robot's cameras, as a screen shows them: our own (`tangy_hw.sensors`), or those of the
-    robot process.
+    """A robot's cameras, as a screen shows them: our own, or those of the robot process.
 
     They are open within `async with`, and cards are read within `reading_cards`.
     """

@@ -49,7 +49,7 @@ def forget_person(
     Raises:
         TangyError: some of it cannot be deleted.
     """
-    from tangy_hw.perception.faces.keeping import forget_face
+    from tangy_hw.perception.faces.face_store import forget_face
 
     eraser = name_eraser(store, activity, people, person, also)
     files = erase_from_files(store.folder, eraser)

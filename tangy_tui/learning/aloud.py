@@ -18,8 +18,8 @@ async def hear(phones: str, preference: VoicePreference | None = None, sink: str
     Raises:
         TangyError: espeak-ng is not installed, or no sound comes out here; one sentence.
     """
-    from tangy_hw.sound.player import open_player
-    from tangy_hw.sound.synthesis import USUAL, Synthesiser
+    from tangy_hw.audio.player import open_player
+    from tangy_hw.audio.synthesis import USUAL, Synthesiser
 
     with TemporaryDirectory(prefix="tangy-") as folder:
         synthesiser = Synthesiser(Path(folder))

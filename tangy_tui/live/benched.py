@@ -15,8 +15,8 @@ from math import hypot
 from random import Random
 from typing import Any
 
-from tangy_hw.devices import DeviceError
-from tangy_hw.world import DRIVES, LiveWorld
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.live_world import DRIVES, LiveWorld
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import BENCH, GameWorld

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from tangy_hw.card_views import CardViews
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
+from tangy_hw.robot_client.card_observations import CardViews
 from tangy_tui.interaction.facilitation import GameBegun
 from tangy_tui.monitoring.supervision import Event
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.cancellation import Cancellation
-from tangy_hw.devices import DeviceError
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.world import FACING, PACE_SECONDS, LiveWorld
 from tangy_profiles.health import Health
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
@@ -176,9 +176,9 @@ def open_robot(
             "try --bench, or name them as docs/robots.md tells."
         )
     from tangy_hw.drivers.chest_pairing import keep_pairing
-    from tangy_hw.perception.faces.keeping import read_faces
+    from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.reader import open_reader
-    from tangy_hw.perception.requests.naming import requests_named
+    from tangy_hw.perception.requests.source_names import requests_named
 
     cancellation = cancellation or Cancellation()
     name, named = requests_named(house.robot)

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.live.benched import BenchedWorld

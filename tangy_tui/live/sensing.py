@@ -10,11 +10,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.camera import Frame
 from tangy_hw.drivers.camera_state import Sight
-from tangy_hw.robot_link import RobotLink
-from tangy_hw.sensors import CARDS, CardSight, SeenCard
+from tangy_hw.perception.camera_hub import CARDS, CardSight, SeenCard
+from tangy_hw.robot_client.client import RobotLink
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import Health
 from tangy_profiles.robot import Robot

@@ -13,7 +13,7 @@ from tangy_hw.cancellation import Cancellation
 from tangy_tui.live.opening import Opening
 
 if TYPE_CHECKING:
-    from tangy_hw.world import LiveWorld
+    from tangy_hw.robot_client.live_world import LiveWorld
 
 ENDING = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 """By which a person or a system ends a program."""

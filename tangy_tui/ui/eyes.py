@@ -10,7 +10,7 @@ from tangy_profiles.health import Health
 from tangy_tui.house import House
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import Sensors
+    from tangy_hw.perception.camera_hub import Sensors
 
 FIRST_SECONDS = 5.0
 """For which a game waits at most for the first pictures of its cameras."""
@@ -38,7 +38,7 @@ class Eyes:
             TangyError: the robot's profile names a source that is none.
         """
         if self._sensors is None:
-            from tangy_hw.sensors import sensors_of
+            from tangy_hw.perception.camera_hub import sensors_of
 
             house = self._house
             self._sensors = sensors_of(house.robot, house.activity.deck, house.store.folder)

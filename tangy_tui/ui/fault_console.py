@@ -15,7 +15,7 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.faulty import FaultyWorld
 from tangy_sim.injection import KINDS

@@ -10,7 +10,7 @@ from textual.constants import ESCAPE_DELAY
 from tangy_profiles.errors import TangyError
 
 if TYPE_CHECKING:
-    from tangy_hw.world import LiveWorld
+    from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_tui.learning.policy import Policy
     from tangy_tui.live.opening import Opening
     from tangy_tui.live.switching_on import SwitchingOn

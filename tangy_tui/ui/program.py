@@ -22,7 +22,7 @@ from tangy_tui.ui.sounding import SoundingApp
 from tangy_tui.ui.storytelling import tell_story_aside
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import Sensors
+    from tangy_hw.perception.camera_hub import Sensors
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
 

@@ -14,7 +14,7 @@ from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import Sensors
+    from tangy_hw.perception.camera_hub import Sensors
     from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.speech.ears import Ears

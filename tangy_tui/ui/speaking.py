@@ -15,7 +15,7 @@ from tangy_profiles.voice import VoicePreference
 from tangy_tui.ui.hearing import Hearing
 
 if TYPE_CHECKING:
-    from tangy_hw.sound.voice import Rendered, Voice
+    from tangy_hw.audio.voice import Rendered, Voice
     from tangy_tui.house import House
 
 GAP = 0.15
@@ -65,9 +65,9 @@ def make_voice(
     activity: Activity, begin: Callable[[], None], end: Callable[[], None], tell: Tell
 ) -> Voice:
     """Make a voice with what this machine has; where no sound can come out, that is told."""
-    from tangy_hw.sound.player import Player, PlayerError, open_player
-    from tangy_hw.sound.synthesis import Synthesiser
-    from tangy_hw.sound.voice import Voice
+    from tangy_hw.audio.player import Player, PlayerError, open_player
+    from tangy_hw.audio.synthesis import Synthesiser
+    from tangy_hw.audio.voice import Voice
 
     synthesiser = Synthesiser()
     player: Player | None = None

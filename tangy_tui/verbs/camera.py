@@ -20,9 +20,9 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
+    from tangy_hw.drivers.camera_recorder import Reader
     from tangy_hw.drivers.camera_source import CameraSource
     from tangy_hw.drivers.camera_state import Sight
-    from tangy_hw.drivers.capturing import Reader
 
 SOURCES = "0 or /dev/video0, http://... or rtsp://..., a video, a picture or a folder of them"
 
@@ -182,7 +182,7 @@ async def _capture(
     tell: bool,
 ) -> None:
     from tangy_hw.drivers.camera import Camera
-    from tangy_hw.drivers.capturing import capture as record
+    from tangy_hw.drivers.camera_recorder import capture as record
 
     async with Camera(source) as camera:
         async for known in record(

@@ -94,7 +94,7 @@ def faces_who(
 @app.command("list")
 def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
     """List whose faces are known, and who agreed to it how."""
-    from tangy_hw.perception.faces.keeping import CONSENT, consented, kept_faces, read_face
+    from tangy_hw.perception.faces.face_store import CONSENT, consented, kept_faces, read_face
 
     with open_house(data, "bingo", MOST_PEOPLE, write=False) as house:
         names, agreed = names_of(house), consented(house.store)
@@ -140,7 +140,7 @@ def faces_forget(
     as_json: Json = False,
 ) -> None:
     """Forget a person's face, and that they agreed; the rest of what is known of them stays."""
-    from tangy_hw.perception.faces.keeping import forget_face
+    from tangy_hw.perception.faces.face_store import forget_face
 
     with open_house(data, "bingo", MOST_PEOPLE) as house:
         known = find_anybody(house, person)
@@ -158,8 +158,8 @@ def knowing(
     data: Path | None, robot: str, *, write: bool = False
 ) -> Iterator[tuple[House, FaceReader, Gallery]]:
     """Open the house, the reader of faces that the robot has, and the faces that are known."""
+    from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.gallery import Gallery
-    from tangy_hw.perception.faces.keeping import read_faces
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_profiles.robot import load_robot
 
@@ -220,8 +220,8 @@ def _enough() -> float:
 
 def _voted(pictures: list[list[Face]], gallery: Gallery) -> dict[str, Any]:
     """Let the frames vote that show one face well."""
-    from tangy_hw.perception.faces.enrolling import one_face
-    from tangy_hw.perception.faces.voting import vote
+    from tangy_hw.perception.faces.enrolment import one_face
+    from tangy_hw.perception.faces.face_votes import vote
 
     matches = []
     problem = ""
@@ -248,8 +248,8 @@ async def _watch(
 ) -> dict[str, Any]:
     """Look at a camera until enough frames with a face could vote, or time is over."""
     from tangy_hw.drivers.camera import Camera
-    from tangy_hw.perception.faces.enrolling import one_face
-    from tangy_hw.perception.faces.voting import FRAMES
+    from tangy_hw.perception.faces.enrolment import one_face
+    from tangy_hw.perception.faces.face_votes import FRAMES
 
     pictures: list[list[Face]] = []
     well = 0

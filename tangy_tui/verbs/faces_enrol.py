@@ -21,7 +21,7 @@ from tangy_tui.verbs.faces import GUEST, SOURCES, Robot, find_anybody, knowing
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_source import CameraSource
-    from tangy_hw.perception.faces.enrolling import Enrolment
+    from tangy_hw.perception.faces.enrolment import Enrolment
     from tangy_hw.perception.faces.gallery import Gallery
     from tangy_profiles.store import Store
     from tangy_tui.house import House
@@ -63,9 +63,9 @@ def faces_enrol(
     the log. Only features are kept, no pictures; `tangy faces forget` deletes them.
     """
     from tangy_hw.drivers.camera_source import find_camera
-    from tangy_hw.perception.faces.enrolling import ADVISED, Enrolment
+    from tangy_hw.perception.faces.enrolment import ADVISED, Enrolment
+    from tangy_hw.perception.faces.face_store import keep_face, read_face
     from tangy_hw.perception.faces.gallery import LEAST
-    from tangy_hw.perception.faces.keeping import keep_face, read_face
 
     found = find_camera(source)
     if not found.live:
@@ -119,7 +119,7 @@ def faces_enrol(
 
 def _find(house: House, wanted: str) -> tuple[Person, bool]:
     """Find who is meant, or make a guest of somebody who is new; say whether they are."""
-    from tangy_hw.perception.faces.keeping import CONSENT
+    from tangy_hw.perception.faces.face_store import CONSENT
 
     called = wanted.strip()
     if folded(called) == FRONT:
@@ -140,7 +140,7 @@ def _agreed(house: House, person: Person, how: str | None) -> str | None:
     Returns:
         How they agreed, "" if they had before; None if they have not.
     """
-    from tangy_hw.perception.faces.keeping import consent, consented
+    from tangy_hw.perception.faces.face_store import consent, consented
 
     store = house.store
     if how is not None:
@@ -189,7 +189,7 @@ def _check_same(enrolment: Enrolment, gallery: Gallery, person: Person) -> None:
 
 def _note(store: Store, person: Person, new: bool, how: str) -> None:
     """Note that a person agreed, and the name of a guest who is new: both, or neither."""
-    from tangy_hw.perception.faces.keeping import consent
+    from tangy_hw.perception.faces.face_store import consent
 
     with store.transaction():
         if new:

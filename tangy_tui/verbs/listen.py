@@ -97,7 +97,7 @@ def _listen(
 
 def _cut_off(file: Path) -> str:
     """Say of a file that ends too early how much of it is heard; "" of others."""
-    from tangy_hw.sound.wav import seconds_cut_off
+    from tangy_hw.audio.wav import seconds_cut_off
 
     missing = seconds_cut_off(file)
     return f"{file}: ends {missing:.1f} s early; what is there was heard." if missing else ""

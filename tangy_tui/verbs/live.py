@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tangy_tui.house import House
     from tangy_tui.monitoring.supervision import Event, Supervision
 
-PACE = 30.0  # as in tangy_hw.world, which is not to be imported here
+PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
 LARGEST_LIST = 100_000  # bytes of a list of faults
 
 
@@ -106,7 +106,7 @@ def live(
     diagnosed, and a critical fault stops the robot until staff clear it. With --mic it listens:
     "stop the robot" stops it at once, and what it asks can be answered by voice.
     """
-    from tangy_hw.perception.requests.naming import read_corners
+    from tangy_hw.perception.requests.source_names import read_corners
     from tangy_tui.inputs import keys_from_terminal
     from tangy_tui.learning.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy

@@ -29,7 +29,7 @@ def doctor(
     findings = examine(data_folder(data))
     wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without
     if robot is not None:
-        from tangy_hw.sensors import camera_sources
+        from tangy_hw.perception.camera_hub import camera_sources
         from tangy_profiles.activity import load_activity
         from tangy_profiles.robot import load_robot
 

@@ -103,7 +103,7 @@ def _of_log(
     path: Path, resolution: float, match: bool, *, tell: bool
 ) -> tuple[OccupancyMap, dict[str, Any]]:
     from tangy_hw.navigation.agreement import TORN, contradicted
-    from tangy_hw.navigation.aligning import aligned
+    from tangy_hw.navigation.alignment import aligned
     from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
     from tangy_hw.navigation.scan_log import read_log
 
@@ -146,7 +146,7 @@ def _written(map_: OccupancyMap, yaml: Path | None, png: Path | None) -> list[st
 
 
 def _show(map_: OccupancyMap, found: dict[str, Any], ascii_only: bool) -> None:
-    from tangy_hw.navigation.drawing import map_lines
+    from tangy_hw.navigation.map_drawing import map_lines
 
     columns = min(shutil.get_terminal_size().columns, 160)
     encoding = (sys.stdout.encoding or "ascii").lower()

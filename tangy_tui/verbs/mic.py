@@ -16,7 +16,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, as_given
 
 if TYPE_CHECKING:
-    from tangy_hw.sound.forwarding import Forwarder
+    from tangy_hw.audio.forwarding import Forwarder
 
 LINUX = "arecord -q -t raw -f S16_LE -r 16000 -c 1 | ssh ROBOT tangy mic"
 MACOS = "rec -q -t raw -b 16 -e signed -r 16000 -c 1 - | ssh ROBOT tangy mic"
@@ -63,9 +63,9 @@ def mic(
 
 def forward(data: Path | None, socket: Path | None) -> None:
     """Hand standard input on until it ends."""
-    from tangy_hw.sound.forwarding import Forwarder, TakenOver
-    from tangy_hw.sound.piped import open_standard_input
-    from tangy_hw.sound.sources import SOCKET_NAME
+    from tangy_hw.audio.forwarding import Forwarder, TakenOver
+    from tangy_hw.audio.piped_source import open_standard_input
+    from tangy_hw.audio.sources import SOCKET_NAME
     from tangy_tui.house import data_folder
 
     if sys.stdin is not None and sys.stdin.isatty():

@@ -13,7 +13,7 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_l
 from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
-    from tangy_hw.sound.source import Source
+    from tangy_hw.audio.source import Source
     from tangy_tui.house import House
     from tangy_tui.learning.commands import Phrasebook
     from tangy_tui.learning.lexicon import Lexicon
@@ -47,7 +47,7 @@ def check(
     The exit status is 1 if too little was understood, so that nothing is stored, and 2 if the
     microphone or the file gives no voice.
     """
-    from tangy_hw.sound.sources import open_source
+    from tangy_hw.audio.sources import open_source
     from tangy_tui.learning.speech.calibration import forget as forget_check
     from tangy_tui.learning.speech.calibration import keep
 

@@ -112,7 +112,7 @@ def voice_sentence(person: Person) -> str:
 
 def _check_voice(wanted: VoicePreference) -> None:
     """Refuse a voice that espeak-ng does not have, where it is installed."""
-    from tangy_hw.sound.synthesis import Synthesiser
+    from tangy_hw.audio.synthesis import Synthesiser
 
     synthesiser = Synthesiser()
     if not synthesiser.reason:

@@ -98,7 +98,7 @@ def play(
     with open_house(data, activity, users, robot=robot) as house:
         need_policy(house.store, house.activity, policy)
         if screen:
-            from tangy_hw.sensors import sensors_of
+            from tangy_hw.perception.camera_hub import sensors_of
             from tangy_tui.ui.run import run_playing
 
             deck, folder = house.activity.deck, house.store.folder

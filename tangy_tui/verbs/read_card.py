@@ -62,7 +62,7 @@ def read_card(
     `tangy read-card DIR/*.jpg --json > DIR/labels.json` and correct what is wrong in it. Or it is
     the "label" of the file that `tangy capture` wrote beside each picture.
     """
-    from tangy_hw.perception.cards.labelled import count_labelled, labelled
+    from tangy_hw.perception.cards.labelled_set import count_labelled, labelled
     from tangy_hw.perception.cards.reader import CardReader
     from tangy_profiles.activity import load_activity
 
@@ -165,7 +165,7 @@ def _draw(
     """Write a picture with what was read on it."""
     import cv2
 
-    from tangy_hw.perception.cards.drawing import draw_reading
+    from tangy_hw.perception.cards.overlay import draw_reading
 
     there = folder / f"{path.stem}-read.png"
     drawn = cv2.imencode(".png", draw_reading(picture, reading, reader.deck))[1].tobytes()

@@ -13,7 +13,7 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.verbs.common import Data, Json, Seed, Users, print_json
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.requests.asking import Ask, RequestSource
+    from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
 
 SOURCES = "buttons, buttons:/dev/input/event5, mqtt://HOST/TOPIC or signs:CAMERA"
 
@@ -41,7 +41,7 @@ def requests(
 
     The status is 0 if the source was there in the end, and 1 if it was not.
     """
-    from tangy_hw.perception.requests.naming import read_corners
+    from tangy_hw.perception.requests.source_names import read_corners
     from tangy_hw.perception.requests.sources import open_requests
     from tangy_profiles.health import OK
     from tangy_profiles.person import load_people

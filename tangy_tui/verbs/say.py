@@ -15,7 +15,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 if TYPE_CHECKING:
-    from tangy_hw.sound.synthesis import Synthesiser
+    from tangy_hw.audio.synthesis import Synthesiser
 
 SINKS = "auto, aplay, pw-play, paplay, afplay or null (silence that takes as long)"
 
@@ -41,9 +41,9 @@ def say(
     stderr, and the status is 0, as a game would go on as well. It is 1 where --out, --voices or a
     --sink other than auto asked for what cannot be had.
     """
-    from tangy_hw.sound.caller import as_called, in_words, marked_up
-    from tangy_hw.sound.player import SINKS
-    from tangy_hw.sound.synthesis import (
+    from tangy_hw.audio.number_reader import as_called, in_words, marked_up
+    from tangy_hw.audio.player import SINKS
+    from tangy_hw.audio.synthesis import (
         USUAL,
         NoSuchVoice,
         Synthesiser,
@@ -114,7 +114,7 @@ def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
 
 def _list(synthesiser: Synthesiser, as_json: bool) -> None:
     """Print the voices there are, and what can be added to each."""
-    from tangy_hw.sound.synthesis import VoiceError
+    from tangy_hw.audio.synthesis import VoiceError
 
     try:
         voices, variants = synthesiser.voices, sorted(synthesiser.variants)
@@ -139,7 +139,7 @@ def _write(wav: Path, out: Path) -> None:
 
 async def _play(wav: Path, sink: str) -> tuple[str, str]:
     """Play a WAV; return on what it was heard, and what went wrong."""
-    from tangy_hw.sound.player import PlayerError, open_player
+    from tangy_hw.audio.player import PlayerError, open_player
 
     try:
         player = open_player(sink)

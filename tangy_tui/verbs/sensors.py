@@ -13,7 +13,7 @@ from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_
 from tangy_tui.verbs.opening import full_screen, open_house
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import Sensors
+    from tangy_hw.perception.camera_hub import Sensors
     from tangy_tui.house import House
     from tangy_tui.sensor_lines import Told
 
@@ -50,7 +50,7 @@ def sensors(
 
     By lines the status is 0 if all cameras that have a source work, and 1 if one does not.
     """
-    from tangy_hw.sensors import sensors_of
+    from tangy_hw.perception.camera_hub import sensors_of
 
     screen = full_screen() and not (plain_lines or as_json)
     with open_house(data, activity, 4, write=False, robot=robot) as house:

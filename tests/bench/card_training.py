@@ -25,6 +25,7 @@ from scipy.optimize import minimize_scalar
 
 from tangy_hw.perception.cards import classifier as shipped
 from tangy_hw.perception.cards import context
+from tangy_hw.perception.cards.card_detection import find_cards
 from tangy_hw.perception.cards.classifier import (
     CLASSES,
     HIDDEN,
@@ -39,8 +40,7 @@ from tangy_hw.perception.cards.classifier import (
     turned,
 )
 from tangy_hw.perception.cards.features import NAMES, SEEN, SPOTS, features_of
-from tangy_hw.perception.cards.locating import find_cards
-from tangy_hw.perception.cards.rectifying import flatten
+from tangy_hw.perception.cards.rectification import flatten
 from tangy_profiles.card_face import numbers_of
 from tangy_sim.card_frames import CardCamera, Frame
 from tests.bench.card_kinds import KINDS

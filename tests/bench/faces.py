@@ -23,10 +23,10 @@ from typing import Any
 import cv2
 import numpy as np
 
-from tangy_hw.perception.faces.enrolling import one_face
+from tangy_hw.perception.faces.enrolment import one_face
+from tangy_hw.perception.faces.face_votes import vote
 from tangy_hw.perception.faces.gallery import Gallery, Match
 from tangy_hw.perception.faces.reader import HaarReader
-from tangy_hw.perception.faces.voting import vote
 
 LEAST = 15
 VOTES = 3

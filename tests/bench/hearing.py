@@ -26,7 +26,7 @@ from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tangy_hw.sound.voice import Voice
+    from tangy_hw.audio.voice import Voice
     from tangy_profiles.activity import Activity
 
 SENTENCES = ("greet everyone", "call the next number", "ask him to move the card closer")
@@ -132,9 +132,9 @@ async def gaps(seconds: float) -> tuple[float, float, float]:
 
 def be_the_child(folder: Path) -> int:
     """Show the teaching screen, measure, and leave."""
-    from tangy_hw.sound.player import open_player
-    from tangy_hw.sound.synthesis import Synthesiser
-    from tangy_hw.sound.voice import Voice
+    from tangy_hw.audio.player import open_player
+    from tangy_hw.audio.synthesis import Synthesiser
+    from tangy_hw.audio.voice import Voice
     from tangy_profiles.voice import VoicePreference
     from tangy_tui.house import House
     from tangy_tui.learning.speech.ears import Ears

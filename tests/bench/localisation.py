@@ -21,13 +21,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tangy_hw.devices import Pose, Scan
-from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.localisation import Localisation
 from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.poses import HERE, between, compose, wrap
 from tangy_hw.navigation.scan_log import LoggedScan, read_log
+from tangy_hw.navigation.slip_detection import Disagreement
 
 FOLDER = "TANGY_LASER_LOG"
 AROUND = 1  # steps before and after: their corrected sum says whether it was driven backwards

@@ -18,7 +18,7 @@ from statistics import median
 import numpy as np
 from numpy.random import Generator
 
-from tangy_hw.devices import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.poses import wrap

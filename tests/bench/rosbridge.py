@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from tangy_hw.devices import Pose, Twist
+from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_laser import RosLaser
 from tangy_hw.drivers.ros_messages import pose_message, twist_message

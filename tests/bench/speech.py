@@ -33,7 +33,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.sound.wav import RATE, read_wav
+from tangy_hw.audio.wav import RATE, read_wav
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_profiles.room import load_room

@@ -7,10 +7,10 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tangy_hw.devices import Pose
-from tangy_hw.robot_link import RobotState
+from tangy_hw.device_protocols import Pose
+from tangy_hw.robot_client.client import RobotState
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.stopping import BrokenOff
 from tangy_profiles.activity import load_activity
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.cards import judge

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tangy_hw.body import Body
-from tangy_hw.devices import (
+from tangy_hw.device_protocols import (
     DeviceError,
     Odometry,
     Picture,
@@ -18,6 +17,7 @@ from tangy_hw.devices import (
     Stamped,
     Twist,
 )
+from tangy_hw.robot_process.body import Body
 from tangy_profiles.health import OK, Reading
 
 HERE = Pose(2.0, 1.0, 0.0)

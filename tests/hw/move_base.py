@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tangy_hw.devices import Pose
+from tangy_hw.device_protocols import Pose
 from tangy_hw.drivers.ros_messages import pose_message
 from tangy_sim.wires.rosbridge_server import RosbridgeServer
 

@@ -7,7 +7,7 @@ from math import hypot, pi
 
 import numpy as np
 
-from tangy_hw.devices import STILL, Odometry, Pose, Twist
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Twist
 from tangy_hw.navigation.navigator import Navigator, State
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.poses import wrap

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Pose, Scan, Twist
+from tangy_hw.device_protocols import Pose, Scan, Twist
 from tangy_hw.navigation.occupancy import chair_legs, seat_feet, table_legs
 from tangy_hw.navigation.poses import compose
 from tangy_profiles.room import Room

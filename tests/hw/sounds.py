@@ -7,7 +7,7 @@ import struct
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 
 Samples = NDArray[np.float64]
 

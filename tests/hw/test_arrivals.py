@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_hw.arrivals import FIRST, WINDOW, Arrivals
+from tangy_hw.rate_estimator import FIRST, WINDOW, Arrivals
 
 
 @pytest.mark.parametrize("hertz", [1, 2.5, 10, 40])

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from tangy_hw.perception.cards.classifier import TURNS, load_classifier, turned
 from tangy_hw.perception.cards.context import LOOKS, NAMES, context_of
+from tangy_hw.perception.cards.extent import NAMES as REACHING
+from tangy_hw.perception.cards.extent import same_ways
 from tangy_hw.perception.cards.features import NAMES as FEATURES
 from tangy_hw.perception.cards.features import SEEN, SPOTS
-from tangy_hw.perception.cards.reaching import NAMES as REACHING
-from tangy_hw.perception.cards.reaching import same_ways
 from tangy_hw.perception.cards.reader import CardReader
 from tangy_profiles.activity import Activity
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.camera import Frame as Picture
+from tangy_hw.perception.camera_hub import Sensors
+from tangy_hw.perception.card_and_face_perception import CardSeen, Senses
 from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.cards.reader import CardReader, CardReading
-from tangy_hw.senses import CardSeen, Senses
-from tangy_hw.sensors import Sensors
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.card_face import numbers_of
 from tangy_sim.card_frames import CardCamera, View

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tangy_hw.perception.cards.locating import find_cards
-from tangy_hw.perception.cards.rectifying import Flat, flatten
+from tangy_hw.perception.cards.card_detection import find_cards
+from tangy_hw.perception.cards.rectification import Flat, flatten
 from tangy_hw.perception.cards.synthesis import NAMES, compared
 from tangy_profiles.activity import load_activity
 from tangy_sim.card_chips import Chip

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tangy_hw.perception.cards.locating import project
+from tangy_hw.perception.cards.card_detection import project
 from tangy_hw.perception.cards.reader import NO_TAGS, CardReader
 from tangy_hw.perception.cards.tags import is_printed, tags_in
 from tangy_profiles.activity import Activity

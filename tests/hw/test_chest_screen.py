@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.devices import DeviceError, Picture
+from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tests.hw.chest_pages import ask, paired

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.devices import STILL, Pose, Twist
+from tangy_hw.device_protocols import STILL, Pose, Twist
 from tangy_hw.navigation.clearance import REACH, Seen, guarded, room_ahead, speed_in
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.poses import between

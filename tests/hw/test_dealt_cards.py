@@ -7,8 +7,8 @@ from typing import cast
 import pytest
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt, DealtCards
-from tangy_hw.robot_link import RobotLink
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from tangy_hw.drive_evidence import KEPT_SECONDS, DriveEvidence
-from tangy_hw.navigation.wayfinding import Wayfinder
+from tangy_hw.navigation.navigator_protocol import Wayfinder
+from tangy_hw.robot_process.drive_monitor import KEPT_SECONDS, DriveEvidence
 from tangy_profiles.health import Fact, Reading
 
 

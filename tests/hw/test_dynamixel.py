@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.devices import Arms, DeviceError
+from tangy_hw.device_protocols import Arms, DeviceError
 from tangy_hw.drivers import dynamixel
 from tangy_hw.drivers.dynamixel import DynamixelArms, Servo, servos_of
 from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning, speed

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw import robot as robots
-from tangy_hw.devices import (
+from tangy_hw.device_protocols import (
     STILL,
     DeviceError,
     MachineClock,
@@ -22,14 +21,15 @@ from tangy_hw.devices import (
 )
 from tangy_hw.drivers.ros_navigator import RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_hw.navigation import entrusted
-from tangy_hw.navigation.entrusted import Entrusted
+from tangy_hw.navigation import external_navigator
+from tangy_hw.navigation.external_navigator import Entrusted
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot import LiveRobot
+from tangy_hw.robot_process import controller as robots
+from tangy_hw.robot_process.assembly import wire
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.self_test import try_robot
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.stopping import BrokenOff
-from tangy_hw.trial import try_robot
-from tangy_hw.wiring import wire
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import STALE
 from tangy_profiles.robot import load_robot
@@ -58,7 +58,7 @@ class Living:
 async def living(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Living]:
     monkeypatch.setattr(robots, "BLOCKED_SECONDS", 0.1)
     monkeypatch.setattr(robots, "HAZARD_SECONDS", 0.4)
-    monkeypatch.setattr(entrusted, "AGAIN_SECONDS", 0.1)
+    monkeypatch.setattr(external_navigator, "AGAIN_SECONDS", 0.1)
     server, parts = RosbridgeServer(), ToldBody()
     await server.start()
     bridge = Rosbridge(server.url)
@@ -131,7 +131,7 @@ async def test_a_robot_that_must_not_drive_hands_nothing_over(
 async def test_where_it_finds_no_way_somebody_is_given_the_time_to_clear_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(entrusted, "CLEARING_SECONDS", 0.5)
+    monkeypatch.setattr(external_navigator, "CLEARING_SECONDS", 0.5)
     async with living(monkeypatch) as one:
         going = asyncio.create_task(one.robot.go(GOAL))
         await until(lambda: one.base.goals)

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.audio.player import NullPlayer, Player, PlayerError, ProgramPlayer
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.espeak_voice import SpokenVoice
-from tangy_hw.sound.player import NullPlayer, Player, PlayerError, ProgramPlayer
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.hw.speakers import Clock, Speaker, program

@@ -12,11 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_hw.perception.faces.describing import describe
-from tangy_hw.perception.faces.enrolling import Enrolment, one_face
-from tangy_hw.perception.faces.finding import FaceError, find_faces
-from tangy_hw.perception.faces.gallery import AHEAD, ENOUGH, Gallery, Match, decide
-from tangy_hw.perception.faces.keeping import (
+from tangy_hw.perception.faces.enrolment import Enrolment, one_face
+from tangy_hw.perception.faces.face_detector import FaceError, find_faces
+from tangy_hw.perception.faces.face_embedding import describe
+from tangy_hw.perception.faces.face_store import (
     FOLDER,
     NoConsent,
     consent,
@@ -27,8 +26,9 @@ from tangy_hw.perception.faces.keeping import (
     read_face,
     read_faces,
 )
+from tangy_hw.perception.faces.face_votes import vote
+from tangy_hw.perception.faces.gallery import AHEAD, ENOUGH, Gallery, Match, decide
 from tangy_hw.perception.faces.reader import Face, HaarReader
-from tangy_hw.perception.faces.voting import vote
 from tangy_profiles.store import Store
 from tangy_sim.faces import drawn_face
 
@@ -83,7 +83,7 @@ class TestSeeing:
         grey: Any = cv2.cvtColor(good, cv2.COLOR_BGR2GRAY)
         assert HaarReader().read(good)[0].problem == ""
         dim: Any = cv2.cvtColor(bad, cv2.COLOR_BGR2GRAY)
-        from tangy_hw.perception.faces.describing import align
+        from tangy_hw.perception.faces.face_embedding import align
         from tangy_hw.perception.faces.quality import judge
 
         (found,) = find_faces(grey)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import tangy_profiles
-from tangy_hw.perception.faces.finding import FaceError
+from tangy_hw.perception.faces.face_detector import FaceError
 from tangy_hw.perception.faces.onnx import OnnxReader
 from tangy_hw.perception.faces.reader import HaarReader, open_reader
 from tangy_profiles.errors import ProfileError

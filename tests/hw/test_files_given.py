@@ -14,14 +14,14 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from tangy_hw.audio.wav import read_wav, seconds_cut_off
 from tangy_hw.drivers.camera_grabber import Folder, Over
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_hw.navigation import scan_log
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.scan_log import LogError, read_log
-from tangy_hw.perception.cards.labelled import labelled
+from tangy_hw.perception.cards.labelled_set import labelled
 from tangy_hw.perception.pictures import read_picture
-from tangy_hw.sound.wav import read_wav, seconds_cut_off
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 

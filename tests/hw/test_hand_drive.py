@@ -14,11 +14,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.devices import STILL, Scan, Stamped, Twist
-from tangy_hw.hand_drive import HOLDS_SECONDS, HandDrive
+from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.wheels import Wheels
+from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, HandDrive
+from tangy_hw.robot_process.wheels import Wheels
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import ToldBody
 from tests.hw.ros_links import soon

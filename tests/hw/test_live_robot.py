@@ -11,13 +11,13 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from tangy_hw import performing
-from tangy_hw import robot as robots
-from tangy_hw.devices import STILL, DeviceError, MachineClock, Twist
+from tangy_hw.device_protocols import STILL, DeviceError, MachineClock, Twist
 from tangy_hw.navigation.localisation import Estimate
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot import LiveRobot
-from tangy_hw.stopping import BrokenOff
+from tangy_hw.robot_process import controller as robots
+from tangy_hw.robot_process import performer
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
@@ -65,7 +65,7 @@ class TestStop:
         async with living() as (robot, parts):
             parts.voice.hangs = True
             began = monotonic()
-            with patch.object(performing, "STOP_SECONDS", 0.05):
+            with patch.object(performer, "STOP_SECONDS", 0.05):
                 await soon(robot.stop("enough"))
             assert monotonic() - began < 1 and parts.told[:2] == ["stop", "hold"]
 

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 import pytest
 
-from tangy_hw.devices import Pose
-from tangy_hw.requests_seen import SIGN_SECONDS
-from tangy_hw.robot_link import RobotLink
-from tangy_hw.world import PATIENCES, LiveWorld
+from tangy_hw.device_protocols import Pose
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.help_requests import SIGN_SECONDS
+from tangy_hw.robot_client.live_world import PATIENCES, LiveWorld
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health, Reading
@@ -505,7 +505,7 @@ def test_the_time_for_which_it_stood_still_counts_when_staff_are_done(
 def test_what_was_called_off_and_is_never_answered_is_given_up(
     world: LiveWorld, link: FakeLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tangy_hw.commands.BREAK_SECONDS", 0.0)
+    monkeypatch.setattr("tangy_hw.robot_client.commands.BREAK_SECONDS", 0.0)
     opened(world)
     monkeypatch.setattr(link, "wait", lambda *_: False)
     world.commands.diagnosed = lambda _: {"laser-disconnected": True}

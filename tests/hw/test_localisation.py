@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 import pytest
 
-from tangy_hw.devices import Pose, Scan, Twist
+from tangy_hw.device_protocols import Pose, Scan, Twist
 from tangy_hw.navigation.localisation import LOST, Estimate, Localisation
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST

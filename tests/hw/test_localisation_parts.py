@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_hw.devices import Pose, Twist
-from tangy_hw.navigation.disagreement import Disagreement
+from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.navigation.likelihood import LikelihoodField, thin
-from tangy_hw.navigation.matching import Reference
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.particles import FEWEST, MOST, around, likeliest, move, needed, resample
 from tangy_hw.navigation.poses import between, compose, wrap
+from tangy_hw.navigation.scan_matching import Reference
+from tangy_hw.navigation.slip_detection import Disagreement
 from tangy_profiles.room import load_room
 from tests.hw.raycast import Wheels, driven, look, room_sides, tour
 

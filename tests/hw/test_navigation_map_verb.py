@@ -11,7 +11,7 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
-from tangy_hw.devices import Pose
+from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.poses import compose
 from tangy_profiles.errors import TangyError

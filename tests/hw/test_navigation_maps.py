@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.agreement import TORN, contradicted
-from tangy_hw.navigation.aligning import aligned
-from tangy_hw.navigation.drawing import map_lines
+from tangy_hw.navigation.alignment import aligned
+from tangy_hw.navigation.map_drawing import map_lines
 from tangy_hw.navigation.map_files import MapFileError, read_map, write_map
 from tangy_hw.navigation.mapping import MapError, Placed, map_of_scans, sparse
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap, map_of_room

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from tangy_hw.devices import STILL, Pose
+from tangy_hw.device_protocols import STILL, Pose
 from tests.hw.navigated import FRONT, DrivenRobot, at_seat
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tangy_hw.devices import STILL, Pose
+from tangy_hw.device_protocols import STILL, Pose
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_hw.devices import STILL, Pose, Scan, Twist
+from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import free_ahead
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.occupancy import FREE, map_of_room

@@ -8,8 +8,8 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from tangy_hw.devices import DeviceError
-from tangy_hw.passing_time import AT_REST, ON_THE_WAY, TICK, PassingTime
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_process.control_loop import AT_REST, ON_THE_WAY, TICK, PassingTime
 
 TURNS = 50
 """Turns of the loop in which a time that does not stand still would have come far."""

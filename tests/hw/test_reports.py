@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tangy_hw.devices import MachineClock
-from tangy_hw.drive_evidence import DriveEvidence
-from tangy_hw.driver_kinds import Wiring, open_device
-from tangy_hw.health import Watchdogs
+from tangy_hw.device_protocols import MachineClock
+from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.reports import reports_of
+from tangy_hw.robot_process.device_diagnostics import reports_of
+from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.watchdogs import Watchdogs
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.robot import load_robot

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.perception.requests.asking import RequestError, RequestSource
 from tangy_hw.perception.requests.buttons import EVENT, ButtonBox, Events, find_boxes
+from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
 from tangy_hw.perception.requests.keyboard import Keyboard
 from tangy_hw.perception.requests.mqtt import Topic
 from tangy_hw.perception.requests.sources import open_requests

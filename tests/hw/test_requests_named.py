@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.perception.requests.asking import RequestError
-from tangy_hw.perception.requests.naming import read_corners, requests_named
-from tangy_hw.trial import try_robot
+from tangy_hw.perception.requests.help_request_source import RequestError
+from tangy_hw.perception.requests.source_names import read_corners, requests_named
+from tangy_hw.robot_process.self_test import try_robot
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import Robot, load_robot
 

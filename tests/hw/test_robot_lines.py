@@ -14,17 +14,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw import robot as robots
-from tangy_hw import robot_child
-from tangy_hw.arrivals import FIRST
-from tangy_hw.devices import MachineClock
+from tangy_hw.device_protocols import MachineClock
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.passing_time import TICK
-from tangy_hw.robot import LiveRobot
-from tangy_hw.robot_beat import beat_of
-from tangy_hw.robot_child import RobotProcess
-from tangy_hw.robot_link import RobotState
-from tangy_hw.wiring import Wired
+from tangy_hw.rate_estimator import FIRST
+from tangy_hw.robot_client.client import RobotState
+from tangy_hw.robot_process import controller as robots
+from tangy_hw.robot_process import process
+from tangy_hw.robot_process.assembly import Wired
+from tangy_hw.robot_process.control_loop import TICK
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.heartbeat import beat_of
+from tangy_hw.robot_process.process import RobotProcess
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
 from tests.hw.navigated import MAP
@@ -91,7 +91,7 @@ async def test_stops_are_let_go_by_those_who_asked_for_them() -> None:
 async def test_a_program_that_hangs_has_everything_broken_off() -> None:
     with (
         patch.object(robots, "HAZARD_SECONDS", 0.1),
-        patch.object(robot_child, "SILENT_SECONDS", 0.3),
+        patch.object(process, "SILENT_SECONDS", 0.3),
     ):
         async with spoken() as one:
             await one.take(id=1, do="perform", text="A long line", posture={"head": [0] * 6})

@@ -14,13 +14,13 @@ from typing import Any, cast
 
 import pytest
 
-from tangy_hw import robot_link
 from tangy_hw.cancellation import Cancellation, Cancelled
-from tangy_hw.devices import DeviceError
-from tangy_hw.outbox import Outbox
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client import client
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.stopping import BrokenOff
+from tangy_hw.write_queue import Outbox
 
 SETUP = RobotSetup("tangy", "bingo", ("user1",))
 PIPE = 1 << 16  # bytes that wait in one
@@ -36,7 +36,7 @@ def holds(condition: Callable[[], object], seconds: float = 5.0) -> bool:
 
 
 def linked(monkeypatch: pytest.MonkeyPatch, does: str) -> RobotLink:
-    monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", READY + does))
+    monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", READY + does))
     link = RobotLink(SETUP)
     link.start()
     return link
@@ -98,8 +98,8 @@ class TestHungProcess:
     def test_whoever_stops_it_never_waits_and_it_is_told_no_beats(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(robot_link, "SILENT_SECONDS", 0.1)
-        monkeypatch.setattr(robot_link, "BEAT_SECONDS", 0.005)
+        monkeypatch.setattr(client, "SILENT_SECONDS", 0.1)
+        monkeypatch.setattr(client, "BEAT_SECONDS", 0.005)
         link = linked(monkeypatch, "time.sleep(60)")
         try:
             outbox = cast(Any, link._outbox)
@@ -169,7 +169,7 @@ class TestCalledOff:
         self, monkeypatch: pytest.MonkeyPatch, does: str
     ) -> tuple[RobotLink, Cancellation, Future[None]]:
         """Begin to switch on a robot that never answers, on a thread."""
-        monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", does))
+        monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", does))
         cancellation = Cancellation()
         link = RobotLink(SETUP, cancellation=cancellation)
         done: Future[None] = Future()
@@ -191,7 +191,7 @@ class TestCalledOff:
     def test_nobody_waits_for_it_any_more_and_it_is_ended(
         self, monkeypatch: pytest.MonkeyPatch, does: str
     ) -> None:
-        monkeypatch.setattr(robot_link, "CALLED_OFF_SECONDS", 0.2)
+        monkeypatch.setattr(client, "CALLED_OFF_SECONDS", 0.2)
         link, cancellation, done = self.opening(monkeypatch, does + "time.sleep(60)")
         assert holds(lambda: link.pid is not None)
         process = link._process
@@ -221,7 +221,7 @@ class TestCalledOff:
         assert link.pid is None
 
     def test_one_that_is_on_is_not_called_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(robot_link, "CHILD", (sys.executable, "-c", READY + "time.sleep(60)"))
+        monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", READY + "time.sleep(60)"))
         cancellation = Cancellation()
         link = RobotLink(SETUP, cancellation=cancellation)
         try:

@@ -8,10 +8,10 @@ from typing import Any, cast
 
 import pytest
 
-from tangy_hw import robot_opening
-from tangy_hw.devices import DeviceError
-from tangy_hw.robot_opening import switched_on
-from tangy_hw.wiring import Wired
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_process import startup
+from tangy_hw.robot_process.assembly import Wired
+from tangy_hw.robot_process.startup import switched_on
 
 
 class Slow:
@@ -51,7 +51,7 @@ def armed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
             assert which == signal.ITIMER_REAL
             seconds.append(after)
 
-    monkeypatch.setattr(robot_opening, "signal", Signal)
+    monkeypatch.setattr(startup, "signal", Signal)
     return seconds
 
 
@@ -73,7 +73,7 @@ async def test_a_program_that_has_gone_gets_nothing_switched_on(armed: list[floa
     async with asyncio.timeout(5), opening(robot, lines(b'{"beat":1}', end=True)) as said:
         assert said is None
     assert robot.did in ([], ["begins", "is let go of"])
-    assert armed == [robot_opening.GIVE_UP_SECONDS]
+    assert armed == [startup.GIVE_UP_SECONDS]
 
 
 async def test_a_program_that_goes_meanwhile_has_it_let_go_of(armed: list[float]) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_sim.wires.rosbridge_server import RosbridgeServer
 from tests.hw.ros_links import Raw, done, linked, soon, until

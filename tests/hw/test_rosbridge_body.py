@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.devices import (
+from tangy_hw.device_protocols import (
     Arms,
     DeviceError,
     Voice,

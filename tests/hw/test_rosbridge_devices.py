@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.devices import (
+from tangy_hw.device_protocols import (
     Base,
     DeviceError,
     Laser,

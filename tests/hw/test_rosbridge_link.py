@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from websockets.asyncio.client import connect
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_profiles.health import OK, STALE

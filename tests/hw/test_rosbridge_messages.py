@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.devices import Pose, Twist
+from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.drivers.ros_messages import (
     changed_share,
     heading_of,

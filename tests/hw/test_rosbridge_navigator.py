@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from websockets.asyncio.server import ServerConnection, serve
 
-from tangy_hw.devices import DeviceError, Pose
+from tangy_hw.device_protocols import DeviceError, Pose
 from tangy_hw.drivers.ros_messages import pose_message
 from tangy_hw.drivers.ros_navigator import AGAIN_SECONDS, RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge

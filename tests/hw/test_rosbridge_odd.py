@@ -9,7 +9,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.devices import Pose, Twist
+from tangy_hw.device_protocols import Pose, Twist
 from tangy_hw.drivers.ros_arms import RosArms
 from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_laser import RosLaser

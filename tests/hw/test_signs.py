@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tangy_hw.perception.requests.asking import RequestError
+from tangy_hw.perception.requests.help_request_source import RequestError
 from tangy_hw.perception.requests.signs import Persistence, SignWatcher, TableView
 from tangy_hw.perception.requests.triangles import find_triangles
 from tangy_profiles.room import load_room

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangy_hw.sound.forwarding import SPEED_SECONDS, Forwarder, TakenOver
-from tangy_hw.sound.socket_source import LaptopMicrophone
-from tangy_hw.sound.source import Chunks, Recording, Source
-from tangy_hw.sound.wav import RATE, SoundError
+from tangy_hw.audio.forwarding import SPEED_SECONDS, Forwarder, TakenOver
+from tangy_hw.audio.socket_source import LaptopMicrophone
+from tangy_hw.audio.source import Chunks, Recording, Source
+from tangy_hw.audio.wav import RATE, SoundError
 
 PATIENCE = 20.0
 PIECE = 640

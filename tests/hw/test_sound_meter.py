@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tangy_hw.sound.meter import Meter
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.wav import RATE
 from tests.hw.sounds import pcm, tone
 
 

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound import socket_place
-from tangy_hw.sound.socket_place import connect
-from tangy_hw.sound.socket_source import LISTENING, QUIET, TAKEN, LaptopMicrophone
-from tangy_hw.sound.sources import open_source
-from tangy_hw.sound.wav import RATE, SoundError
+from tangy_hw.audio import socket_place
+from tangy_hw.audio.socket_place import connect
+from tangy_hw.audio.socket_source import LISTENING, QUIET, TAKEN, LaptopMicrophone
+from tangy_hw.audio.sources import open_source
+from tangy_hw.audio.wav import RATE, SoundError
 
 PATIENCE = 20.0
 

@@ -14,12 +14,12 @@ from threading import Thread
 import numpy as np
 import pytest
 
-from tangy_hw.sound.arecord import LocalMicrophone
-from tangy_hw.sound.guess import odd_kind
-from tangy_hw.sound.piped import open_standard_input
-from tangy_hw.sound.source import Source, WholeSamples
-from tangy_hw.sound.sources import open_source
-from tangy_hw.sound.wav import RATE, SoundError
+from tangy_hw.audio.arecord import LocalMicrophone
+from tangy_hw.audio.format_sniffing import odd_kind
+from tangy_hw.audio.piped_source import open_standard_input
+from tangy_hw.audio.source import Source, WholeSamples
+from tangy_hw.audio.sources import open_source
+from tangy_hw.audio.wav import RATE, SoundError
 from tests.hw.sounds import bursts, pcm, tone, wav, written
 
 SOUND = bursts(0.6, 0.6)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.sound.wav import RATE, SoundError, decode_wav, read_wav, seconds_cut_off
+from tangy_hw.audio.wav import RATE, SoundError, decode_wav, read_wav, seconds_cut_off
 from tests.hw.sounds import pcm, tone, wav, written
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangy_hw.trial import Trial, try_robot
+from tangy_hw.robot_process.self_test import Trial, try_robot
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import Robot, load_robot
 from tangy_sim.wires.scip_server import ScipServer

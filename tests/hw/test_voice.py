@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.player import NullPlayer, Player, PlayerError, ProgramPlayer
-from tangy_hw.sound.synthesis import ABSENT, Synthesiser
-from tangy_hw.sound.voice import Voice
+from tangy_hw.audio.player import NullPlayer, Player, PlayerError, ProgramPlayer
+from tangy_hw.audio.synthesis import ABSENT, Synthesiser
+from tangy_hw.audio.voice import Voice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.hw.speakers import Clock, Speaker, program

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.sound.caller import Piece, as_called, calls, in_words, marked_up
+from tangy_hw.audio.number_reader import Piece, as_called, calls, in_words, marked_up
 from tangy_profiles.activity import Activity, load_activity
 
 DECK = load_activity("bingo").deck

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.player import (
+from tangy_hw.audio.player import (
     NullPlayer,
     PlayerError,
     ProgramPlayer,
@@ -101,7 +101,7 @@ async def test_a_player_ends_with_the_program(tmp_path: Path, wav: Path) -> None
     playing = Playing(tmp_path)
     code = (
         "import asyncio, sys; from pathlib import Path\n"
-        "from tangy_hw.sound.player import ProgramPlayer\n"
+        "from tangy_hw.audio.player import ProgramPlayer\n"
         "asyncio.run(ProgramPlayer([(sys.argv[1],)]).play(Path(sys.argv[2])))\n"
     )
     told = tmp_path / "written"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.synthesis import (
+from tangy_hw.audio.synthesis import (
     ABSENT,
     NoSuchVoice,
     Synthesiser,

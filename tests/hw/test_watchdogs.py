@@ -8,7 +8,7 @@ from itertools import count
 
 import pytest
 
-from tangy_hw.health import BLIND, DARK, Watchdogs
+from tangy_hw.watchdogs import BLIND, DARK, Watchdogs
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.robot import load_robot

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_tui.learning.speech.evidence import Evidence, Expecting, Wanted
 from tangy_tui.learning.speech.understanding import NO, YES
 

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.sound.meter import Meter
-from tangy_hw.sound.source import Chunks, Recording, Source
-from tangy_hw.sound.wav import RATE, SoundError
+from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.source import Chunks, Recording, Source
+from tangy_hw.audio.wav import RATE, SoundError
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person

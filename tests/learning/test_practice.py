@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.wav import read_wav
+from tangy_hw.audio.wav import read_wav
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.sound.wav import RATE, SoundError
+from tangy_hw.audio.wav import RATE, SoundError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.learning.commands import Phrasebook

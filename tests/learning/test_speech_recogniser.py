@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_profiles.worker_log import KEPT, MOST
 from tangy_tui.learning.speech import recogniser as room
 from tangy_tui.learning.speech.evidence import LONGEST, Evidence, Wanted

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_tui.learning.speech.cleaning import cleaned
 from tangy_tui.learning.speech.endpointing import MARGIN, WINDOW, Endpoints, pieces
 from tests.hw.sounds import pcm

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from tangy_hw.robot_link import RobotLink
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.live.playing import LiveGames

@@ -8,9 +8,9 @@ from dataclasses import replace
 from time import sleep
 from typing import TYPE_CHECKING, Any, cast
 
-from tangy_hw.robot_link import RobotLink
-from tangy_hw.stopping import STAFF
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.health import OK, Fact, Reading
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy

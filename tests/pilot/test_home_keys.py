@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy

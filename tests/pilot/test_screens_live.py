@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 from textual.app import App
 
-from tangy_hw.devices import Pose
-from tangy_hw.world import LiveWorld
+from tangy_hw.device_protocols import Pose
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.health import OK, Reading
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy

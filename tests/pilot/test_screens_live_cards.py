@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from tangy_hw.stopping import FAULT, STAFF
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_process.stop_latch import FAULT, STAFF
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import ERROR, STALE
 from tangy_tui.house import House

@@ -14,7 +14,7 @@ import pytest
 from textual.app import App
 
 from tangy_hw.drivers.camera_state import Sight
-from tangy_hw.sensors import CardSight, SeenCard
+from tangy_hw.perception.camera_hub import CardSight, SeenCard
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
 from tangy_tui.house import House

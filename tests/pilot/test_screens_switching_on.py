@@ -11,8 +11,8 @@ import pytest
 from textual.app import App
 
 from tangy_hw.cancellation import Cancellation
-from tangy_hw.devices import DeviceError
-from tangy_hw.world import LiveWorld
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog

@@ -14,8 +14,8 @@ import pytest
 
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_devices import list_cameras
+from tangy_hw.drivers.camera_recorder import capture
 from tangy_hw.drivers.camera_source import CameraError, find_camera
-from tangy_hw.drivers.capturing import capture
 from tangy_profiles.robot import load_robot
 from tests.hw.pictures import Image, room, seen
 from tests.real.camera_server import CameraServer

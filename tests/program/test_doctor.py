@@ -11,9 +11,9 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from tangy_hw.audio.arecord import list_microphones
+from tangy_hw.audio.wav import SoundError
 from tangy_hw.drivers.chest_pairing import keep_pairing
-from tangy_hw.sound.arecord import list_microphones
-from tangy_hw.sound.wav import SoundError
 from tangy_profiles import log_file
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import load_robot

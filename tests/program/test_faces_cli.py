@@ -36,7 +36,7 @@ def album(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def _known(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from tangy_hw.perception.faces.keeping import consent, keep_face
+    from tangy_hw.perception.faces.face_store import consent, keep_face
     from tangy_hw.perception.faces.reader import HaarReader
 
     folder, reader = tmp_path_factory.mktemp("known") / "data", HaarReader()

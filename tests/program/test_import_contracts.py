@@ -54,11 +54,15 @@ def test_the_sources_as_they_are_keep_every_contract(copy: Path) -> None:
     ("module", "line", "named"),
     [
         ("tangy_tui/scoreboard.py", "import textual", "tangy_tui.scoreboard"),
-        ("hw/tangy_hw/robot_link.py", "import numpy", "tangy_hw.robot_link -> numpy"),
+        (
+            "hw/tangy_hw/robot_client/client.py",
+            "import numpy",
+            "tangy_hw.robot_client.client -> numpy",
+        ),
         (
             "hw/tangy_hw/drivers/scip_codec.py",
-            "import tangy_hw.world",
-            "tangy_hw.drivers.scip_codec -> tangy_hw.world",
+            "import tangy_hw.robot_client.live_world",
+            "tangy_hw.drivers.scip_codec -> tangy_hw.robot_client.live_world",
         ),
         (
             "tangy_tui/ui/widgets/rows.py",

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.sound.meter import NO_SOUND_SECONDS
+from tangy_hw.audio.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
 from tangy_tui.house import House, data_folder
 from tangy_tui.learning.speech import listening

@@ -13,7 +13,7 @@ from typing import cast
 import pytest
 
 from tangy_hw.cancellation import Cancellation, Cancelled
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.live import bench
 from tangy_tui.live.bench import Bench
 from tangy_tui.live.switching_on import SwitchingOn, switched_on

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_client.client import RobotLink
 from tangy_tui.live.bench import Bench
 from tests.real.bench_setup import setup_on
 from tests.support.terminal import TANGY, Terminal, Tmux

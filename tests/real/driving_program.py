@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import sys
 
-from tangy_hw.devices import DeviceError
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_setup import RobotSetup
 
 LEFT, RIGHT = [2.0, 3.0, 1.57], [8.0, 3.0, 1.57]

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 
 if TYPE_CHECKING:
     from tests.support.terminal import Terminal

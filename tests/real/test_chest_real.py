@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import pytest
 
-from tangy_hw.devices import Picture
+from tangy_hw.device_protocols import Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import keep_pairing

@@ -118,7 +118,8 @@ def robot_process_of(program: int) -> int:
         text=True,
     )
     rows = (line.split(None, 2) for line in listed.stdout.splitlines()[1:])
-    (found,) = (int(pid) for pid, of, args in rows if int(of) == program and "robot_child" in args)
+    mine = ((int(pid), args) for pid, of, args in rows if int(of) == program)
+    (found,) = (pid for pid, args in mine if "tangy_hw.robot_process" in args)
     return found
 
 

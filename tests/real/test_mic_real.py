@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tangy_hw.sound.sources import SOCKET_NAME, open_source
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.sources import SOCKET_NAME, open_source
+from tangy_hw.audio.wav import RATE
 from tests.hw.sounds import wav
 from tests.support.terminal import PATIENCE, TANGY, Terminal
 
@@ -29,7 +29,7 @@ QUIET = bytes(2 * RATE)  # a second, where a stream has ended
 LISTEN = """
 import asyncio, sys
 from pathlib import Path
-from tangy_hw.sound.sources import open_source
+from tangy_hw.audio.sources import open_source
 
 async def listen():
     source = open_source("socket", folder=Path(sys.argv[1]))

@@ -11,7 +11,7 @@ from subprocess import CompletedProcess
 import numpy as np
 import pytest
 
-from tangy_hw.sound.wav import RATE, read_wav
+from tangy_hw.audio.wav import RATE, read_wav
 from tangy_profiles.activity import Activity
 from tangy_profiles.person import Person
 from tangy_profiles.room import load_room

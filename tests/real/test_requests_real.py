@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import pytest
 
-from tangy_hw.perception.requests.asking import RequestError, RequestSource
+from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
 from tangy_hw.perception.requests.mqtt import Topic
 from tangy_hw.perception.requests.signs import Signs
 from tangy_hw.perception.requests.sources import open_requests

@@ -19,11 +19,11 @@ from typing import Any
 
 import pytest
 
-from tangy_hw.devices import DeviceError
-from tangy_hw.program_pipe import LONGEST_LINE
-from tangy_hw.robot import HAZARD_SECONDS
-from tangy_hw.robot_link import CHILD, RobotLink
-from tangy_hw.stopping import BrokenOff
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.client import CHILD, RobotLink
+from tangy_hw.robot_process.controller import HAZARD_SECONDS
+from tangy_hw.robot_process.program_pipe import LONGEST_LINE
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_tui.live.bench import Bench
 from tests.real.bench_setup import setup_on
 

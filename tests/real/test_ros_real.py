@@ -29,7 +29,7 @@ from typing import Any
 import pytest
 import websockets
 
-from tangy_hw.devices import DeviceError, Pose, Twist
+from tangy_hw.device_protocols import DeviceError, Pose, Twist
 from tangy_hw.drivers.ros_arms import RosArms
 from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_laser import RosLaser

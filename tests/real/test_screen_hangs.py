@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from tangy_hw.robot_link import HANGS_SECONDS, RobotLink
-from tangy_hw.stopping import BrokenOff
+from tangy_hw.robot_client.client import HANGS_SECONDS, RobotLink
+from tangy_hw.robot_process.stop_latch import BrokenOff
 from tangy_tui.live.bench import Bench
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from tangy_hw.robot_link import RobotLink
+from tangy_hw.robot_client.client import RobotLink
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import load_robot
 from tangy_tui.live.bench import Bench

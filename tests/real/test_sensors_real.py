@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.camera_source import CameraError
-from tangy_hw.sensors import Sensors, camera_sources
+from tangy_hw.perception.camera_hub import Sensors, camera_sources
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.robot import load_robot

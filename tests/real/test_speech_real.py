@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 
 import pytest
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_tui.learning.commands import Phrasebook
@@ -477,7 +477,7 @@ class TestWorker:
         code = (
             "import asyncio, os, sys\n"
             "from pathlib import Path\n"
-            "from tangy_hw.sound.wav import read_wav\n"
+            "from tangy_hw.audio.wav import read_wav\n"
             "from tangy_tui.learning.speech.evidence import Wanted\n"
             "from tangy_tui.learning.speech.recogniser import Recogniser\n"
             "async def run():\n"

@@ -16,7 +16,7 @@ import pytest
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tests.real.microphone import Laptop
 from tests.real.voices import Voices
 from tests.support.processes import Family

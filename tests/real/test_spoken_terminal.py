@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tests.hw.sounds import wav
 from tests.real.microphone import Laptop
 from tests.real.voices import Voices

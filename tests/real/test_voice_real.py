@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tangy_hw.sound.caller import as_called, marked_up
-from tangy_hw.sound.player import PlayerError, examine_output, open_player
-from tangy_hw.sound.synthesis import NoSuchVoice, Synthesiser, examine_voice, wav_seconds
-from tangy_hw.sound.voice import Voice
+from tangy_hw.audio.number_reader import as_called, marked_up
+from tangy_hw.audio.player import PlayerError, examine_output, open_player
+from tangy_hw.audio.synthesis import NoSuchVoice, Synthesiser, examine_voice, wav_seconds
+from tangy_hw.audio.voice import Voice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.real.conftest import OpenTerminal

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangy_hw.sound.wav import RATE, read_wav
+from tangy_hw.audio.wav import RATE, read_wav
 
 FESTIVAL = "kal_diphone"
 NOISES = {  # what sox makes of nothing

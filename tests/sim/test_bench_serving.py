@@ -15,14 +15,14 @@ import cv2
 import numpy as np
 import pytest
 
-from tangy_hw.bench_clock import SteppedClock
-from tangy_hw.devices import DeviceError, Twist
+from tangy_hw.device_protocols import DeviceError, Twist
 from tangy_hw.drivers.ros_arms import RosArms
 from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_status import RosDiagnostics, RosStopButton
 from tangy_hw.drivers.ros_voice import RosVoice
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.scip import ScipLaser
+from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_profiles.health import ERROR
 from tangy_sim.bench.__main__ import main
 from tangy_sim.bench.lidar import Lidar

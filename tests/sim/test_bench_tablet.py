@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from tangy_hw.devices import Picture
+from tangy_hw.device_protocols import Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import Pairing

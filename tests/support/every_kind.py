@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tangy_hw.perception.faces import keeping
+from tangy_hw.perception.faces import face_store
 from tangy_profiles.events import BODIES
 from tangy_profiles.persuading import Persuading
 from tangy_profiles.store import LOST, Store
@@ -102,8 +102,8 @@ def _tell_of_people(house: House) -> None:
     feedback.choose_method(rosa.id, Persuading("bayes-ucb", "people", 0.98, "day"))
     feedback.undo()
     feedback.choose_method(rosa.id, Persuading("bayes-ucb"))
-    keeping.consent(store, rosa.id, True, "in writing")
-    keeping.forget_face(store, rosa.id)
+    face_store.consent(store, rosa.id, True, "in writing")
+    face_store.forget_face(store, rosa.id)
     store.forget(house.people[1].id)
     house.rename(house.people[1], "Bea")
     store.forget(house.people[1].id)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from tangy_hw.arrivals import Arrivals
 from tangy_hw.drivers.camera_look import Look
+from tangy_hw.rate_estimator import Arrivals
 from tangy_profiles.health import OK as WELL
 from tangy_profiles.health import STALE, WARN, Fact, Reading
 

@@ -17,9 +17,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from tangy_hw.arrivals import Arrivals
-from tangy_hw.devices import DeviceError, Picture
+from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.drivers.chest_pairing import Pairing
+from tangy_hw.rate_estimator import Arrivals
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
 

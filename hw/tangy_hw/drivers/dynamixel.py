@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning
 from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
 from tangy_hw.drivers.ros_newest import Newest

@@ -10,7 +10,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 
 TICKS = 4096  # of a turn
 DRIVE_MODE, TORQUE, ERRORS = (10, 1), (64, 1), (70, 1)  # address and bytes

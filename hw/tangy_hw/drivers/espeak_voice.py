@@ -7,10 +7,10 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from tangy_hw.devices import DeviceError
-from tangy_hw.sound.player import Player, PlayerError, examine_output, open_player
-from tangy_hw.sound.synthesis import USUAL, Synthesiser
-from tangy_hw.sound.voice import Voice
+from tangy_hw.audio.player import Player, PlayerError, examine_output, open_player
+from tangy_hw.audio.synthesis import USUAL, Synthesiser
+from tangy_hw.audio.voice import Voice
+from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import ERROR, OK, WARN, Reading
 from tangy_profiles.voice import VoicePreference

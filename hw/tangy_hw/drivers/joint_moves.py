@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Mapping
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.ros_newest import awaited
 from tangy_profiles.reading import plain
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.joint_moves import TOLERANCE, JointMoves
 from tangy_hw.drivers.ros_messages import Message, header, joints_of, trajectory_message
 from tangy_hw.drivers.ros_newest import Newest

@@ -6,7 +6,7 @@ import asyncio
 import math
 from contextlib import suppress
 
-from tangy_hw.devices import STILL, DeviceError, Odometry, Stamped, Twist
+from tangy_hw.device_protocols import STILL, DeviceError, Odometry, Stamped, Twist
 from tangy_hw.drivers.ros_messages import Message, header, odometry_of, twist_message
 from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told

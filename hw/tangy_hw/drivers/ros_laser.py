@@ -7,7 +7,7 @@ from collections import deque
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Scan, Stamped
+from tangy_hw.device_protocols import Scan, Stamped
 from tangy_hw.drivers.ros_messages import Message, changed_share, near_share, scan_of
 from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told

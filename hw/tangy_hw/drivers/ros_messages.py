@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Odometry, Pose, Scan, Twist
+from tangy_hw.device_protocols import Odometry, Pose, Scan, Twist
 from tangy_profiles.health import ERROR, OK, STALE, WARN
 
 Message = Mapping[str, Any]

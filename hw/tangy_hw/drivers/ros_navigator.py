@@ -9,7 +9,7 @@ from contextlib import suppress
 from itertools import count
 from typing import Any, Literal
 
-from tangy_hw.devices import DeviceError, Pose, Stamped
+from tangy_hw.device_protocols import DeviceError, Pose, Stamped
 from tangy_hw.drivers.ros_messages import (
     Message,
     header,

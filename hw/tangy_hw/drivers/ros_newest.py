@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
-from tangy_hw.arrivals import Arrivals
-from tangy_hw.devices import Stamped
+from tangy_hw.device_protocols import Stamped
+from tangy_hw.rate_estimator import Arrivals
 from tangy_profiles.health import OK, STALE, Fact, Reading
 
 Value = TypeVar("Value")

@@ -7,7 +7,7 @@ import json
 from contextlib import suppress
 from itertools import count
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.ros_messages import Message
 from tangy_hw.drivers.ros_newest import awaited
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told

@@ -19,10 +19,10 @@ from urllib.parse import urlsplit
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
-from tangy_hw.arrivals import Arrivals
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
+from tangy_hw.rate_estimator import Arrivals
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.reading import plain
 

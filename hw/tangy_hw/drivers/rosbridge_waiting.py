@@ -9,7 +9,7 @@ from contextlib import suppress
 from itertools import count
 from typing import Any
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.reading import plain
 
 Message = Mapping[str, Any]

@@ -13,8 +13,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.arrivals import Arrivals
-from tangy_hw.devices import DeviceError, Scan, Stamped
+from tangy_hw.device_protocols import DeviceError, Scan, Stamped
 from tangy_hw.drivers.scip_codec import (
     Optics,
     Reply,
@@ -30,6 +29,7 @@ from tangy_hw.drivers.scip_codec import (
     trouble,
 )
 from tangy_hw.drivers.scip_link import Link, open_link
+from tangy_hw.rate_estimator import Arrivals
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Reading
 
 NEAR = 0.15

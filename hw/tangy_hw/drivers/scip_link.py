@@ -9,7 +9,7 @@ import threading
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
-from tangy_hw.devices import DeviceError
+from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.reading import plain
 
 PORT = 10940

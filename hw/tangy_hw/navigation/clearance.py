@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Twist
+from tangy_hw.device_protocols import Twist
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.poses import Floats, lengths
 

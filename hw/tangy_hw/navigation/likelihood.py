@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, OccupancyMap
 from tangy_hw.navigation.poses import HERE, Floats, endpoints, lengths, placed
 

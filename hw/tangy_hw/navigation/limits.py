@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
-from tangy_hw.devices import STILL, Twist
+from tangy_hw.device_protocols import STILL, Twist
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.random import Generator
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.likelihood import LikelihoodField, covered, thin
 from tangy_hw.navigation.occupancy import OccupancyMap
 from tangy_hw.navigation.particles import MOST, around, likeliest, move, needed, resample
+from tangy_hw.navigation.pose_search import Search
 from tangy_hw.navigation.poses import HERE, Floats, between, compose, wrap
-from tangy_hw.navigation.searching import Search
 
 LOST = 0.85  # of the usual fit: below this the robot is probably not where it thinks
 WIDE = 0.5  # metres of spread from which on it thinks more than one place possible

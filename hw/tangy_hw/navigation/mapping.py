@@ -13,7 +13,7 @@ from math import ceil, hypot
 import cv2
 import numpy as np
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from tangy_hw.navigation.poses import Floats, between, endpoints, placed
 from tangy_profiles.errors import TangyError

@@ -12,9 +12,8 @@ from typing import Literal
 import numpy as np
 from numpy.random import Generator
 
-from tangy_hw.devices import STILL, Odometry, Pose, Scan, Twist
+from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import AWAY, REACH, Seen
-from tangy_hw.navigation.disagreement import Disagreement
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
 from tangy_hw.navigation.obstacles import Obstacles
@@ -31,6 +30,7 @@ from tangy_hw.navigation.planning import (
 )
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, placed
 from tangy_hw.navigation.pursuit import Pursuit
+from tangy_hw.navigation.slip_detection import Disagreement
 from tangy_profiles.health import OK, Fact, Reading
 
 State = Literal["idle", "driving", "spinning", "replanned", "blocked", "arrived", "failed"]

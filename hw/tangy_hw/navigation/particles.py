@@ -8,7 +8,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Pose
+from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.poses import Floats, wrap
 
 ALPHA = 0.2  # all four of the odometry motion model: squared error for each squared unit moved

@@ -11,7 +11,7 @@ from typing import TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 
 Floats: TypeAlias = NDArray[np.float64]
 Angle = TypeVar("Angle", float, Floats)

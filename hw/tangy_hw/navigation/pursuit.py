@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from tangy_hw.devices import STILL, Pose, Scan, Twist
+from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH, Seen, room_ahead, speed_in
 from tangy_hw.navigation.limits import Limits
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap

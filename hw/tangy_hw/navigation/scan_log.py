@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tangy_hw.devices import Pose, Scan
+from tangy_hw.device_protocols import Pose, Scan
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import open_given
 from tangy_profiles.reading import plain

@@ -205,7 +205,7 @@ def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Setti
 
     Args:
         store: has the checks.
-        source: its name, as `tangy_hw.sound.sources` has them; None for none in particular.
+        source: its name, as `tangy_hw.audio.sources` has them; None for none in particular.
         mode: one of MODES.
 
     Raises:

@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from tangy_hw.sound.meter import NO_SOUND_SECONDS, Meter
-from tangy_hw.sound.source import Source
-from tangy_hw.sound.utterances import split
-from tangy_hw.sound.wav import SoundError
+from tangy_hw.audio.meter import NO_SOUND_SECONDS, Meter
+from tangy_hw.audio.source import Source
+from tangy_hw.audio.utterances import split
+from tangy_hw.audio.wav import SoundError
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.calibration import (

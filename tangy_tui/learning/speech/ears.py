@@ -8,8 +8,8 @@ from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from tangy_hw.sound.meter import Meter
-from tangy_hw.sound.sources import open_source
+from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.sources import open_source
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, USUAL, Evidence, Settings
@@ -54,7 +54,7 @@ class Ears:
         """Open the source.
 
         Args:
-            source: its name, as `tangy_hw.sound.sources` has them.
+            source: its name, as `tangy_hw.audio.sources` has them.
             phrasebook: what can be said.
             settings: how it is listened with this microphone.
             hands_free: listen all the time, and find out where an utterance begins and ends.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
-from tangy_hw.sound.wav import RATE
+from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import LISTENING
 
 __all__ = ["LONGEST", "RATE", "USUAL", "Evidence", "Expecting", "Settings", "Wanted"]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tangy_hw.sound.wav import HEADER, read_header, read_wav
+from tangy_hw.audio.wav import HEADER, read_header, read_wav
 from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.lexicon import Lexicon

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tangy_hw.sound.meter import CLIPPED, QUIET, RAILS
+from tangy_hw.audio.meter import CLIPPED, QUIET, RAILS
 
 FRAME = 320  # samples, 20 ms
 LOUD = 0.9  # the part of the frames that is less loud than a voice, or a room, is said to be

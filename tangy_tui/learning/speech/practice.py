@@ -12,7 +12,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, Protocol
 
-from tangy_hw.sound.wav import SoundError, read_wav, seconds_cut_off
+from tangy_hw.audio.wav import SoundError, read_wav, seconds_cut_off
 from tangy_profiles.reading import plain
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.speech.evidence import LONGEST, RATE, Evidence, Expecting, Settings, Wanted

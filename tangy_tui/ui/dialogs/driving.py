@@ -10,11 +10,11 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_hw.devices import Twist
+from tangy_hw.device_protocols import Twist
 from tangy_tui.ui.base import Dialog
 
 if TYPE_CHECKING:
-    from tangy_hw.robot_link import RobotLink
+    from tangy_hw.robot_client.client import RobotLink
 
 FORWARD, BACK, TURN = 0.3, 0.1, 0.6
 """m/s, m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""

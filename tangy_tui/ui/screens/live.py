@@ -17,8 +17,8 @@ from textual.binding import BindingType
 from textual.content import Content
 from textual.screen import Screen
 
-from tangy_hw.stopping import STAFF
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT
 from tangy_tui.house import House

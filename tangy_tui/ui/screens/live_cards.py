@@ -7,7 +7,7 @@ from typing import Any
 
 from textual.app import App
 
-from tangy_hw.world import LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.house import House
 from tangy_tui.live.card_news import BY, CardNews
 from tangy_tui.monitoring.supervision import Event, Supervision

@@ -28,7 +28,7 @@ from tangy_tui.ui.widgets.rows import Row, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import CardSight
+    from tangy_hw.perception.camera_hub import CardSight
 
 LOOK_SECONDS = 0.25
 """How often the devices are told of, and how often a picture is drawn at most."""

@@ -10,7 +10,7 @@ from tangy_profiles.scene import CardView
 from tangy_tui.ui.widgets.rows import Row, Span
 
 if TYPE_CHECKING:
-    from tangy_hw.sensors import SeenCard
+    from tangy_hw.perception.camera_hub import SeenCard
 
 CELL = 5  # columns of one number with its marks
 

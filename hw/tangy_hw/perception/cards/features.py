@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.perception.cards import reaching, synthesis
-from tangy_hw.perception.cards.rectifying import RIM, SIDE, Flat
+from tangy_hw.perception.cards import extent, synthesis
+from tangy_hw.perception.cards.rectification import RIM, SIDE, Flat
 from tangy_profiles.card_face import Face
 from tangy_profiles.card_picture import draw_number
 
@@ -40,7 +40,7 @@ NAMES = (
     "dyed", "dyed middle", "dyed around", "darker", "darker middle", "lighter middle", "disc",
     "disc to a line", "disc beyond", "disc over low", "disc under high", "best over low",
     "best under high", "dyed over low", "dyed under high", "print over low", "print under high",
-    "black", *reaching.NAMES, *synthesis.NAMES,
+    "black", *extent.NAMES, *synthesis.NAMES,
 )  # fmt: skip
 """What the first features are called, in their order."""
 SEEN = ("colour", "lighter", "unlike")
@@ -144,7 +144,7 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
         np.full(len(cell), np.log(min(flat.scale, LARGEST))),
         np.full(len(cell), np.median(flat.crossings)),
         np.full(len(cell), flat.matched / len(flat.crossings)), read[:, 3], sides.max(1),
-        *reaching.ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx, HALF),
+        *extent.ways_out(dots[..., 0] + dots[..., 1], y + dy, x + dx, HALF),
         np.maximum(np.abs(dx), np.abs(dy)) / HALF, wide.max((1, 2)) - strength,
         np.abs(dy) / HALF, np.abs(dx) / HALF,
     ]  # fmt: skip
@@ -157,7 +157,7 @@ def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
     black = read[:, 2] * read[:, 3] / np.maximum(printed.std((1, 2)), 1e-3)
     black /= max(float(np.percentile(black, INKED)), 0.02)
     row.append(black)
-    row += reaching.same_ways(_dot(maps[..., 2:5].copy()), y + dy, x + dx, at[:, 2:5], HALF)
+    row += extent.same_ways(_dot(maps[..., 2:5].copy()), y + dy, x + dx, at[:, 2:5], HALF)
     named = np.hstack([np.stack(row, 1), synthesis.compared(flat, expected)]).astype(np.float32)
     spots = _spots(np.dstack([dye, lighter, shown]), (y, x), (y + dy, x + dx))
     bare = expected > 0.9

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import comb
 from typing import TYPE_CHECKING, Any
 
+from tangy_hw.perception.cards.card_detection import Sighting, find_cards
 from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_classifier
 from tangy_hw.perception.cards.features import Measured, features_of
 from tangy_hw.perception.cards.likeness import unlike_others
-from tangy_hw.perception.cards.locating import Sighting, find_cards
-from tangy_hw.perception.cards.rectifying import flatten
+from tangy_hw.perception.cards.rectification import flatten
 from tangy_profiles.card_face import USUAL_SEED, Face, called_cells, numbers_of
 from tangy_profiles.cards import CardState, Deck, judge_partly
 
@@ -159,7 +159,7 @@ class CardReader:
     def _read_card(self, picture: Picture, seen: Sighting) -> CardReading:
         import numpy as np
 
-        from tangy_hw.perception.cards.locating import project
+        from tangy_hw.perception.cards.card_detection import project
 
         flat = flatten(picture, seen, self.face, self.deck_seed)
         if flat is None:

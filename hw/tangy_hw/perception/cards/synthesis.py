@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.perception.cards.rectifying import RIM, SIDE, Flat
+from tangy_hw.perception.cards.rectification import RIM, SIDE, Flat
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

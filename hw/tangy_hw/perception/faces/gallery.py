@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.faces.describing import Vector
+    from tangy_hw.perception.faces.face_embedding import Vector
 
 ENOUGH = 0.4
 """The likeness from which on a face is taken for somebody's: so much of the way to oneself."""

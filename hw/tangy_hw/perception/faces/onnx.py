@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tangy_hw.perception.faces.finding import FaceError
+from tangy_hw.perception.faces.face_detector import FaceError
 from tangy_hw.perception.faces.quality import Limits
 from tangy_hw.perception.faces.reader import NO_EYES, Face
 from tangy_profiles.given_file import read_given
@@ -55,7 +55,7 @@ class OnnxReader:
         import cv2
         import numpy as np
 
-        from tangy_hw.perception.faces.describing import align
+        from tangy_hw.perception.faces.face_embedding import align
         from tangy_hw.perception.faces.quality import judge
 
         height, width = picture.shape[:2]

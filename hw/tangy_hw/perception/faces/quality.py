@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.faces.finding import Box, Grey
+    from tangy_hw.perception.faces.face_detector import Box, Grey
 
 SIDE = 64  # pixels across at which sharpness is measured
 FINE, COARSE = 1.0, 4.0  # pixels: of the two blurs whose differences are compared
@@ -66,7 +66,7 @@ def judge(grey: Grey, box: Box, face: Grey) -> Quality:
     """Measure how a face is seen, in the picture and aligned."""
     import numpy as np
 
-    from tangy_hw.perception.faces.describing import symmetry
+    from tangy_hw.perception.faces.face_embedding import symmetry
 
     inner = face[8:-8, 8:-8].astype(np.float32)
     half = inner.shape[1] // 2

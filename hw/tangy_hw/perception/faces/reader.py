@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tangy_hw.perception.faces.quality import USUAL, Limits, Quality
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.faces.describing import Vector
-    from tangy_hw.perception.faces.finding import Box
+    from tangy_hw.perception.faces.face_detector import Box
+    from tangy_hw.perception.faces.face_embedding import Vector
     from tangy_hw.perception.pictures import Picture
     from tangy_profiles.robot import FaceModels
 
@@ -54,8 +54,8 @@ class HaarReader:
         """Find and describe the faces of a picture (BGR or grey), the largest first."""
         import cv2
 
-        from tangy_hw.perception.faces.describing import align, describe
-        from tangy_hw.perception.faces.finding import find_faces
+        from tangy_hw.perception.faces.face_detector import find_faces
+        from tangy_hw.perception.faces.face_embedding import align, describe
         from tangy_hw.perception.faces.quality import judge
 
         grey: Any = picture

@@ -15,7 +15,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from tangy_hw.perception.requests.asking import DEVICE, RequestError, RequestSource
+from tangy_hw.perception.requests.help_request_source import DEVICE, RequestError, RequestSource
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.reading import plain
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_hw.perception.requests.asking import RequestSource
+from tangy_hw.perception.requests.help_request_source import RequestSource
 
 
 class Keyboard(RequestSource):

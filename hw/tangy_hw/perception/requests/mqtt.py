@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
-from tangy_hw.perception.requests.asking import DEVICE, RequestError, RequestSource
+from tangy_hw.perception.requests.help_request_source import DEVICE, RequestError, RequestSource
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.reading import plain
 

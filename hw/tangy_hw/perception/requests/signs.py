@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL as USUAL_CAMERA
-from tangy_hw.perception.requests.asking import DEVICE, RequestError, RequestSource
+from tangy_hw.perception.requests.help_request_source import DEVICE, RequestError, RequestSource
 from tangy_hw.perception.requests.triangles import USUAL, Limits, find_triangles
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.room import Point, Room

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tangy_hw.perception.requests.asking import RequestError, RequestSource
 from tangy_hw.perception.requests.buttons import ButtonBox
+from tangy_hw.perception.requests.help_request_source import RequestError, RequestSource
 from tangy_hw.perception.requests.keyboard import Keyboard
 from tangy_hw.perception.requests.mqtt import Topic
 from tangy_profiles.reading import nearest, plain

@@ -1,0 +1,139 @@
+"""How loud it is, and in words what is wrong with it: nothing comes, too loud, too quiet."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from array import array
+from collections import deque
+from collections.abc import Callable
+from operator import mul
+
+from tangy_hw.audio.wav import RATE
+
+FLOOR = -60.0  # dB below full scale at which the bar is empty
+FALL = 1.5  # of the bar's length that it falls in a second; it rises at once
+PIECE = RATE // 50  # samples, 20 ms: the bar shows the loudest of these
+
+RAILS = 32_700  # of 32,768; samples beyond are cut off, or nearly
+CLIPPED = 4  # of them in half a second are too many
+CLIPPED_SECONDS = 0.5
+
+NO_SOUND = 2.0  # root mean square of 16-bit samples; a microphone that is on hisses louder
+NO_SOUND_SECONDS = 2.0
+QUIET = 150.0  # the loudest 20 ms of a voice lie above it (-47 dB)
+QUIET_SECONDS = 2.0
+MEMORY_SECONDS = 3.0  # for how long the loudest is remembered
+
+
+class Meter:
+    """Shows sound that is fed to it: a bar from 0 to 1, and a sentence when something is wrong.
+
+    Give it every chunk of a live source as it comes; what the clock says between two chunks
+    counts. `begin` it when somebody starts to speak into it.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        """Begin to listen now.
+
+        Args:
+            clock: gives seconds from any beginning.
+        """
+        self._clock = clock
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget what was heard: somebody starts to speak now."""
+        now = self._clock()
+        self._began = self._data_at = self._sound_at = now
+        self._shown, self._shown_at = 0.0, now
+        self._clipped: deque[tuple[float, int]] = deque()
+        self._loudest: deque[tuple[float, float]] = deque()
+
+    def feed(self, chunk: bytes) -> None:
+        """Take the next samples (16-bit little-endian, one channel)."""
+        samples = array("h", chunk[: len(chunk) // 2 * 2][-RATE:])  # at most the last half second
+        if not samples:
+            return
+        if sys.byteorder == "big":
+            samples.byteswap()
+        now = self._clock()
+        self._data_at = now
+        loudness = max(
+            _loudness(samples[place : place + PIECE]) for place in range(0, len(samples), PIECE)
+        )
+        if loudness >= NO_SOUND:
+            self._sound_at = now
+        self._shown, self._shown_at = max(self.level, _bar(loudness)), now
+        self._loudest.append((now, loudness))
+        _forget(self._loudest, now - MEMORY_SECONDS)
+        if max(samples) >= RAILS or min(samples) <= -RAILS:
+            self._clipped.append((now, sum(abs(sample) >= RAILS for sample in samples)))
+
+    @property
+    def level(self) -> float:
+        """How loud it is now on a scale of decibels: 0 is silence, 1 as loud as can be."""
+        return max(0.0, self._shown - FALL * (self._clock() - self._shown_at))
+
+    def loudest(self, seconds: float) -> float:
+        """How loud it was at most in the last seconds (3 are remembered), from 0 to 1."""
+        since = self._clock() - seconds
+        return _bar(max((loudness for at, loudness in self._loudest if at >= since), default=0.0))
+
+    @property
+    def clipping(self) -> bool:
+        """Whether the last half second was so loud that it was cut off."""
+        _forget(self._clipped, self._clock() - CLIPPED_SECONDS)
+        return sum(count for _, count in self._clipped) >= CLIPPED
+
+    @property
+    def seconds_since_data(self) -> float:
+        """Seconds since anything came, be it silence."""
+        return self._clock() - self._data_at
+
+    @property
+    def seconds_since_sound(self) -> float:
+        """Seconds since anything came that a microphone which is off would not send."""
+        return self._clock() - self._sound_at
+
+    def words(self, *, speaking: bool = True) -> str:
+        """Say in one line what is wrong, if anything is.
+
+        Args:
+            speaking: somebody is meant to be speaking; only then is a quiet room worth a word.
+        """
+        if self.seconds_since_data >= NO_SOUND_SECONDS:
+            seconds = int(self.seconds_since_data)
+            return f"Nothing has come from the microphone for {seconds} s: is it connected?"
+        if self.seconds_since_sound >= NO_SOUND_SECONDS:
+            seconds = int(self.seconds_since_sound)
+            return f"No sound for {seconds} s: is the microphone plugged in? It may be muted."
+        if self.clipping:
+            return "Too loud: move a little away from the microphone, or turn it down."
+        if speaking and self._quiet():
+            return "Very quiet: move closer to the microphone, or turn it up."
+        return ""
+
+    def _quiet(self) -> bool:
+        if self._clock() - self._began < QUIET_SECONDS:
+            return False
+        return max((loudness for _, loudness in self._loudest), default=0.0) < QUIET
+
+
+def _loudness(samples: array[int]) -> float:
+    """Return the root mean square, the mean (a bias of the device) taken out."""
+    count = len(samples)
+    mean = sum(samples) / count
+    return math.sqrt(max(0.0, sum(map(mul, samples, samples)) / count - mean * mean))
+
+
+def _bar(loudness: float) -> float:
+    if loudness <= 0:
+        return 0.0
+    return min(1.0, max(0.0, 1 - 20 * math.log10(loudness * math.sqrt(2) / 32_768) / FLOOR))
+
+
+def _forget(kept: deque[tuple[float, float]] | deque[tuple[float, int]], before: float) -> None:
+    while kept and kept[0][0] < before:
+        kept.popleft()

@@ -1,0 +1,78 @@
+"""Where voices begin and end in a recording, by how loud it is: utterances, cut at the pauses.
+
+Samples are 16-bit little-endian, 16,000 a second, one channel.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from tangy_hw.audio.wav import RATE
+
+FRAME = 320  # samples, 20 ms: the pieces that are called loud or quiet
+LONGEST = 6.0  # s; a longer utterance is cut here, because babble never pauses
+PAUSE = 0.5  # s of quiet that end an utterance
+MARGIN = 0.2  # s of sound that are kept before and after it
+SHORTEST = 0.12  # s of loud frames; less is a click
+AFTER = round(MARGIN * RATE / FRAME)  # frames
+BEFORE = AFTER + 5  # of which the last five tell that it has begun
+
+QUIETEST = 40.0  # of 32,768 (-58 dB); what is below is silence everywhere
+LOUDER = 2.5  # a loud frame is 8 dB above the floor
+FLOOR_SECONDS = 3.0  # the floor is the tenth percentile of that time
+
+
+def split(pcm: bytes) -> list[bytes]:
+    """Split a recording into its utterances by how loud it is; one that is all quiet has none.
+
+    The floor is followed, so a steady hum is quiet, and so are people who talk further away, which
+    a detector of voices takes for one utterance without an end.
+    """
+    levels = deque[float](maxlen=round(FLOOR_SECONDS * RATE / FRAME))
+    levels.extend([_floor_of(pcm)] * (levels.maxlen or 1))
+    found: list[bytes] = []
+    begin, loud, quiet = -1, 0, 0  # where an utterance began, and its loud and last quiet frames
+    recent: deque[bool] = deque(maxlen=BEFORE)
+    place = 0
+    for place, level in enumerate(_levels(pcm), 1):
+        levels.append(level)
+        is_loud = level > max(QUIETEST, LOUDER * sorted(levels)[len(levels) // 10])
+        if begin < 0:
+            recent.append(is_loud)
+            loud = sum([*recent][-5:])
+            if loud >= 3:
+                begin, quiet = place - len(recent), 0
+            continue
+        loud += is_loud
+        quiet = 0 if is_loud else quiet + 1
+        if quiet * FRAME >= PAUSE * RATE or (place - begin) * FRAME >= LONGEST * RATE:
+            found += _utterance(pcm, begin, place, loud, quiet)
+            begin = -1
+            recent.clear()
+    return found + (_utterance(pcm, begin, place, loud, quiet) if begin >= 0 else [])
+
+
+def _utterance(pcm: bytes, begin: int, end: int, loud: int, quiet: int) -> list[bytes]:
+    """Return an utterance between two frames, without most of its last quiet; clicks are none."""
+    end -= max(0, quiet - AFTER)
+    return [pcm[2 * FRAME * begin : 2 * FRAME * end]] if loud * FRAME >= SHORTEST * RATE else []
+
+
+def _levels(pcm: bytes) -> list[float]:
+    """Return the root mean square of every frame, its mean (a bias of the device) taken out."""
+    import numpy as np
+
+    whole = len(pcm) // (2 * FRAME) * (2 * FRAME)
+    frames = np.frombuffer(pcm[:whole], "<i2").reshape(-1, FRAME).astype(np.float64)
+    levels: list[float] = frames.std(axis=1).tolist()
+    return levels
+
+
+def _floor_of(pcm: bytes) -> float:
+    """Guess how loud the pauses of a recording are: its quietest tenth, but far below its loudest.
+
+    A recording without any loud and quiet in it is all hum: no voice is as even as that.
+    """
+    levels = sorted(_levels(pcm)) or [0.0]
+    quiet, loudest = levels[len(levels) // 10], levels[-1]
+    return max(1.0, quiet if quiet > loudest / 3 else min(quiet, loudest / 10))

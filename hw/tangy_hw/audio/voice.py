@@ -1,0 +1,273 @@
+"""Tangy's voice: lines that are queued, spoken one after the other, and can be cut at once."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tangy_hw.audio.number_reader import as_called, marked_up
+from tangy_hw.audio.player import Player, PlayerError
+from tangy_hw.audio.synthesis import USUAL, NoSuchVoice, Synthesiser, VoiceError
+from tangy_profiles.cards import Deck
+from tangy_profiles.voice import VoicePreference
+
+
+@dataclass(frozen=True, slots=True)
+class Rendered:
+    """What was made beforehand: how many texts, in how many bytes and seconds."""
+
+    texts: int
+    bytes: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    text: str
+    preference: VoicePreference
+    heard: asyncio.Future[bool]
+
+
+class Voice:
+    """Speaks lines one after the other; a game that talks through it never sees it fail.
+
+    All of it belongs to one event loop. What goes wrong is told once, in a sentence; when no sound
+    comes out, nothing is tried any more, and the text on the screen has to do.
+    """
+
+    def __init__(
+        self,
+        synthesiser: Synthesiser,
+        player: Player | None,
+        *,
+        deck: Deck | None = None,
+        usual: VoicePreference = USUAL,
+        on_begin: Callable[[], None] | None = None,
+        on_end: Callable[[], None] | None = None,
+        tell: Callable[[str], None] | None = None,
+    ) -> None:
+        """Prepare a voice; nothing is started before the first line.
+
+        Args:
+            synthesiser: makes the WAV files.
+            player: on which they are heard; none: nothing is.
+            deck: whose calls are said as a caller says them.
+            usual: rate and voice where a line has no preference.
+            on_begin: is called before sound comes out (a microphone is shut).
+            on_end: is called when no more comes, however that came about (it is opened).
+            tell: is called with a sentence about what went wrong, once for each.
+        """
+        self._synthesiser = synthesiser
+        self._player = player
+        self._deck = deck
+        self._usual = usual.over(USUAL)
+        self._on_begin = on_begin
+        self._on_end = on_end
+        self._tell = tell
+        self._told: set[str] = set()
+        self._queue: deque[_Line] = deque()
+        self._waiting = asyncio.Event()
+        self._quiet = asyncio.Event()
+        self._quiet.set()
+        self._worker: asyncio.Task[None] | None = None
+        self._speaking: asyncio.Task[bool] | None = None
+        self._begun = False
+        self._closed = False
+        self._preparing: set[asyncio.Task[Rendered]] = set()
+
+    @property
+    def speaking(self) -> bool:
+        """Whether a line is being spoken, or waits to be."""
+        return self._speaking is not None or bool(self._queue)
+
+    @property
+    def silent(self) -> str:
+        """Why nothing is heard, in one sentence; "" if something is."""
+        return self._synthesiser.reason or ("" if self._player else "No sound comes out.")
+
+    def say(
+        self, text: str, preference: VoicePreference | None = None, *, interrupt: bool = False
+    ) -> asyncio.Future[bool]:
+        """Speak a line after those that wait, or at once in the place of all of them.
+
+        Returns:
+            A future that need not be awaited and never fails: whether the line was heard to its
+            end. It is false at once where nothing can be heard.
+        """
+        if interrupt:
+            self.hush()
+        heard: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
+        if self._closed or self.silent:
+            if self._synthesiser.reason:
+                self._tell_once(self._synthesiser.reason)
+            heard.set_result(False)
+            return heard
+        wanted = (preference or self._usual).over(self._usual)
+        self._queue.append(_Line(text, wanted, heard))
+        self._quiet.clear()
+        self._waiting.set()
+        if self._worker is None:
+            self._worker = asyncio.create_task(self._work())
+        return heard
+
+    def hush(self) -> None:
+        """Cut what is being spoken, at once, and forget what waits."""
+        while self._queue:
+            _settle(self._queue.popleft().heard, False)
+        if self._speaking is not None:
+            if self._player is not None:
+                self._player.stop()
+            self._speaking.cancel()
+
+    async def quiet(self) -> None:
+        """Wait until nothing is spoken any more, and `on_end` was called."""
+        await self._quiet.wait()
+
+    def prerender(
+        self,
+        texts: Iterable[str],
+        preference: VoicePreference | None = None,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> asyncio.Task[Rendered]:
+        """Make the WAV files of texts beforehand, in the background, one at a time.
+
+        Args:
+            texts: what will be said.
+            preference: rate and voice, as for `say`.
+            progress: is called after each text with how many are done, and of how many.
+
+        Returns:
+            A task that never fails: what was made, or found made before. It stops at the first
+            text that cannot be made, which is told.
+        """
+        wanted = (preference or self._usual).over(self._usual)
+        task = asyncio.create_task(self._prerender(tuple(texts), wanted, progress))
+        self._preparing.add(task)
+        task.add_done_callback(self._preparing.discard)
+        return task
+
+    async def close(self) -> None:
+        """Cut everything, and end what runs for this voice."""
+        self._closed = True
+        self.hush()
+        self._synthesiser.end()
+        for task in (*self._preparing, *([self._speaking] if self._speaking else [])):
+            task.cancel()
+            await asyncio.wait({task})
+        if self._worker is not None:
+            self._worker.cancel()
+            await asyncio.wait({self._worker})
+
+    async def _work(self) -> None:
+        try:
+            while True:
+                await self._waiting.wait()
+                while self._queue:
+                    line = self._queue.popleft()
+                    self._speaking = asyncio.create_task(self._speak(line))
+                    try:
+                        await asyncio.wait({self._speaking})
+                        _settle(line.heard, _result(self._speaking))
+                    finally:
+                        _settle(line.heard, False)
+                        self._speaking = None
+                self._waiting.clear()
+                self._end()
+                self._quiet.set()
+        finally:
+            self._end()
+            self._quiet.set()
+
+    async def _speak(self, line: _Line) -> bool:
+        """Speak one line; return whether it was heard to its end."""
+        try:
+            while self._player is not None:
+                wav = await self._made(line.text, line.preference)
+                if wav is None:
+                    return True
+                self._begin()
+                try:
+                    await self._player.play(wav)
+                    return True
+                except PlayerError:
+                    if wav.exists():
+                        raise
+                    # Somebody has just emptied the cache, which is not the player's fault.
+        except PlayerError as error:
+            self._player = None
+            self._tell_once(f"{error} What Tangy says is shown as text.")
+        except VoiceError as error:
+            self._tell_once(str(error))
+        except Exception as error:  # a game goes on, whatever is wrong with its voice
+            self._tell_once(f"The voice failed ({type(error).__name__}: {error}).")
+        return False
+
+    async def _made(self, text: str, preference: VoicePreference) -> Path | None:
+        """Return the WAV of a text (None: there is nothing to say), in the usual voice at need."""
+        written = marked_up(as_called(text, self._deck))
+        if not written:
+            return None
+        try:
+            return await asyncio.to_thread(self._synthesiser.render, written, preference)
+        except NoSuchVoice as error:
+            if preference.voice == self._usual.voice:
+                raise
+            usual = VoicePreference(preference.rate, self._usual.voice)
+            wav = await asyncio.to_thread(self._synthesiser.render, written, usual)
+            self._tell_once(str(error))
+            return wav
+
+    async def _prerender(
+        self,
+        texts: tuple[str, ...],
+        preference: VoicePreference,
+        progress: Callable[[int, int], None] | None,
+    ) -> Rendered:
+        begun, size, done = time.monotonic(), 0, 0
+        if self.silent:
+            texts = ()
+        for text in texts:
+            try:
+                wav = await self._made(text, preference)
+                size += wav.stat().st_size if wav is not None else 0
+            except (VoiceError, OSError) as error:
+                self._tell_once(str(error))
+                break
+            done += 1
+            if progress is not None:
+                progress(done, len(texts))
+        return Rendered(done, size, time.monotonic() - begun)
+
+    def _begin(self) -> None:
+        if not self._begun:
+            self._begun = True
+            if self._on_begin is not None:
+                self._on_begin()
+
+    def _end(self) -> None:
+        if self._begun:
+            self._begun = False
+            if self._on_end is not None:
+                try:
+                    self._on_end()
+                except Exception as error:  # the next line is to be spoken all the same
+                    self._tell_once(f"The voice failed ({type(error).__name__}: {error}).")
+
+    def _tell_once(self, sentence: str) -> None:
+        if sentence not in self._told:
+            self._told.add(sentence)
+            if self._tell is not None:
+                self._tell(sentence)
+
+
+def _settle(heard: asyncio.Future[bool], so: bool) -> None:
+    if not heard.done():
+        heard.set_result(so)
+
+
+def _result(task: asyncio.Task[bool]) -> bool:
+    return not task.cancelled() and task.exception() is None and task.result()

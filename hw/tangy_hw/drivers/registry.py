@@ -1,0 +1,268 @@
+"""The kinds of drivers: which there are, for which devices, and which settings each takes.
+
+Devices that share a link (a rosbridge server) share one connection.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose
+from tangy_hw.drivers.ros_status import RosDiagnostics
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.drivers.simulated_clock import SteppedClock
+from tangy_hw.robot_setup import Setting
+from tangy_hw.watchdogs import DRIVES_BY
+from tangy_profiles.activity import Activity
+from tangy_profiles.reading import nearest, plain
+from tangy_profiles.robot import Robot
+
+
+class Settings:
+    """The settings of one driver, taken one by one; what nobody took is refused."""
+
+    def __init__(self, device: str, kind: str, values: Mapping[str, Setting]) -> None:
+        self.device = device
+        self.kind = kind
+        self._values = dict(values)
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """Take a text."""
+        value = self._take(key, default)
+        if not isinstance(value, str):
+            raise self.wrong(f"{key} must be a text.")
+        return value
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """Take a number."""
+        value = self._take(key, default)
+        if isinstance(value, str | bool):
+            raise self.wrong(f"{key} must be a number.")
+        return float(value)
+
+    def joints(self, key: str) -> dict[str, str]:
+        """Take how joints are named elsewhere, as the drivers of ROS have it."""
+        from tangy_hw.drivers.ros_messages import joined_names
+
+        try:
+            return dict(joined_names(self.text(key, "")))
+        except ValueError as error:
+            raise self.wrong(f"{key}: {error}") from None
+
+    def pose(self, key: str) -> Pose:
+        """Take a pose as "X, Y, HEADING" in metres and radians; all are 0 where it is left out."""
+        try:
+            x, y, heading = map(float, self.text(key, "0, 0, 0").split(","))
+        except ValueError:
+            x = y = heading = math.nan
+        if not all(map(math.isfinite, (x, y, heading))):
+            raise self.wrong(f"{key} must be X, Y, HEADING.")
+        return Pose(x, y, heading)
+
+    def flag(self, key: str, default: bool) -> bool:
+        """Take true or false."""
+        value = self._take(key, default)
+        if not isinstance(value, bool):
+            raise self.wrong(f"{key} must be true or false.")
+        return value
+
+    def _take(self, key: str, default: Setting | None) -> Setting:
+        value = self._values.pop(key, default)
+        if value is None:
+            raise self.wrong(f"{key} is missing.")
+        return value
+
+    def close(self) -> None:
+        """Refuse what nobody took.
+
+        Raises:
+            DeviceError: there is something.
+        """
+        for key in self._values:
+            raise self.wrong(f"{key} is no setting of it.")
+
+    def wrong(self, problem: str) -> DeviceError:
+        """Make the error for a driver that is set wrongly."""
+        return DeviceError(plain(f"drivers.{self.device} ({self.kind}): {problem}"))
+
+
+@dataclass
+class Wiring:
+    """What the drivers of one robot share: its clock, its links, what is told of them."""
+
+    robot: Robot
+    activity: Activity
+    clock: Clock
+    links: dict[str, Rosbridge] = field(default_factory=dict)
+    diagnosing: dict[str, RosDiagnostics] = field(default_factory=dict)
+    pairing: Mapping[str, str] = field(default_factory=dict)
+    """By what tablets are paired (see `chest_pairing`); empty: by what is made for the occasion."""
+
+    def link(self, at: str, ros: int, device: str) -> Rosbridge:
+        """Return the link to a rosbridge server, one for all devices that ask for it."""
+        drives = device in DRIVES_BY
+        if at not in self.links:
+            self.links[at] = Rosbridge(at, clock=self.clock.now, ros=ros)
+            self.links[at].drives = drives
+        self.links[at].drives |= drives
+        return self.links[at]
+
+    def diagnostics(self, at: str) -> RosDiagnostics:
+        """Return what a link's server says of its devices, one for all who ask for it."""
+        if at not in self.diagnosing:
+            self.diagnosing[at] = RosDiagnostics(self.links[at])
+        return self.diagnosing[at]
+
+
+Opens = Callable[[Wiring, Settings], Device]
+
+
+def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.ros_arms import RosArms
+    from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
+    from tangy_hw.drivers.ros_laser import RosLaser
+    from tangy_hw.drivers.ros_navigator import RosNavigator
+    from tangy_hw.drivers.ros_status import RosStopButton
+    from tangy_hw.drivers.ros_voice import RosVoice
+
+    at = settings.text("at")
+    link = wiring.link(at, int(settings.number("ros", 1)), settings.device)
+    diagnostics = wiring.diagnostics(at)
+    match settings.device:
+        case "base":
+            return RosBase(
+                link,
+                drive=settings.text("drive", "/cmd_vel"),
+                odometry=settings.text("odometry", "/odom"),
+                stamped=settings.flag("stamped", False),
+                # A bench in a hurry is told by its own time; the machine's would make runs differ.
+                repeat=0.0 if isinstance(wiring.clock, SteppedClock) else REPEAT_SECONDS,
+                diagnostics=diagnostics,
+            )
+        case "laser":
+            return RosLaser(
+                link,
+                topic=settings.text("topic", "/scan"),
+                turned=settings.number("turned", 0.0),
+                diagnostics=diagnostics,
+            )
+        case "stop_button":
+            return RosStopButton(
+                link,
+                topic=settings.text("topic", "/stop_button"),
+                changes_only=settings.flag("changes_only", False),
+            )
+        case "voice":
+            return RosVoice(
+                link,
+                say=settings.text("say", "/voice/say"),
+                said=settings.text("said", "/voice/said"),
+                hush=settings.text("hush", "/voice/hush"),
+                with_id=settings.flag("with_id", False),
+                diagnostics=diagnostics,
+            )
+        case "navigator":
+            return RosNavigator(
+                link,
+                action=settings.text("action", ""),
+                frame=settings.text("frame", "map"),
+                origin=settings.pose("origin"),
+                place=settings.text("place", "/amcl_pose"),
+                initial=settings.text("initial", "/initialpose"),
+            )
+    return RosArms(
+        link,
+        wiring.robot.limbs,
+        trajectory=settings.text("trajectory", "/joint_trajectory"),
+        states=settings.text("states", "/joint_states"),
+        torque=settings.text("torque", "/joint_torque"),
+        names=settings.joints("names"),
+        diagnostics=diagnostics,
+    )
+
+
+def _scip(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.scip import ScipLaser
+
+    return ScipLaser(
+        settings.text("at"),
+        name=settings.device,
+        clock=wiring.clock.now,
+        stale_after=wiring.robot.devices[settings.device].stale_after,
+        turned=settings.number("turned", 0.0),
+        flipped=settings.flag("flipped", False),
+        skip=int(settings.number("skip", 0)),
+        baud=int(settings.number("baud", 115_200)),
+    )
+
+
+def _page(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.chest import PORT, WebChestScreen
+    from tangy_hw.drivers.chest_pairing import Pairing
+
+    names = (name.strip().lower() for name in settings.text("names", "").split(","))
+    return WebChestScreen(
+        settings.text("host", "127.0.0.1"),
+        int(settings.number("port", PORT)),
+        name=settings.device,
+        names=[name for name in names if name],
+        pairing=Pairing.from_json(wiring.pairing) if wiring.pairing else None,
+        stale_after=wiring.robot.devices[settings.device].stale_after,
+    )
+
+
+def _spoken(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.espeak_voice import SpokenVoice
+
+    return SpokenVoice(
+        name=settings.device,
+        sink=settings.text("sink", "auto"),
+        deck=wiring.activity.deck,
+    )
+
+
+def _dynamixel(wiring: Wiring, settings: Settings) -> Device:
+    from tangy_hw.drivers.dynamixel import DynamixelArms, servos_of
+
+    try:
+        servos = servos_of(settings.text("servos"))
+    except ValueError as error:
+        raise settings.wrong(f"servos: {error}") from None
+    return DynamixelArms(
+        settings.text("at"),
+        wiring.robot.limbs,
+        servos,
+        name=settings.device,
+        baud=int(settings.number("baud", 1_000_000)),
+        clock=wiring.clock.now,
+    )
+
+
+DRIVERS: Mapping[str, tuple[tuple[str, ...], Opens]] = {
+    "rosbridge": (("base", "laser", "stop_button", "arms", "voice", "navigator"), _rosbridge),
+    "scip": (("laser",), _scip),
+    "page": (("screen",), _page),
+    "spoken": (("voice",), _spoken),
+    "dynamixel": (("arms",), _dynamixel),
+}
+"""The kinds of drivers: for which devices each is, and what opens it."""
+
+
+def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> Device:
+    """Open the driver of a device; it is not started yet.
+
+    Raises:
+        DeviceError: there is no such kind, or it is set wrongly.
+    """
+    kind = str(values.get("kind", ""))
+    known = {name for name, (devices, _) in DRIVERS.items() if device in devices}
+    if kind not in known:
+        raise DeviceError(
+            plain(f"drivers.{device}: {kind!r} drives no {device}; {nearest(kind, known)}")
+        )
+    settings = Settings(device, kind, {k: v for k, v in values.items() if k != "kind"})
+    opened = DRIVERS[kind][1](wiring, settings)
+    settings.close()
+    return opened

@@ -1,0 +1,88 @@
+"""What finds a robot's place and its way, whoever does it: our navigator, or the robot's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from tangy_hw.device_protocols import Odometry, Pose, Scan, Twist
+from tangy_hw.navigation.localisation import Estimate
+from tangy_hw.navigation.navigator import State
+from tangy_hw.navigation.planning import Path
+from tangy_hw.navigation.poses import Floats
+from tangy_profiles.health import Fact, Reading
+
+
+class Wayfinder(Protocol):
+    """Is told where to go, and then again and again what the wheels and the laser say."""
+
+    @property
+    def state(self) -> State:
+        """How it stands with the goal."""
+        ...
+
+    @property
+    def drives(self) -> bool:
+        """Whether something drives the base past us now, which commands alone do not end."""
+        ...
+
+    @property
+    def estimate(self) -> Estimate | None:
+        """Where the robot thinks it is; None: that is not known yet."""
+        ...
+
+    @property
+    def path(self) -> Path | None:
+        """The way it follows, as far as that is known."""
+        ...
+
+    @property
+    def obstacles(self) -> Floats:
+        """What is seen and not on the map (n, 2)."""
+        ...
+
+    @property
+    def unseen(self) -> Floats:
+        """What must not be touched and no laser sees, (n, 2) in the robot's frame, if known."""
+        ...
+
+    @property
+    def particles(self) -> Floats:
+        """The poses it thinks possible (n, 3)."""
+        ...
+
+    def go(self, goal: Pose) -> None:
+        """Begin to drive to a pose; another goal takes the place of the one before."""
+        ...
+
+    def spin(self) -> None:
+        """Begin to turn on the spot, so that the robot finds itself."""
+        ...
+
+    def cancel(self) -> None:
+        """Stand still, and forget the goal; never raises."""
+        ...
+
+    def held(self) -> None:
+        """Take note that the robot must not drive now, whatever was to be."""
+        ...
+
+    def place(self, pose: Pose | None) -> None:
+        """Take it that the robot is at a pose now (None: anywhere), as staff say."""
+        ...
+
+    def finds_way(self, goal: Pose) -> bool:
+        """Say whether there may be a way again to where there was none."""
+        ...
+
+    def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
+        """Take in the newest, and return what to tell the base for the next `dt` s."""
+        ...
+
+    def facts(self) -> Mapping[str, Fact]:
+        """Return path, fit, spread, slip and still, as the diagnosis knows them."""
+        ...
+
+    def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
+        """Return the readings of "localisation" and "navigator", which worked so many s ago."""
+        ...

@@ -1,0 +1,82 @@
+"""Whether wheels and laser agree about how the robot moved.
+
+Wheels that turn on a wet floor, or a count of them with the wrong sign, lead a robot astray slowly,
+because localisation follows for a while. So the wheels are compared with matched scans, step by
+step, over the last stretch of the way.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from math import hypot
+
+import numpy as np
+
+from tangy_hw.device_protocols import Pose, Scan
+from tangy_hw.navigation.poses import HERE, Floats, between, wrap
+from tangy_hw.navigation.scan_matching import Match, Reference
+
+STEP, TURN = 0.1, 0.15  # metres and radians by the wheels after which scans are compared
+STEPS = 8  # that are summed up: most of a metre
+KEPT = 50  # scans after which a step does not count any more: 5 s at ten a second
+FITS = 0.6  # share of points that must fit for a match to be believed
+FARTHEST = 0.4  # metres: a match that is further off the wheels than that is not believed
+ARM = 0.25  # metres from the robot's middle to its wheels: what a turn means in metres of wheel
+
+
+class Disagreement:
+    """Compares the wheels with matched scans over the last stretch of the way."""
+
+    def __init__(self, laser: Pose = HERE) -> None:
+        self._laser = laser
+        self._steps: deque[tuple[int, Floats]] = deque(maxlen=STEPS)
+        self._count = 0
+        self._reference: Reference | None = None
+        self._from = HERE
+
+    def update(self, odometry: Pose, scan: Scan) -> float:
+        """Take in wheels and laser at one moment; return by how many metres they disagree."""
+        self._count += 1
+        while self._steps and self._steps[0][0] < self._count - KEPT:
+            self._steps.popleft()
+        if self._reference is None:
+            self._begin(odometry, scan)
+        else:
+            step = between(self._from, odometry)
+            if hypot(step.x, step.y) > STEP or abs(step.heading) > TURN:
+                self._compare(self._reference, step, scan)
+                self._begin(odometry, scan)
+        return self.metres
+
+    @property
+    def metres(self) -> float:
+        """By how many metres they disagree: the sum of the steps' differences."""
+        if not self._steps:
+            return 0.0
+        return float(np.linalg.norm(np.sum([step for _, step in self._steps], axis=0)))
+
+    def reset(self) -> None:
+        """Begin anew, as after the wheels were mended."""
+        self._steps.clear()
+        self._reference = None
+
+    def _begin(self, odometry: Pose, scan: Scan) -> None:
+        self._reference, self._from = Reference(scan, self._laser), odometry
+
+    def _compare(self, reference: Reference, step: Pose, scan: Scan) -> None:
+        match = reference.match(scan, step, self._laser)
+        if match.fits < FITS:  # perhaps it stood still, or went the other way
+            others = (HERE, Pose(-step.x, -step.y, step.heading))
+            match = max(
+                (match, *(reference.match(scan, other, self._laser) for other in others)),
+                key=lambda one: one.fits,
+            )
+        off = _off(step, match)
+        if match.fits >= FITS and hypot(off[0], off[1]) <= FARTHEST:
+            self._steps.append((self._count, off))
+
+
+def _off(step: Pose, match: Match) -> Floats:
+    """Return by how much wheels and a match differ: on the floor, and by the turn, in metres."""
+    floor = match.told @ np.array([step.x - match.pose.x, step.y - match.pose.y])
+    return np.array([*floor, ARM * wrap(step.heading - match.pose.heading)])

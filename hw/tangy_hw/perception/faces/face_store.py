@@ -1,0 +1,212 @@
+"""What is kept of faces in a data folder: features, never pictures, and only with consent.
+
+Each person has a file for each kind of features, DATA/faces/KIND-PERSON.face: a line of JSON that
+says what is in it, and then the rows as 16-bit numbers. Who has agreed is in the log.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zlib
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote, unquote
+
+from tangy_hw.perception.faces.face_detector import FaceError
+from tangy_profiles.reading import plain
+from tangy_profiles.store import Store
+
+FOLDER = "faces"  # in the data folder
+CONSENT, FORGOTTEN = "consent to face", "face forgotten"
+"""The kinds of event. Consent has yes and how; forgetting takes it back."""
+ENDING = ".face"
+FORMAT = 1
+LARGEST_ROWS, LARGEST_COLUMNS = 1000, 100_000
+
+
+class NoConsent(FaceError):
+    """Somebody has not agreed that features of their face are kept."""
+
+
+def consented(store: Store) -> frozenset[str]:
+    """Return who has agreed that their face is known, and has not taken that back since."""
+    agreed: set[str] = set()
+    for event in store.events(CONSENT, FORGOTTEN):
+        if event.person is None:
+            continue
+        if event.kind == CONSENT and event.body.get("yes") is True:
+            agreed.add(event.person)
+        else:
+            agreed.discard(event.person)
+    return frozenset(agreed)
+
+
+def consent(store: Store, person: str, yes: bool, how: str) -> None:
+    """Note whether a person agreed, and how; after a no nothing of their face is kept."""
+    store.append(CONSENT, {"yes": yes, "how": plain(how)}, person=person)
+    if not yes:
+        _delete(store, person)
+
+
+def keep_face(store: Store, person: str, kind: str, rows: Any) -> None:
+    """Keep the features of a person's face, in place of those that were kept.
+
+    Raises:
+        NoConsent: the person has not agreed.
+        FaceError: the file cannot be written.
+    """
+    import numpy as np
+
+    if person not in consented(store):
+        raise NoConsent(plain(f"{person} has not agreed that Tangy knows their face."))
+    values = np.ascontiguousarray(rows, "<f2")
+    data = values.tobytes()
+    head = {
+        "format": FORMAT,
+        "person": person,
+        "kind": kind,
+        "rows": values.shape[0],
+        "columns": values.shape[1],
+        "sum": zlib.crc32(data),
+    }
+    folder = store.folder / FOLDER
+    path = folder / _name(kind, person)
+    begun = path.with_name(f".{path.name}")
+    try:
+        _check_folder(folder)
+        folder.mkdir(mode=0o700, exist_ok=True)
+        with suppress(FileNotFoundError):
+            begun.unlink()
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        with os.fdopen(os.open(begun, flags, 0o600), "wb") as file:
+            file.write(json.dumps(head).encode() + b"\n" + data)
+            file.flush()
+            os.fsync(file.fileno())
+        begun.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            begun.unlink()
+        raise FaceError(plain(f"{path}: cannot be written ({error.strerror}).")) from None
+
+
+def read_face(store: Store, person: str, kind: str) -> Any:
+    """Read the features of a person's face, a row for each picture; None where none are kept.
+
+    Raises:
+        FaceError: the file is broken, or cannot be read.
+    """
+    if person not in consented(store):
+        return None
+    return _read(store.folder / FOLDER / _name(kind, person), person, kind)
+
+
+def read_faces(store: Store, kind: str) -> dict[str, Any]:
+    """Read the features of everybody who has agreed, of one kind.
+
+    Raises:
+        FaceError: a file is broken, or cannot be read.
+    """
+    found = {}
+    for person in sorted(consented(store)):
+        rows = _read(store.folder / FOLDER / _name(kind, person), person, kind)
+        if rows is not None:
+            found[person] = rows
+    return found
+
+
+def kept_faces(store: Store) -> list[tuple[str, str]]:
+    """Return whose features are kept, and of which kind."""
+    return sorted(_ours(store.folder / FOLDER))
+
+
+def forget_face(store: Store, person: str) -> bool:
+    """Delete all that is kept of a person's face, and take back their consent.
+
+    Returns:
+        Whether there was anything.
+
+    Raises:
+        FaceError: a file cannot be deleted.
+    """
+    if person in consented(store):
+        store.append(FORGOTTEN, {}, person=person)
+    return _delete(store, person)
+
+
+def _delete(store: Store, person: str) -> bool:
+    folder = store.folder / FOLDER
+    deleted = False
+    try:
+        _check_folder(folder)
+        if not folder.is_dir():
+            return False
+        for path in list(folder.iterdir()):
+            named = _parse(path.name.removeprefix("."))
+            if named is not None and named[0] == person:
+                path.unlink()
+                deleted = True
+        with suppress(OSError):
+            folder.rmdir()  # where something else lies in it, it stays
+    except OSError as error:
+        raise FaceError(plain(f"{folder}: a face cannot be deleted ({error.strerror}).")) from None
+    return deleted
+
+
+def _check_folder(folder: Path) -> None:
+    if folder.is_symlink():  # what is kept elsewhere would not be forgotten
+        raise FaceError(plain(f"{folder}: is a symbolic link; make it a folder."))
+
+
+def _ours(folder: Path) -> set[tuple[str, str]]:
+    with suppress(OSError):
+        named = {_parse(path.name) for path in folder.iterdir()}
+        return {one for one in named if one is not None}
+    return set()
+
+
+def _name(kind: str, person: str) -> str:
+    return f"{kind}-{quote(person, safe='')}{ENDING}"
+
+
+def _parse(name: str) -> tuple[str, str] | None:
+    """Return whose file it is, and of which kind; None if it is none of ours."""
+    kind, dash, rest = name.partition("-")
+    if not kind.isalnum() or not dash or not rest.endswith(ENDING):
+        return None
+    return unquote(rest.removesuffix(ENDING)), kind
+
+
+def _read(path: Path, person: str, kind: str) -> Any:
+    import numpy as np
+
+    try:
+        _check_folder(path.parent)
+        content = path.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise FaceError(plain(f"{path}: cannot be read ({error.strerror}).")) from None
+    line, _, data = content.partition(b"\n")
+    try:
+        head = json.loads(line)
+        rows, columns = head["rows"], head["columns"]
+        sound = (
+            head["format"] == FORMAT
+            and (head["person"], head["kind"]) == (person, kind)
+            and isinstance(rows, int)
+            and isinstance(columns, int)
+            and 0 < rows <= LARGEST_ROWS
+            and 0 < columns <= LARGEST_COLUMNS
+            and len(data) == 2 * rows * columns
+            and head["sum"] == zlib.crc32(data)
+        )
+        values = np.frombuffer(data, "<f2").reshape(rows, columns) if sound else None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        values = None
+    if values is None or not np.isfinite(values).all():
+        raise FaceError(
+            plain(f"{path}: is broken; forget this face with `tangy faces forget`, and enrol it.")
+        )
+    return values.astype(np.float32)

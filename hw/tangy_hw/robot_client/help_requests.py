@@ -1,0 +1,124 @@
+"""Who asks for help, as a game knows it: by signs that are seen, or by somebody's word."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.commands import Commands
+from tangy_profiles.health import OK, WARN, state_of
+from tangy_profiles.robot import Device
+from tangy_profiles.tracker import Tracker
+
+LOOK_SECONDS = 0.5  # between two looks at the signs
+SIGN_SECONDS = 8.0  # in which somebody who was helped takes the sign down
+
+WITHDRAWN_SECONDS = 3.0
+"""Without a sign, after which somebody does not ask any more: an arm may have been before it."""
+
+
+class SeenRequests:
+    """The requests of one game; times are the robot's, in s."""
+
+    def __init__(
+        self, people: Sequence[str], commands: Commands, device: Device | None = None
+    ) -> None:
+        """Prepare a game.
+
+        Args:
+            people: the ids of those who take part, in the order of their seats.
+            commands: through which the robot is asked to look.
+            device: the sensor that sees the signs, if the robot has one.
+        """
+        self._people = tuple(people)
+        self._commands = commands
+        self._link = commands.link
+        self._device = device
+        self._by_word: dict[str, float] = {}
+        self._without_sign: dict[str, float] = {}
+        self._aside: set[str] = set()
+        self._unseen: set[str] = set()  # whose signs a sensor showed last that then fell silent
+
+    @property
+    def signs(self) -> dict[str, float]:
+        """Who has a sign up, and since when."""
+        asks = self._link.state.asks
+        return {self._people[seat - 1]: since for seat, since in asks if seat <= len(self._people)}
+
+    @property
+    def all(self) -> dict[str, float]:
+        """Who asks, by a sign that was not set aside or by word, and since when."""
+        signs = self.signs
+        self._aside &= signs.keys()  # who has turned the sign down may put it up again
+        if self._unseen and self._sees:
+            self._unseen.clear()
+        aside = self._aside | self._unseen
+        return {p: since for p, since in signs.items() if p not in aside} | self._by_word
+
+    def ask_for(self, person: str) -> None:
+        """Ask on behalf of somebody who has no sign."""
+        self._by_word[person] = self._link.time
+
+    def over(self, person: str) -> None:
+        """What somebody asked for by word is over."""
+        self._by_word.pop(person, None)
+
+    def set_aside(self, person: str) -> None:
+        """Leave somebody's request at that, also while the sign stays up."""
+        self.over(person)
+        self._aside.add(person)
+
+    def answered(self, person: str) -> bool:
+        """Say that what somebody asked for is done, and whether their sign is down then.
+
+        It is waited for a while. What a sensor that fell silent saw last does not count: the sign
+        is then left at that until it sees again.
+        """
+        self.over(person)
+        began = self._link.time
+        self._commands.do("answered", seat=self._people.index(person) + 1)
+        self._commands.settle()
+        while person in self.all and self._link.time - began < SIGN_SECONDS:
+            self._look()
+        if person in self.all and not self._sees:
+            self._unseen.add(person)
+        return person not in self.all
+
+    def look_twice(self, tracker: Tracker) -> None:
+        """Wait until it is certain whether somebody who waits has taken the sign down.
+
+        What changed is then seen with the behaviour under which it did, also with a game's last.
+        """
+        with suppress(DeviceError):  # what is wrong is seen by what devices report
+            while self._in_doubt(tracker):
+                self._look()
+
+    def _in_doubt(self, tracker: Tracker) -> bool:
+        self.tell(tracker)
+        return any(person in self._without_sign for person in tracker.queue)
+
+    def _look(self) -> None:
+        self._commands.wait(LOOK_SECONDS)
+        self._commands.settle()
+
+    @property
+    def _sees(self) -> bool:
+        """Whether the sensor of signs works."""
+        own = (
+            one for one in self._link.health() if self._device and one.device == self._device.name
+        )
+        reading = next(own, None)
+        return reading is None or state_of(self._device, reading) in (OK, WARN)
+
+    def tell(self, tracker: Tracker) -> None:
+        """Tell a game who asks, and who waits and does not ask any more."""
+        asking, now = self.all, self._link.time
+        for person, _ in sorted(asking.items(), key=lambda item: item[1]):
+            tracker.ask(person)
+        for person in list(tracker.queue):
+            if person in asking or person == tracker.place:
+                self._without_sign.pop(person, None)
+            elif now - self._without_sign.setdefault(person, now) > WITHDRAWN_SECONDS:
+                tracker.queue.remove(person)
+                del self._without_sign[person]

@@ -1,0 +1,421 @@
+"""The real world, as facilitation and monitoring see it: the door to a robot that is there.
+
+It keeps what the game is about (the numbers that were called, whose card was read, whose turn it
+is) by the same rules as the simulated one (`Tracker`), and fills it with what the robot sees:
+cards and faces in pictures, signs that ask, the place where it arrived. What people do about a
+request that was put to them is observed, within the activity's patience or later.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from math import pi
+from random import Random
+from typing import Any, assert_never
+
+from tangy_hw.device_protocols import DeviceError, Picture, Pose
+from tangy_hw.robot_client.card_observations import CardViews
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.commands import Commands
+from tangy_hw.robot_client.help_requests import SeenRequests
+from tangy_hw.robot_client.recovery_actions import Remedies
+from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
+from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import LIVE, GameWorld
+from tangy_profiles.health import OK, Health
+from tangy_profiles.robot import Robot
+from tangy_profiles.room import Point, Room
+from tangy_profiles.scene import Scene
+from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
+from tangy_profiles.tracker import Tracker
+
+PACE_SECONDS = 30.0
+"""From one call to the next at least, so that all can look and mark; about as in the paper."""
+LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
+PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
+DRIVES = ("go to user", "go to front")
+LAST_CALLS = 5  # that the chest screen shows
+FACING = pi / 2  # the heading at which the robot faces the people
+
+
+class LiveWorld:
+    """One room with a robot and people in it. `begin` each game, `execute` behaviours."""
+
+    played_in: GameWorld = LIVE
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[str],
+        link: RobotLink,
+        robot: Robot,
+        room: Room,
+        *,
+        seed: int,
+        names: Mapping[str, str] | None = None,
+        pace: float = PACE_SECONDS,
+        knows_faces: bool = False,
+    ) -> None:
+        """Make the world of a robot that is switched on.
+
+        Args:
+            activity: what is played.
+            people: the ids of those who take part, in the order of their seats.
+            link: the robot process.
+            robot: its profile.
+            room: where table and seats are.
+            seed: the order of the numbers comes from it.
+            names: what people are called.
+            pace: s from one call to the next.
+            knows_faces: the robot looks who it is that it has come to.
+        """
+        self.activity = activity
+        self.people = tuple(people)
+        self.over = True
+        self.broken = ""
+        """Why the last behaviour was not carried out to its end, "" if it was."""
+        self.link = link
+        self.commands = Commands(link)
+        self.cards = CardViews(activity, self.commands)
+        self._remedies = Remedies(self)
+        self._robot = robot
+        self._room = room
+        self._names = dict(names or {})
+        self._pace = pace
+        self._knows_faces = knows_faces
+        self._order = Random(f"{seed}/calls")
+        self._begin()
+
+    def _begin(self) -> None:
+        self.tracker = Tracker(self.activity, self.people)
+        self.called: list[int] = []
+        self._numbers = self.activity.deck.shuffled(self._order.random)
+        self.cards.begin()
+        self.requests = SeenRequests(
+            self.people, self.commands, self._robot.devices.get("requests")
+        )
+        self.sitting: dict[str, str] = {}
+        """Who was seen at whose place in this game, where it is not who sits there usually."""
+        self._halted = 0.0  # since when it stands halted, 0: it does not
+        self._due = 0.0  # when the next number may be called
+
+    def begin(self) -> ActivityState:
+        """Begin a new game and return its first state."""
+        self._begin()
+        self.over = False
+        with suppress(DeviceError):  # where it cannot, the first behaviour tries again
+            self._remedies.go_back(knows_place=not self.lost)
+        self.commands.settle()
+        return self.observe()
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot does not know where it stands: its places are too far apart."""
+        health = self.link.health()
+        facts = next((r.facts for r in health if r.device == "localisation"), {})
+        return float(facts.get("spread", 0.0)) >= LOST_SPREAD
+
+    def observe(self) -> ActivityState:
+        """Return the joint state as the robot's sensors have it now."""
+        if not self.over:
+            self.requests.tell(self.tracker)
+        return self.tracker.state()
+
+    def look_again(self) -> ActivityState:
+        """Take another look, a moment later, at what is beside the robot; return the state then.
+
+        A stop, or what keeps it from looking, ends that at once.
+        """
+        with suppress(DeviceError):
+            place = self.tracker.place
+            if place in self.tracker.queue and not self.over:
+                self.read_card(place, after=LOOK_SECONDS)
+            self.commands.settle()
+            self.link.beat()
+        return self.observe()
+
+    # ------------------------------------------------------------------------ behaviours
+
+    def execute(self, action: Action) -> Outcome:
+        """Let the robot carry out an action, and see what comes of it; it can be broken off."""
+        behaviour, began = action.behaviour, self.link.time
+        if self.over:
+            return Outcome(False, 0.0, (), None)
+        numbers: tuple[int, ...] = ()
+        response: Response | None = None
+        succeeded, self.broken = False, ""
+        try:
+            if self.tracker.allows(behaviour):
+                if behaviour.effect not in DRIVES and not self.lost:
+                    self._remedies.go_back(knows_place=True)  # staff may have driven it
+                found = self._numbers_of(action)
+                if found is not None:
+                    numbers = found
+                    response, succeeded = self._carry_out(action, numbers)
+        except DeviceError as error:
+            self.broken, numbers = str(error), ()
+        self._executed(behaviour, succeeded)
+        self.commands.settle()
+        if not self.broken and not self.over:
+            self.requests.look_twice(self.tracker)
+        return Outcome(succeeded, max(0.0, self.link.time - began), numbers, response)
+
+    def _numbers_of(self, action: Action) -> tuple[int, ...] | None:
+        """Return the numbers that an action is about; None if there is nothing to be asked."""
+        match action.behaviour.effect:
+            case "draw":
+                return tuple(self._numbers[len(self.called) : len(self.called) + 1])
+            case "clear wrong marks" | "set missing marks":
+                return self.cards.asked_about(action.behaviour)
+        return ()
+
+    def _carry_out(self, action: Action, numbers: tuple[int, ...]) -> tuple[Response | None, bool]:
+        """Do it; return what a person did about it, and whether the robot has done its part."""
+        behaviour, tracker = action.behaviour, self.tracker
+        if behaviour.effect == "draw":
+            self._keep_pace()
+        self._announce(action, numbers)
+        match behaviour.effect:
+            case "draw":
+                self.called.extend(numbers)
+                self._due = self.link.time + self._pace
+                with suppress(BrokenOff):  # it was called, whatever comes now
+                    self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
+            case "go to user":
+                target = action.target or (tracker.queue[0] if tracker.queue else None)
+                return None, target is None or self._go(target)
+            case "go to front":
+                return None, self._go(FRONT)
+            case "finish":
+                self.over = True
+            case "none" | "clear wrong marks" | "set missing marks" | "bring card closer":
+                pass  # it is said and shown; what people do about it is seen below
+            case forgotten:
+                assert_never(forgotten)
+        if not behaviour.persuades or tracker.place == FRONT:
+            return None, True
+        if behaviour.effect == "none" and tracker.place not in self.requests.signs:
+            return None, True  # nothing of what the person does about it can be seen
+        return self._response(action, numbers), True
+
+    def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
+        """Speak, show and gesture."""
+        name = self.name_of(action.target)
+        fill, deck = self.activity.fill, self.activity.deck
+        called = numbers if action.behaviour.effect == "draw" else ()
+        picture = Picture(
+            fill(action.image, name, numbers),
+            deck.label(called[0]) if called else "",
+            tuple(deck.label(number) for number in self.called[: -LAST_CALLS - 1 : -1]),
+            name if action.behaviour.attends else "",
+        )
+        speech = fill(action.speech, name, numbers)
+        self.say(speech, picture, self._robot.postures[action.posture])
+
+    def say(
+        self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
+    ) -> None:
+        """Say and show something; while there is no voice, the screen shows what is said.
+
+        Raises:
+            DeviceError: neither could be done.
+        """
+        written = picture._replace(text=speech)
+        if speech and not self._has_voice:
+            self.commands.perform(speech, written, posture)
+            return
+        done = self.commands.perform(speech, picture, posture)
+        if speech and not done.get("said"):  # it failed just now, or the robot has no voice
+            self.commands.perform("", written)
+
+    @property
+    def _has_voice(self) -> bool:
+        health = self.link.health()
+        return all(reading.state == OK for reading in health if reading.device == "voice")
+
+    def name_of(self, person: str | None) -> str:
+        """Return what whoever sits at somebody's place is called, "" for nobody."""
+        if person is None:
+            return ""
+        sitting = self.who(person)
+        return self._names.get(sitting, sitting)
+
+    def who(self, place: str) -> str:
+        """Return who sits at somebody's place, as far as the robot has seen."""
+        return self.sitting.get(place, place)
+
+    @property
+    def calls_in(self) -> float:
+        """The s until the next number may be called."""
+        return max(0.0, self._due - self.link.time)
+
+    def _keep_pace(self) -> None:
+        if wait := self.calls_in:
+            self.commands.wait(wait)
+
+    def _go(self, place: str) -> bool:
+        """Drive to a place; beside a person, see who it is and look at the card."""
+        if not self.drive(place):
+            return False
+        self.tracker.arrive(place)
+        self.cards.leave()
+        if place != FRONT:
+            if self._knows_faces:
+                self._see_who(place)
+            if place in self.tracker.queue:
+                self.read_card(place)
+        return True
+
+    def _see_who(self, place: str) -> None:
+        """Look who sits at a place: that person is spoken to, and what they do is theirs."""
+        person = self.commands.do("face").get("person")
+        self.cards.looked("face", place, person)
+        if person in self.people:
+            self.sitting.pop(place, None)
+            if person != place:
+                self.sitting[place] = person
+
+    def drive(self, place: str) -> bool:
+        """Drive to a place, whatever the game has of it; return whether it has arrived.
+
+        Raises:
+            DeviceError: it has to stand still.
+        """
+        to = self.stand(place)
+        done = self.commands.do("go", to=list(Pose(to.x, to.y, FACING)), name=place)
+        return bool(done.get("arrived"))
+
+    def stand(self, place: str) -> Point:
+        """Return where the robot stands at a place of the game."""
+        return self._room.stand(place, self.people)
+
+    def read_card(self, person: str, after: float = 0.0) -> None:
+        """Look at the card beside the robot, after so many s, and keep what is seen of it.
+
+        Raises:
+            DeviceError: it cannot look.
+        """
+        sitting = self.who(self.tracker.place)
+        card = self.cards.look(self.tracker.place, self.called, after, person=sitting)
+        self.cards.looked("card", person, card)
+        self.tracker.seen = self._told_by(card)
+
+    def _told_by(self, card: dict[str, Any]) -> str | None:
+        """Return the user activity state that a card shows, None if it is not told."""
+        state = str(card["state"])
+        return state if state != self.activity.unread else None
+
+    # ------------------------------------------------------------------------ what people do
+
+    def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
+        """Watch what the person beside the robot does about it; None: that cannot be seen."""
+        place, patience = self.tracker.place, self.activity.patience
+        person = self.who(place)
+        began = before = self.link.time
+        while True:
+            done = self._is_done(action.behaviour, numbers)
+            now = self.link.time
+            seconds = (before + now) / 2 - began  # it was done between two looks
+            if done:
+                return Response(person, action.strategy, True, seconds <= patience, seconds)
+            if now - began > PATIENCES * patience:
+                if action.behaviour.effect == "none" or self.cards.view is None:
+                    return None  # a sign that stays up may be forgotten, or want something else
+                return Response(person, action.strategy, False, False, now - began)
+            before = now
+
+    def _is_done(self, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
+        """Look whether what a behaviour asks for has been done."""
+        place = self.tracker.place
+        if behaviour.effect == "none":
+            self.commands.wait(LOOK_SECONDS)
+            self.commands.settle()
+            return place not in self.requests.signs
+        card = self.cards.look(place, self.called, LOOK_SECONDS, person=self.who(place))
+        done = self.cards.shows_done(card, behaviour, numbers)
+        if done:
+            self.cards.looked("card", place, card)
+        if place in self.tracker.queue:
+            self.tracker.seen = self._told_by(card)
+        return done
+
+    def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
+        """Let a behaviour count; whose request it settled is to take the sign down."""
+        tracker = self.tracker
+        seen = tracker.seen
+        tracker.executed(behaviour, succeeded=succeeded)
+        closed = tracker.closed
+        if closed is None or self.over:
+            return
+        try:
+            is_down = self.requests.answered(closed)
+        except DeviceError:
+            return
+        if not is_down:  # it still asks: nothing that was done has ended that
+            tracker.queue.insert(0, closed)
+            tracker.closed, tracker.seen = None, seen
+
+    def call_again(self) -> None:
+        """Say and show the last number once more.
+
+        Raises:
+            DeviceError: it could not be said.
+        """
+        if self.called:
+            label, *before = map(self.activity.deck.label, self.called[: -LAST_CALLS - 2 : -1])
+            self.say(label, Picture(label, label, tuple(before)))
+
+    def void_call(self) -> int | None:
+        """Take the last call back: its number counts as not called, and comes again later."""
+        if not self.called:
+            return None
+        number = self.called.pop()
+        self._numbers.remove(number)
+        self._numbers.append(number)
+        return number
+
+    # ------------------------------------------------------------------------ what is there
+
+    def scene(self) -> Scene:
+        """Return what there is to see, for a screen to draw."""
+        tracker = self.tracker
+        asking, view = set(tracker.queue), self.cards.view
+        doing = {p: "asks for help" if p in asking else "watches" for p in self.people}
+        return Scene(
+            self.link.state.going or tracker.place,
+            tuple(tracker.queue),
+            doing,
+            tuple(self.called),
+            view if view is not None and view.person == tracker.place else None,
+        )
+
+    @property
+    def seconds(self) -> float:
+        """The robot's time, in s."""
+        return self.link.time
+
+    def health(self) -> Health:
+        """Return what the robot's devices report."""
+        return self.link.health()
+
+    def recover(self, remedy: Remedy) -> float:
+        """Let the robot, a user or an expert do something about a fault; return the s it took.
+
+        The time for which a halted robot stood still before, while staff acted, counts with it.
+        """
+        if remedy.kind == "halt":
+            self._halted = self._halted or self.link.time
+            return self._remedies.do(remedy)
+        took = self.stood() + self._remedies.do(remedy)
+        self._halted = self.link.time if self._halted and remedy.kind != "resume" else 0.0
+        return took
+
+    def stood(self) -> float:
+        """Return for how long the robot has stood halted, in s, since this was asked last."""
+        since, now = self._halted, self.link.time
+        self._halted = now if since else 0.0
+        return max(0.0, now - since) if since else 0.0

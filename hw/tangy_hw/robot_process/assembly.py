@@ -1,0 +1,207 @@
+"""The wiring of a robot: from what its profile names to devices, and from devices to a robot."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Mapping
+from contextlib import AsyncExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tangy_hw.device_protocols import Clock, DeviceError, MachineClock, OwnNavigation, Pose
+from tangy_hw.drivers.registry import Wiring, open_device
+from tangy_hw.drivers.rosbridge import Rosbridge
+from tangy_hw.drivers.simulated_clock import SteppedClock
+from tangy_hw.navigation.external_navigator import Entrusted
+from tangy_hw.navigation.map_files import read_map
+from tangy_hw.navigation.navigator import Navigator
+from tangy_hw.navigation.navigator_protocol import Wayfinder
+from tangy_hw.navigation.occupancy import map_of_room, with_feet
+from tangy_hw.perception.camera_hub import Sensors, camera_sources
+from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
+from tangy_hw.perception.requests.help_request_source import RequestSource
+from tangy_hw.robot_process.body import Body
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_setup import RobotSetup, Setting
+from tangy_profiles.activity import load_activity
+from tangy_profiles.health import OK, WARN, Reading
+from tangy_profiles.robot import Robot, load_robot
+from tangy_profiles.room import Room, load_room
+
+WAKE_SECONDS = 8.0  # in which devices that are switched on begin to speak
+PIPE_LOOKS = 3  # pictures that may have been on their way
+AGREED_LOOKS = 2  # pictures in a row that show no other signs than are believed to be up
+SETTLE_SECONDS = 2.0  # of real time at most
+
+
+def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict[str, Any]:
+    """Return the settings of each driver: the given ones go before those of the profile.
+
+    With a base that is given, the profile's own navigation is left out: it drives the other. What
+    tells who asks is no driver of these (see `perception.requests.naming`).
+    """
+    own = {name: {"kind": d.kind, **d.settings} for name, d in robot.drivers.items()}
+    own.pop(REQUESTS, None)
+    if "base" in given:
+        own.pop("navigator", None)
+    return {**own, **given}
+
+
+class Wired:
+    """A robot with all that belongs to it; within `async with` it is switched on."""
+
+    def __init__(
+        self, robot: LiveRobot, sensors: Sensors, senses: Senses, bench: Rosbridge | None = None
+    ) -> None:
+        self.robot = robot
+        self._bench = bench
+        self._sensors = sensors
+        self._senses = senses
+        self._open = AsyncExitStack()
+
+    async def __aenter__(self) -> Wired:
+        try:
+            if self._bench is not None:
+                self._open.push_async_callback(self._bench.close)
+                await self._bench.start()
+            await self._open.enter_async_context(self._sensors)
+            self._open.callback(self._senses.close)
+            self._open.push_async_callback(self.robot.close)
+            await self.robot.start()
+            await self._senses.prepare()
+            await self._wake()
+            self.robot.watch_ticks()  # what takes its time at the start is over
+        except BaseException:
+            await self._open.aclose()
+            raise
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self._open.aclose()
+
+    async def _wake(self) -> None:
+        """Wait until every device has said something; what does not is seen by its reading."""
+        robot = self.robot
+
+        def speaks(reading: Reading) -> bool:  # a chest screen that no tablet shows yet warns
+            return reading.state == WARN or robot.state_of(reading) == OK
+
+        await self._sensors.settled(WAKE_SECONDS)
+        await robot.passing.until(lambda: all(map(speaks, robot.health())), WAKE_SECONDS)
+        await self.settle()
+
+    async def settle(self) -> None:
+        """Wait, in real time, until signs that are up or down now have been believed."""
+        requests = self.robot.requests
+        if requests is None:
+            return
+        first, until = requests.looks + PIPE_LOOKS, time.monotonic() + SETTLE_SECONDS
+        while time.monotonic() < until:
+            if requests.looks >= first and requests.agreed >= AGREED_LOOKS:
+                return
+            await asyncio.sleep(0.01)
+
+
+def wire(setup: RobotSetup) -> Wired:
+    """Put a robot together as a setup says; nothing is switched on yet.
+
+    Raises:
+        TangyError: a profile has a mistake, or a driver is set wrongly.
+    """
+    robot, activity = load_robot(setup.robot), load_activity(setup.activity)
+    room = load_room(setup.room)
+    clock: Clock = SteppedClock() if setup.stepped else MachineClock()
+    wiring = Wiring(robot, activity, clock, pairing=setup.pairing)
+    devices: dict[str, Any] = {
+        name: open_device(wiring, name, values)
+        for name, values in drivers_of(robot, setup.drivers).items()
+    }
+    body = _body(devices, wiring)
+    sensors = Sensors(
+        robot,
+        camera_sources(robot, [f"{name}={source}" for name, source in setup.cameras.items()]),
+        activity.deck,
+        deck_seed=setup.deck_seed,
+        log=Path(setup.log) if setup.log else None,
+    )
+    senses = Senses(
+        sensors,
+        activity,
+        deck_seed=setup.deck_seed,
+        faces={person: np.array(rows) for person, rows in setup.faces.items()},
+        models=robot.faces,
+    )
+    live = LiveRobot(
+        robot,
+        body,
+        _wayfinder(setup, robot, room, devices.get("navigator")),
+        clock,
+        senses=senses,
+        requests=_requests(setup, room),
+        stepped=setup.stepped,
+    )
+    bench = None
+    if isinstance(clock, SteppedClock):
+        # A link of its own: what it says is not to be taken for a word of the robot's.
+        bench = Rosbridge(next(iter(wiring.links)), clock=clock.now)
+        clock.follow(bench, _counted(body))
+    return Wired(live, sensors, senses, bench)
+
+
+def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
+    for needed in ("base", "laser"):
+        if needed not in devices:
+            raise DeviceError(
+                f"{wiring.robot.title} has no driver for {needed}: it must drive and see where."
+            )
+    own = [devices["navigator"]] if "navigator" in devices else []
+    return Body(
+        base=devices["base"],
+        laser=devices["laser"],
+        stop_button=devices.get("stop_button"),
+        arms=devices.get("arms"),
+        voice=devices.get("voice"),
+        screen=devices.get("screen"),
+        others=(*wiring.links.values(), *wiring.diagnosing.values(), *own),
+    )
+
+
+def _counted(body: Body) -> dict[str, Callable[[], int]]:
+    """Return how many scans and odometries have come, by what a bench calls them."""
+    return {
+        "laser": lambda: 0 if body.laser.scan is None else body.laser.scan.seq,
+        "base": lambda: 0 if body.base.odometry is None else body.base.odometry.seq,
+    }
+
+
+def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None) -> Wayfinder:
+    """Return what finds place and way: the robot's own navigation where it has one, or ours."""
+    if own is not None:
+        return Entrusted(own)
+    from tangy_hw.navigation.limits import Limits
+
+    count = len(setup.people)
+    known = map_of_room(room, people=count)
+    if setup.map:
+        known = with_feet(read_map(Path(setup.map)), room, count)
+    start = None if setup.start is None else Pose(*setup.start)
+    seats = room.seated(count)
+    return Navigator(
+        known,
+        np.random.default_rng(setup.seed),
+        start,
+        limits=Limits(speed=robot.speed),
+        people=np.array([(seat.x, seat.y) for seat in seats]),
+    )
+
+
+def _requests(setup: RobotSetup, room: Room) -> RequestSource | None:
+    if not setup.requests:
+        return None
+    from tangy_hw.perception.requests.sources import open_requests
+
+    return open_requests(setup.requests, room, setup.people, corners=setup.corners)

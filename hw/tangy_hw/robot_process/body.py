@@ -1,0 +1,27 @@
+"""The devices of one robot together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tangy_hw.device_protocols import Arms, Base, ChestScreen, Device, Laser, StopButton, Voice
+
+
+@dataclass(frozen=True)
+class Body:
+    """The devices of a robot that are there; what it has not is None."""
+
+    base: Base
+    laser: Laser
+    stop_button: StopButton | None = None
+    arms: Arms | None = None
+    voice: Voice | None = None
+    screen: ChestScreen | None = None
+    others: tuple[Device, ...] = ()
+    """What else is opened and closed: a link that several of them share."""
+
+    @property
+    def all(self) -> tuple[Device, ...]:
+        """All of them, those first through which others are reached."""
+        own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
+        return (*self.others, *(device for device in own if device is not None))

@@ -1,0 +1,409 @@
+"""The robot itself, as the robot process holds it: it drives, speaks, shows, looks, and stops.
+
+Everything that moves goes through its tick: there it looks whether it may drive, asks the navigator
+or whoever drives by hand how, and tells the base. What it must not do it does not do, whatever the
+program wants: while an emergency stop is pressed, a device that it drives by is silent, or the
+program is, it stands still; and it stops itself where its control was frozen. A stop waits behind
+nothing and latches; only whoever asked for it takes it back by `release`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+
+from tangy_hw.device_protocols import STILL, Clock, Picture, Pose, Twist
+from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.navigator_protocol import Wayfinder
+from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
+from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.robot_process.body import Body
+from tangy_hw.robot_process.control_loop import PassingTime
+from tangy_hw.robot_process.device_diagnostics import reports_of
+from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.robot_process.hand_drive import HandDrive
+from tangy_hw.robot_process.performer import Performer
+from tangy_hw.robot_process.stop_latch import FAULT, STAFF, BrokenOff, Stops
+from tangy_hw.robot_process.tick_watchdog import TickWatch
+from tangy_hw.robot_process.wheels import Wheels
+from tangy_hw.watchdogs import Watchdogs
+from tangy_profiles.health import Health, Reading
+from tangy_profiles.robot import Robot
+from tangy_profiles.state import FRONT
+
+DRIVE_SECONDS = 180.0  # for one drive; ten metres with three detours take 60
+SPIN_SECONDS = 60.0
+POSE_PATIENCE = 6.0
+BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
+HAZARD_SECONDS = 1.0
+"""That it may have to stand still, or be left alone, before it gives up what it does."""
+WATCH_SECONDS = 0.02  # between two looks at whether it may still drive
+
+
+class LiveRobot:
+    """A robot that is switched on. `start` it, and `close` it at the end, which stops it."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        body: Body,
+        navigator: Wayfinder,
+        clock: Clock,
+        *,
+        senses: Senses | None = None,
+        requests: RequestSource | None = None,
+        stepped: bool = False,
+    ) -> None:
+        """Put it together.
+
+        Args:
+            robot: its profile.
+            body: its devices.
+            navigator: what finds its place and its way.
+            clock: its time.
+            senses: what reads its pictures.
+            requests: who asks for help.
+            stepped: its time stands still while nothing is done.
+        """
+        self.robot = robot
+        self.navigator = navigator
+        self.senses = senses
+        self.requests = requests
+        self.alone: Callable[[], str] = str
+        """Says why nobody holds the reins any more, "" as long as somebody does."""
+        self.left: Callable[[str], None] = lambda why: None
+        """Is called with why when all that is under way is to be given up."""
+        self.going = ""
+        """Where it is driving to."""
+        self.passing = PassingTime(clock, self._tick, stepped=stepped)
+        self._body = body
+        self._clock = clock
+        self._stepped = stepped
+        limits = Limits(speed=robot.speed)
+        self.hand = HandDrive(limits)
+        self.watch = TickWatch()
+        self._wheels = Wheels(body.base, limits)
+        self._stops = Stops()
+        self._alone_since: float | None = None
+        self._left_alone = False
+        self._performer = Performer(body, self.passing, robot.gaze, lambda: self._halted)
+        self._wanted: Pose | None = None
+        self._was = ""  # how the last drive ended
+        self._evidence = DriveEvidence(navigator, clock.now)
+        self._ticked, self._ticks = clock.now(), Arrivals()
+        reports = reports_of(
+            robot,
+            body,
+            self._evidence,
+            lambda: clock.now() - self._ticked,
+            lambda: self._ticks.rate(clock.now()),
+            failed=lambda: self.failed,
+            frozen=lambda: self.watch.frozen,
+            senses=senses,
+            requests=requests,
+            stepped=stepped,
+        )
+        self._watchdogs = Watchdogs(robot, reports)
+        self._tasks: list[asyncio.Task[None]] = []
+
+    # ------------------------------------------------------------------------ on and off
+
+    async def start(self) -> None:
+        """Switch its devices on."""
+        for device in self._body.all:
+            await device.start()
+        if self.requests is not None:
+            await self.requests.start()
+        self._tasks = [asyncio.create_task(self.passing.run())]
+        if not self._stepped:
+            self._tasks.append(asyncio.create_task(self._watch()))
+        for task in self._tasks:
+            task.add_done_callback(self._ended)
+
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        """Stand still for good when its control has ended otherwise than by closing."""
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self._stops.failed = f"its control has failed ({error!r})"
+            self._tasks.append(asyncio.create_task(self._halt()))
+
+    async def close(self) -> None:
+        """Stop it, and switch its devices off."""
+        with suppress(Exception):
+            await self._wheels.stop()
+        self.navigator.cancel()
+        for task in self._tasks:
+            task.cancel()
+        if self._tasks:
+            await asyncio.wait(self._tasks)
+        if self.requests is not None:
+            await self.requests.close()
+        for device in reversed(self._body.all):
+            with suppress(Exception):  # the others are to be closed as well
+                await device.close()
+
+    # ------------------------------------------------------------------------ what it knows
+
+    def health(self) -> Health:
+        """Return the newest reading of every device."""
+        return self._watchdogs.health()
+
+    @property
+    def at_hand(self) -> dict[str, str]:
+        """What staff need once it is on: the address of the chest screen, and the code there.
+
+        Both are "" where the chest screen is no page.
+        """
+        screen = self._body.screen
+        return {"screen": getattr(screen, "url", ""), "code": getattr(screen, "code", "")}
+
+    def state_of(self, reading: Reading) -> str:
+        """Return the state of a device: STALE where its data is too old."""
+        return self._watchdogs.state(reading)
+
+    @property
+    def pose(self) -> Pose:
+        """Where it believes to be."""
+        estimate = self.navigator.estimate
+        return Pose(0.0, 0.0, 0.0) if estimate is None else estimate.pose
+
+    @property
+    def asking(self) -> tuple[Ask, ...]:
+        """Who asks for help, the one who has waited longest first."""
+        return () if self.requests is None else self.requests.asking
+
+    @property
+    def stopped(self) -> str:
+        """Why it was stopped, until all who did have released it."""
+        return self._stops.why
+
+    @property
+    def failed(self) -> str:
+        """What of its control has failed, for good; "" if nothing has."""
+        return self._stops.failed
+
+    @property
+    def _halted(self) -> str:
+        """Why nothing of it may move, "" if it may."""
+        return self.stopped or (self.alone() if self._left_alone else "")
+
+    @property
+    def hazard(self) -> str:
+        """Why it stands still, "" if it may drive."""
+        return self.stopped or self.alone() or self._watchdogs.hazard()
+
+    # ------------------------------------------------------------------------ what it does
+
+    async def perform(
+        self,
+        *,
+        text: str = "",
+        picture: Picture | None = None,
+        posture: Mapping[str, Sequence[float]] | None = None,
+        gazes: bool = False,
+    ) -> dict[str, bool]:
+        """Say, show and gesture at once; return which of it was done.
+
+        What cannot be done is left out: its device says so in its reading. With an arm that has
+        an error there are no gestures; the eyes are still turned, which `gazes` says this is for.
+
+        Raises:
+            BrokenOff: it was stopped meanwhile.
+        """
+        return await self._performer.perform(
+            text=text, picture=picture, posture=posture, gazes=gazes
+        )
+
+    async def go(self, goal: Pose, name: str = "") -> bool:
+        """Drive somewhere; return whether it has arrived (no: there is no way, or it is stuck).
+
+        Raises:
+            BrokenOff: it has to stand still, and why.
+        """
+        self.going = name or FRONT
+        self._wanted = goal
+        try:
+            self.navigator.go(goal)
+            arrived = await self._drive(DRIVE_SECONDS)
+            self._evidence.blocked = self._was == "blocked"
+            return arrived
+        except BaseException:
+            self.navigator.cancel()
+            raise
+        finally:
+            self.going = ""
+
+    async def spin(self) -> bool:
+        """Turn on the spot to find its place; return whether it has.
+
+        Raises:
+            BrokenOff: it has to stand still, and why.
+        """
+        self.navigator.spin()
+        found = False
+        try:
+            await self._drive(SPIN_SECONDS)
+            estimate = self.navigator.estimate
+            found = estimate is not None and estimate.found
+        finally:
+            self._evidence.looked_round(found=found)
+        return found
+
+    async def look_at(self, what: str) -> None:
+        """Turn the eyes to a card or a face, as the robot's profile says how."""
+        await self._performer.look_at(what)
+
+    def replan(self) -> None:
+        """Look whether there is a way again to where there was none."""
+        self._evidence.detour_taken()
+        if self._wanted is not None and self._evidence.blocked:
+            self._evidence.blocked = not self.navigator.finds_way(self._wanted)
+
+    def drive_by_hand(self, twist: Twist) -> None:
+        """Drive as somebody says who holds a key; it holds for a moment, and not in a hazard.
+
+        It is slower before what the scanner sees near, and stands before what is close.
+        """
+        self.navigator.cancel()
+        self.hand.tell(twist, self._clock.now())
+
+    async def stop(self, why: str, by: str = STAFF) -> None:
+        """Stand still now, hold the arms where they are, and be quiet; it latches, for `by`.
+
+        The base is first, and what fails in the rest changes nothing.
+        """
+        self._stops.hold(why, by)
+        await self._halt()
+
+    async def _halt(self) -> None:
+        self.hand.end()
+        try:
+            await self._wheels.stop()
+        finally:
+            self.navigator.cancel()
+            await self._performer.be_still()
+
+    def release(self, by: str = "") -> None:
+        """Let it move again as far as somebody is concerned, or whoever had stopped it."""
+        self._stops.release(by)
+        self._evidence.blocked = False
+        if by in ("", FAULT):
+            self.watch.frozen = 0.0
+
+    def watch_ticks(self) -> None:
+        """Watch from now on that no tick comes much too late, unless time stands still between."""
+        if not self._stepped:
+            self.watch.begin()
+
+    def seen_to(self) -> None:
+        """Take it that staff know that its control was frozen; it stands until it is released."""
+        self.watch.frozen = 0.0
+
+    def fail(self, device: str, state: str) -> None:
+        """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
+        self._watchdogs.fail(device, state)
+
+    async def restart(self, device: str) -> None:
+        """Switch a device off and on again."""
+        for one in self._body.all:
+            if one.name == device:
+                await one.close()
+                await one.start()
+
+    async def relax(self) -> None:
+        """Let the arms hang without torque."""
+        if self._body.arms is not None:
+            await self._body.arms.relax()
+
+    # ------------------------------------------------------------------------ in each tick
+
+    async def _drive(self, seconds: float) -> bool:
+        """Let the navigator drive until it has arrived, or cannot; or the robot must not."""
+        navigator, now = self.navigator, self._clock.now()
+        self._evidence.begin()
+        since = {"blocked": now, "hazard": now}
+
+        def over() -> bool:
+            now = self._clock.now()
+            if navigator.state != "blocked":
+                since["blocked"] = now
+            if not self.hazard:
+                since["hazard"] = now
+            return (
+                bool(self.stopped)
+                or navigator.state in ("arrived", "failed", "idle")
+                or now - since["blocked"] > BLOCKED_SECONDS
+                or now - since["hazard"] > HAZARD_SECONDS
+            )
+
+        await self.passing.until(over, seconds)
+        arrived = navigator.state == "arrived"
+        hazard = self.hazard
+        self._was = navigator.state
+        self._evidence.keep()
+        if not arrived:
+            navigator.cancel()
+            await self._wheels.stop()
+        if hazard and not arrived:
+            raise BrokenOff(hazard)
+        return arrived
+
+    def _tick(self) -> bool:
+        """Look, decide, and tell the base; say whether it drives, or is about to."""
+        base, laser = self._body.base, self._body.laser
+        now = self._clock.now()
+        passed, self._ticked = now - self._ticked, now
+        self._ticks.count(now)
+        if self.watch.tick():
+            self._was_frozen()
+        odometry, scan = base.odometry, laser.scan
+        command = STILL
+        if odometry is not None:
+            seen = None if scan is None else scan.value
+            command = self.navigator.tick(odometry.value, seen, passed)
+            self._evidence.note()
+        by_hand = self.hand.command(
+            None if scan is None else scan.value, now, self.navigator.unseen
+        )
+        command = command if by_hand is None else by_hand
+        self._mind()
+        if self.hazard:
+            command = STILL
+            self._stand()
+        elif command != STILL or not self._wheels.stand:
+            self._wheels.send(command)
+        return command != STILL or self.going != ""
+
+    def _was_frozen(self) -> None:
+        """Stop, and give up what was under way, until somebody lets it go on."""
+        why = f"it was frozen for {self.watch.frozen:.1f} s"
+        self._stops.hold(why, FAULT)
+        self._tasks.append(asyncio.create_task(self._halt()))
+        self.left(why)
+
+    async def _watch(self) -> None:
+        """Look for hazards between ticks, too: a robot that drives has no time to lose."""
+        while True:
+            await asyncio.sleep(WATCH_SECONDS)
+            self._mind()
+            if (self._wheels.driven != STILL or self.navigator.drives) and self.hazard:
+                self._stand()
+
+    def _stand(self) -> None:
+        """Have the base stand, and whatever drives it past us call that off, until it has."""
+        self.navigator.held()
+        if not self._wheels.stand or self.navigator.drives:
+            self._wheels.send(STILL)
+
+    def _mind(self) -> None:
+        """Hold the arms and be quiet, once, when nobody has held the reins for a while."""
+        why, now = self.alone(), self._clock.now()
+        if not why:
+            self._alone_since, self._left_alone = None, False
+        elif self._alone_since is None:
+            self._alone_since = now
+        elif not self._left_alone and now - self._alone_since > HAZARD_SECONDS:
+            self._left_alone = True
+            self._tasks.append(asyncio.create_task(self._performer.be_still()))
+            self.left(why)

@@ -1,0 +1,107 @@
+"""What each device of a robot reports, with what its driving has shown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from tangy_hw.device_protocols import Device
+from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.perception.requests.help_request_source import RequestSource
+from tangy_hw.robot_process.body import Body
+from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.watchdogs import Report
+from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
+from tangy_profiles.robot import FROZEN, LINK, Robot
+
+FILMED_PATIENCE = 4.0
+"""How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
+
+
+def reports_of(
+    robot: Robot,
+    body: Body,
+    evidence: DriveEvidence,
+    ticked: Callable[[], float],
+    rate: Callable[[], float | None] = lambda: None,
+    *,
+    failed: Callable[[], str] = str,
+    frozen: Callable[[], float] = float,
+    senses: Senses | None = None,
+    requests: RequestSource | None = None,
+    stepped: bool = False,
+) -> dict[str, Report]:
+    """Return how each device tells of itself, by its name.
+
+    Args:
+        robot: the profile, which says how old data may be.
+        body: the devices that move, measure and speak.
+        evidence: what drives have shown.
+        ticked: how long ago the robot has looked and decided last, in s.
+        rate: how often a second it does.
+        failed: what of its control has failed, "" if nothing has.
+        frozen: for how many s its control was frozen, until staff have seen to that.
+        senses: what reads pictures, if anything does.
+        requests: who asks for help, if anybody can.
+        stepped: time stands still while nobody waits for it; cameras film in real time.
+    """
+    base = body.base
+    named: dict[str, list[Device]] = {}
+    for device in body.all:
+        if getattr(device, "drives", True):  # of other links those tell that are reached by them
+            named.setdefault(device.name, []).append(device)
+    reports: dict[str, Report] = {
+        name: partial(_worst, robot, devices) for name, devices in named.items()
+    }
+    reports["base"] = lambda: evidence.base(base.reading())
+
+    def of_ticks(reading: Reading) -> Reading:
+        return reading._replace(rate=rate()) if reading.rate is None else reading
+
+    reports["localisation"] = lambda: of_ticks(evidence.localisation(ticked()))
+
+    def navigator() -> Reading:
+        reading = of_ticks(evidence.navigator(ticked()))
+        return reading._replace(state=ERROR) if failed() else reading
+
+    reports["navigator"] = navigator
+
+    linked = reports.get(LINK, lambda: Reading(LINK))
+
+    def link() -> Reading:
+        reading, seconds = linked(), frozen()
+        if not seconds:
+            return reading
+        return reading._replace(state=ERROR, facts={**reading.facts, FROZEN: seconds})
+
+    reports[LINK] = link
+
+    def filmed(reading: Reading) -> Reading:
+        if not stepped:
+            return reading
+        late = reading.age / FILMED_PATIENCE
+        device = robot.devices.get(reading.device)
+        fresh = device is None or late <= device.stale_after
+        return reading._replace(
+            age=late, state=OK if reading.state == STALE and fresh else reading.state
+        )
+
+    def camera(senses: Senses, name: str) -> Reading:
+        readings = senses.sensors.health()
+        return filmed(next((r for r in readings if r.device == name), Reading(name, state=WARN)))
+
+    if requests is not None:
+        reports["requests"] = lambda: filmed(requests.reading())
+    if senses is not None:
+        for name in senses.sensors.cameras:
+            reports[name] = partial(camera, senses, name)
+    return reports
+
+
+def _worst(robot: Robot, devices: Sequence[Device]) -> Reading:
+    """Return the reading of that of several devices of one name that is worst off."""
+
+    def badness(reading: Reading) -> tuple[int, float]:
+        return STATES.index(state_of(robot.devices.get(reading.device), reading)), reading.age
+
+    return max((device.reading() for device in devices), key=badness)

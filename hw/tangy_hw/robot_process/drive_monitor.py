@@ -1,0 +1,89 @@
+"""What a drive shows of what is wrong, kept for a moment: some passes before anybody looks.
+
+That the robot was lost for a moment is kept until it has looked round: it may have found its place
+in the meantime, but it is not where it was in the game any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tangy_profiles.health import Fact, Reading
+
+if TYPE_CHECKING:
+    from tangy_hw.navigation.navigator_protocol import Wayfinder
+
+LOST_FIT, LOST_SPREAD, SLIPS = 0.85, 0.5, 0.3  # as the rules for faults have it
+KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong with it
+
+
+class DriveEvidence:
+    """The worst of a navigator's facts on the present drive, and for a moment after it."""
+
+    def __init__(self, navigator: Wayfinder, now: Callable[[], float]) -> None:
+        self.blocked = False
+        """Whether there was no way to where the robot was to go last."""
+        self._navigator = navigator
+        self._now = now
+        self._worst: dict[str, Fact] = {}
+        self._kept: dict[str, Fact] = {}
+        self._until = 0.0
+        self._lost: dict[str, Fact] = {}
+        self._slipped = 0.0
+
+    def begin(self) -> None:
+        """Begin a drive: what was wrong with the last one is forgotten."""
+        self.blocked = False
+        self._worst, self._kept = {}, {}
+
+    def note(self) -> None:
+        """Take note of how it is now."""
+        facts, worst = self._navigator.facts(), self._worst
+        for name in ("still", "slip"):
+            worst[name] = max(float(worst.get(name, 0.0)), float(facts[name]))
+        if facts["path"] == "replanned":
+            worst["path"] = "replanned"
+        if float(facts["fit"]) < LOST_FIT and float(facts["spread"]) > LOST_SPREAD:
+            self._lost |= {name: facts[name] for name in ("fit", "spread")}
+            if float(worst["slip"]) > SLIPS:  # that is why it is lost
+                self._slipped = max(self._slipped, float(worst["slip"]))
+
+    def keep(self) -> None:
+        """The drive is over: keep what it has shown for a moment."""
+        self._kept, self._until = dict(self._worst), self._now() + KEPT_SECONDS
+
+    def detour_taken(self) -> None:
+        """Another way was found and is taken: there is nothing more to be said of it."""
+        self._worst.pop("path", None)
+        self._kept.pop("path", None)
+
+    def base(self, own: Reading) -> Reading:
+        """Return the reading of the base with what the navigator knows of it."""
+        facts = self._navigator.facts()
+        told = {name: facts[name] for name in ("still", "slip")} | self._of("still", "slip")
+        told["slip"] = max(float(told["slip"]), self._slipped)
+        return own._replace(facts={**own.facts, **told})
+
+    def looked_round(self, *, found: bool) -> None:
+        """The robot has looked round: it knows its place again, or does not."""
+        if not found:
+            self._lost["found"] = False
+            return
+        self._lost, self._slipped = {}, 0.0
+
+    def localisation(self, age: float) -> Reading:
+        """Return the reading of the sense of place, that last worked so many s ago."""
+        reading = self._navigator.readings(age)[0]
+        return reading._replace(facts={**reading.facts, **self._lost})
+
+    def navigator(self, age: float) -> Reading:
+        """Return the reading of the navigation, that last worked so many s ago."""
+        reading = self._navigator.readings(age)[1]
+        told: dict[str, Fact] = {"path": "none"} if self.blocked else self._of("path")
+        return reading._replace(facts={**reading.facts, **told})
+
+    def _of(self, *names: str) -> dict[str, Fact]:
+        if self._now() >= self._until:
+            return {}
+        return {name: self._kept[name] for name in names if name in self._kept}

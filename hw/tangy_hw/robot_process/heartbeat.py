@@ -1,0 +1,51 @@
+"""A beat of the robot process: how the robot is, as JSON; the other end reads a `RobotState`."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from tangy_hw.perception.card_and_face_perception import CardSeen
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_profiles.health import Health
+
+MOST_PARTICLES = 60  # that are told, of those by which it finds its place
+
+
+def beat_of(robot: LiveRobot, number: int) -> dict[str, Any]:
+    """Return how a robot is now: lengths in m, times in s of its own clock."""
+    navigator = robot.navigator
+    path = () if navigator.path is None else navigator.path.points
+    return {
+        "number": number,
+        "time": robot.passing.clock.now(),
+        "health": _health(robot.health()),
+        "pose": [round(value, 3) for value in robot.pose],
+        "going": robot.going,
+        "path": [[round(x, 2), round(y, 2)] for x, y in path],
+        "particles": _thinned(navigator.particles),
+        "obstacles": [[round(x, 2), round(y, 2)] for x, y in navigator.obstacles],
+        "asks": [[ask.seat, ask.since] for ask in robot.asking],
+        "hazard": robot.hazard,
+        "stopped": robot.stopped,
+        "failed": robot.failed,
+        "frozen": round(robot.watch.frozen, 1),
+        "held": robot.hand.held,
+    }
+
+
+def aged(seen: tuple[CardSeen, float] | None) -> dict[str, Any] | None:
+    """Return what was seen of a card, and how long ago, in s."""
+    return None if seen is None else {**seen[0].to_json(), "age": time.monotonic() - seen[1]}
+
+
+def _health(health: Health) -> list[list[Any]]:
+    def rounded(rate: float | None) -> float | None:
+        return None if rate is None else round(rate, 2)
+
+    return [[r.device, min(r.age, 1e6), r.state, dict(r.facts), rounded(r.rate)] for r in health]
+
+
+def _thinned(particles: Any) -> list[list[float]]:
+    apart = max(1, len(particles) // MOST_PARTICLES)
+    return [[round(float(x), 2), round(float(y), 2)] for x, y, *_ in particles[::apart]]

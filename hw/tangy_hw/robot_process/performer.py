@@ -1,0 +1,98 @@
+"""What a robot says, shows and gestures, all at once; and how it holds its arms and is quiet."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from typing import Any
+
+from tangy_hw.device_protocols import Arms, Picture
+from tangy_hw.robot_process.body import Body
+from tangy_hw.robot_process.control_loop import PassingTime
+from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_profiles.health import ERROR
+
+SPEECH_SECONDS = 60.0  # for one line
+POSE_SECONDS = 1.5  # in which arms are where they should be
+STOP_SECONDS = 1.0  # in which arms and voice have heard that they are to stop
+
+Angles = Mapping[str, Sequence[float]]
+
+
+class Performer:
+    """The voice, the screen and the limbs of a robot; `halted` says why they must be still."""
+
+    def __init__(
+        self,
+        body: Body,
+        passing: PassingTime,
+        gazes: Mapping[str, Angles],
+        halted: Callable[[], str],
+    ) -> None:
+        """Take them; `gazes` are where the eyes turn to, by what they look at."""
+        self._body, self._passing = body, passing
+        self._gazes, self._halted = gazes, halted
+        self._gaze = ""
+
+    async def perform(
+        self,
+        *,
+        text: str = "",
+        picture: Picture | None = None,
+        posture: Angles | None = None,
+        gazes: bool = False,
+    ) -> dict[str, bool]:
+        """Say, show and gesture; see `LiveRobot.perform`."""
+        doing: dict[str, Coroutine[Any, Any, None]] = {}
+        if self._body.voice is not None and text:
+            doing["said"] = self._body.voice.say(text)
+        if self._body.screen is not None and picture is not None:
+            doing["shown"] = self._body.screen.show(picture)
+        arms = self._body.arms
+        if arms is not None and posture and (gazes or arms.reading().state != ERROR):
+            doing["posed"], self._gaze = self._pose(arms, posture), ""
+        tasks = {what: asyncio.create_task(work) for what, work in doing.items()}
+        try:
+            await self._passing.until(
+                lambda: bool(self._halted()) or all(task.done() for task in tasks.values()),
+                SPEECH_SECONDS,
+            )
+        finally:
+            for task in tasks.values():
+                task.cancel()
+            await asyncio.gather(*tasks.values(), return_exceptions=True)
+        if why := self._halted():
+            raise BrokenOff(why)
+        return {
+            what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
+        }
+
+    async def _pose(self, arms: Arms, posture: Angles) -> None:
+        """Move the arms; not when it was stopped before they were told."""
+        if why := self._halted():
+            raise BrokenOff(why)
+        await arms.pose(posture, POSE_SECONDS)
+
+    async def look_at(self, what: str) -> None:
+        """Turn the eyes to a card or a face."""
+        angles = self._gazes.get(what)
+        if angles and self._body.arms is not None and self._gaze != what:
+            done = await self.perform(posture=angles, gazes=True)
+            if not done.get("posed"):  # the head turns though an arm is broken
+                await self._passing.sleep(POSE_SECONDS)
+            self._gaze = what
+
+    async def be_still(self) -> None:
+        """Hold the arms where they are, and be quiet; what fails of it changes nothing."""
+        self._gaze = ""
+        works: list[Coroutine[Any, Any, None]] = []
+        if self._body.arms is not None:
+            works.append(self._body.arms.hold())
+        if self._body.voice is not None:
+            works.append(self._body.voice.hush())
+        tasks = [asyncio.create_task(work) for work in works]
+        if tasks:
+            await asyncio.wait(tasks, timeout=STOP_SECONDS)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)

@@ -1,0 +1,370 @@
+"""The robot process, spoken to by JSON lines on its pipes.
+
+The first line is a `RobotSetup`. Then each line asks for something: {"id": 7, "do": "go", ...} is
+answered by {"id": 7, "done": {...}} or {"id": 7, "failed": "a sentence", "broken": true if it was
+broken off}; several may be under way. {"beat": n} says that the program lives, without an answer.
+A line that cannot be heeded is answered by what is wrong with it, and ends nothing.
+By itself it says {"beat": {...}}, ten times a second: health, pose, who asks, and why it stands.
+
+Whatever happens to the program, the robot stops: when its pipe closes it stops and ends; when
+nothing comes through it for a while it stops, and gives up what it was doing.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import gc
+import os
+import signal
+import sys
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import astuple
+from typing import Any
+
+from tangy_hw.device_protocols import DeviceError, Twist
+from tangy_hw.perception.card_and_face_perception import MOST_PICTURES, CardSeen, Senses
+from tangy_hw.robot_process.assembly import Wired, wire
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.heartbeat import aged, beat_of
+from tangy_hw.robot_process.program_pipe import Answers, end_with, open_lines
+from tangy_hw.robot_process.protocol import (
+    Asked,
+    LineError,
+    id_of,
+    number_of,
+    picture_of,
+    pose_of,
+    read_line,
+    text_of,
+)
+from tangy_hw.robot_process.startup import switched_on
+from tangy_hw.robot_process.stop_latch import STAFF, BrokenOff
+from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.errors import TangyError
+
+BEAT_SECONDS = 0.1
+SILENT_SECONDS = 0.15
+"""For so long the program may say nothing while the robot drives: three of its beats. It is told to
+stand then, and stands when it has braked; it does not drive on when that takes longer."""
+SILENT_STEPPED = 20.0
+"""On a bench in a hurry nothing moves by itself, and the program may be busy."""
+LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
+
+Answer = dict[str, Any]
+
+
+class RobotProcess:
+    """Does what the lines ask for, and tells of the robot."""
+
+    def __init__(self, wired: Wired, say: Callable[[Answer], None], *, stepped: bool) -> None:
+        """Take charge of a robot that is wired up; `say` writes a line."""
+        self.robot: LiveRobot = wired.robot
+        self._wired = wired
+        self._say = say
+        self._patience = SILENT_STEPPED if stepped else SILENT_SECONDS
+        self._stepped = stepped
+        self._heard = time.monotonic()
+        self._doing: dict[int | str, asyncio.Task[None]] = {}
+        self._broken = ""  # why what was under way was given up last
+        self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
+        self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
+        self.robot.alone = self._why_alone
+        self.robot.left = self._break_off
+        self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
+            "perform": self._perform,
+            "go": self._go,
+            "spin": self._spin,
+            "card": self._card,
+            "face": self._face,
+            "picture": self._small_picture,
+            "sights": self._sights,
+            "wait": self._wait,
+            "settle": self._settle,
+            "replan": self._replan,
+            "answered": self._answered,
+            "restart": self._restart,
+            "relax": self._relax,
+            "place": self._place,
+            "fail": self._fail,
+        }
+
+    # ---------------------------------------------------------------------- the lines
+
+    async def live(self, said: list[bytes], lines: asyncio.StreamReader) -> None:
+        """Do what the program says and has said until it ends, and stop the robot then."""
+        self._say({"ready": True, "done": self.robot.at_hand})
+        beating = asyncio.create_task(self.beat())
+        try:
+            for line in said:
+                await self.take(line)
+            while await self._take_next(lines):
+                pass
+        finally:
+            beating.cancel()
+            await self.robot.stop("the program has ended")
+
+    async def _take_next(self, lines: asyncio.StreamReader) -> bool:
+        """Take the next line; return whether there was one."""
+        try:
+            line = await lines.readline()
+        except ValueError:
+            self.refuse("That line is too long.")
+            return True
+        if line:
+            await self.take(line)
+        return bool(line)
+
+    async def take(self, line: bytes) -> None:
+        """Take a line of the program; what is wrong with one is answered, and ends nothing."""
+        self._heard = time.monotonic()
+        try:
+            asked = read_line(line)
+        except LineError as error:
+            self.refuse(str(error))
+            return
+        if "beat" in asked:
+            return
+        try:
+            if asked.get("do") == "stop":  # it waits behind nothing, nor for what is wrong with it
+                await self._stop(asked)
+            if id_of(asked) is None and "id" in asked:
+                raise LineError("An id must be a whole number or a text.")
+            self._heed(asked)
+        except LineError as error:
+            self.refuse(str(error), asked)
+        except Exception as error:  # whoever asked must not wait for ever
+            self.refuse(f"It went wrong ({error!r}).", asked)
+
+    async def _stop(self, asked: Asked) -> None:
+        why, by = asked.get("why"), asked.get("by")
+        why = why if isinstance(why, str) else "stopped"
+        await self.robot.stop(why, by if isinstance(by, str) else STAFF)
+        self._break_off(why)
+
+    def refuse(self, why: str, asked: Asked | None = None) -> None:
+        """Answer a line that is not heeded; without an id to answer to it is only said."""
+        if asked is not None and id_of(asked) is not None:
+            self._answer(asked, failed=why)
+        else:
+            self._say({"failed": why})
+
+    def _heed(self, asked: Asked) -> None:
+        """Do what a line asks for at once, or begin it.
+
+        Raises:
+            LineError: it cannot be heeded.
+        """
+        match asked.get("do"):
+            case "stop":
+                pass
+            case "release":
+                self.robot.release(text_of(asked, "by", ""))
+            case "seen to":
+                self.robot.seen_to()
+            case "cancel":
+                self.robot.navigator.cancel()
+                self._break_off(text_of(asked, "why", "called off"))
+            case "drive":
+                twist = Twist(number_of(asked, "forward"), number_of(asked, "turn"))
+                self.robot.drive_by_hand(twist)
+            case str(do) if do in self._deeds:
+                self._begin(asked)
+                return
+            case do:
+                raise LineError(f"It cannot do {do!r:.100}.")
+        self._answer(asked, done={})
+
+    def _begin(self, asked: Asked) -> None:
+        number = id_of(asked)
+        if number is None or number in self._doing:
+            raise LineError(f"{asked['do']} needs an id of its own, to be answered by.")
+        task = asyncio.create_task(self._do(asked))
+        self._doing[number] = task
+        task.add_done_callback(lambda task: self._over(task, asked))
+
+    def _answer(self, asked: Asked, **what: Any) -> None:
+        if id_of(asked) is not None:
+            self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
+
+    async def _do(self, asked: Asked) -> None:
+        try:
+            done = await self._deeds[asked["do"]](asked)
+        except BrokenOff as error:
+            self._answer(asked, failed=str(error), broken=True)
+        except asyncio.CancelledError:
+            self._answer(asked, failed=self._broken or "called off", broken=True)
+        except TangyError as error:
+            self._answer(asked, failed=str(error))
+        except (KeyError, TypeError, ValueError) as error:
+            self._answer(asked, failed=f"It was not asked rightly ({error!r}).")
+        except Exception as error:  # whoever asked must not wait for ever
+            self._answer(asked, failed=f"It went wrong ({error!r}).")
+        else:
+            self._answer(asked, done=done or {})
+
+    def _over(self, task: asyncio.Task[None], asked: Asked) -> None:
+        self._doing.pop(asked["id"], None)
+        if task.cancelled():  # it was broken off before it had begun, and has not answered
+            self._answer(asked, failed=self._broken or "called off", broken=True)
+
+    def _break_off(self, why: str) -> None:
+        self._broken = why
+        for task in self._doing.values():
+            task.cancel()
+
+    # ---------------------------------------------------------------------- what it does
+
+    async def _perform(self, asked: Asked) -> Answer:
+        picture = asked.get("picture")
+        return dict(
+            await self.robot.perform(
+                text=text_of(asked, "text", ""),
+                picture=None if picture is None else picture_of(picture),
+                posture=asked.get("posture"),
+            )
+        )
+
+    async def _go(self, asked: Asked) -> Answer:
+        arrived = await self.robot.go(pose_of(asked, "to"), text_of(asked, "name", ""))
+        return {"arrived": arrived, "pose": list(self.robot.pose)}
+
+    async def _spin(self, _: Asked) -> Answer:
+        return {"found": await self.robot.spin()}
+
+    async def _card(self, asked: Asked) -> Answer:
+        senses = self._senses
+        await self.robot.look_at("card")
+        if asked.get("after"):
+            await self.robot.passing.sleep(number_of(asked, "after"))
+        seen = await senses.read_card(
+            set(asked["called"]),
+            int(asked.get("pictures", MOST_PICTURES)),
+            identify=bool(asked.get("identify")),
+        )
+        self._looked = seen, time.monotonic()
+        if seen.card is not None:
+            self._read = self._looked
+        return seen.to_json()
+
+    async def _face(self, _: Asked) -> Answer:
+        senses = self._senses
+        await self.robot.look_at("face")
+        vote = await senses.who()
+        return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
+
+    async def _small_picture(self, asked: Asked) -> Answer:
+        """Give what a camera sees, as large as fits; nothing where no newer picture comes."""
+        width, height = (min(LARGEST_PICTURE, max(1, int(one))) for one in asked["fit"])
+        frame = await self._senses.sensors.picture(
+            str(asked["device"]), (width, height), after=int(asked.get("after", -1))
+        )
+        if frame is None:
+            return {}
+        pixels = base64.b64encode(frame.pixels).decode()
+        return {"seq": frame.seq, "size": [frame.width, frame.height], "pixels": pixels}
+
+    async def _sights(self, _: Asked) -> Answer:
+        """Tell how its cameras are, and what was read of cards last."""
+        sensors = self._senses.sensors
+        return {
+            "sights": {
+                name: [sensors.source(name), *astuple(sensors.sight(name))]
+                for name in sensors.cameras
+            },
+            "looked": aged(self._looked),
+            "read": aged(self._read),
+        }
+
+    @property
+    def _senses(self) -> Senses:
+        if self.robot.senses is None:
+            raise DeviceError("The robot has no cameras.")
+        return self.robot.senses
+
+    async def _wait(self, asked: Asked) -> None:
+        """Let time pass; with "asks" only until somebody asks who did not."""
+        there = {ask.seat for ask in self.robot.asking}
+        heed = bool(asked.get("asks"))
+        await self.robot.passing.until(
+            lambda: heed and {ask.seat for ask in self.robot.asking} - there != set(),
+            number_of(asked, "seconds"),
+        )
+
+    async def _settle(self, _: Asked) -> None:
+        """Wait until what is there now has been seen, where time stands still meanwhile."""
+        if self._stepped:
+            await self._wired.settle()
+
+    async def _replan(self, _: Asked) -> None:
+        self.robot.replan()
+
+    async def _answered(self, asked: Asked) -> None:
+        if self.robot.requests is not None:
+            self.robot.requests.answered(int(asked["seat"]))
+
+    async def _restart(self, asked: Asked) -> None:
+        await self.robot.restart(str(asked["device"]))
+
+    async def _relax(self, _: Asked) -> None:
+        await self.robot.relax()
+
+    async def _place(self, asked: Asked) -> None:
+        self.robot.navigator.place(pose_of(asked, "at"))
+
+    async def _fail(self, asked: Asked) -> None:
+        self.robot.fail(str(asked["device"]), str(asked["state"]))
+
+    # ---------------------------------------------------------------------- what it tells
+
+    def _why_alone(self) -> str:
+        """Say whether the program has fallen silent."""
+        silent = time.monotonic() - self._heard > self._patience
+        return "the program says nothing" if silent else ""
+
+    async def beat(self) -> None:
+        """Tell how it is, again and again."""
+        number = 0
+        while True:
+            if not self.robot.watch.overdue:  # it was frozen, and looks at that before it tells
+                number += 1
+                async with self.robot.passing.still:
+                    self._say({"beat": beat_of(self.robot, number)})
+            await asyncio.sleep(BEAT_SECONDS)
+
+
+async def run() -> int:
+    """Be the robot process until the program ends."""
+    lines, pipe = await open_lines()
+    program = int(sys.argv[1]) if sys.argv[1:] else os.getppid()
+    ending = asyncio.create_task(end_with(program, lines))
+    try:
+        return await _serve(lines, pipe)
+    finally:
+        ending.cancel()
+
+
+async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> int:
+    _, out = await asyncio.get_running_loop().connect_write_pipe(Answers, sys.stdout)
+    try:
+        setup = RobotSetup.from_json(await lines.readline())
+        wired = wire(setup)
+        # Told to end, it does what it does when its pipe closes; before this, nothing is open.
+        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
+        async with switched_on(wired, lines) as said:
+            if said is None:
+                return 1
+            await RobotProcess(wired, out.write, stepped=setup.stepped).live(said, lines)
+    except TangyError as error:
+        out.write({"failed": str(error)})
+        await asyncio.sleep(0.1)  # until it is written
+        return 2
+    return 0
+
+
+def main() -> None:
+    """Run it."""
+    status = asyncio.run(run())
+    gc.freeze()  # or Python looks through all that was loaded once more
+    sys.exit(status)

@@ -1,0 +1,100 @@
+"""Lines to the robot process, read strictly: what one asks for, and what is wrong with it.
+
+Nothing that a line can hold gets further than here unless it is of the kind that is wanted: a
+number is finite, a pose has three of them, and an id can be answered to.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from tangy_hw.device_protocols import Picture, Pose
+from tangy_profiles.errors import TangyError
+
+Asked = dict[str, Any]
+
+
+class LineError(TangyError):
+    """A line that cannot be heeded; one sentence."""
+
+
+def read_line(line: bytes) -> Asked:
+    """Read a line as a JSON object.
+
+    Raises:
+        LineError: it is none, or nested too deeply.
+    """
+    try:
+        asked = json.loads(line)
+    except (ValueError, RecursionError):
+        asked = None
+    if not isinstance(asked, dict):
+        raise LineError("That line is no JSON object.")
+    return asked
+
+
+def id_of(asked: Asked) -> int | str | None:
+    """Return the id by which a line is answered; None where it has none that can be one."""
+    number = asked.get("id")
+    return number if isinstance(number, int | str) and not isinstance(number, bool) else None
+
+
+def number_of(asked: Mapping[str, Any], key: str) -> float:
+    """Return a finite number.
+
+    Raises:
+        LineError: there is none under that key.
+    """
+    number = _finite(asked.get(key))
+    if number is None:
+        raise LineError(f"{key} must be a number.")
+    return number
+
+
+def pose_of(asked: Mapping[str, Any], key: str) -> Pose:
+    """Return a pose: x and y in m, heading in radians.
+
+    Raises:
+        LineError: there are not three finite numbers under that key.
+    """
+    value = asked.get(key)
+    numbers = [_finite(one) for one in value] if isinstance(value, list) else []
+    x, y, heading = numbers if len(numbers) == 3 else (None, None, None)
+    if x is None or y is None or heading is None:
+        raise LineError(f"{key} must be x, y and heading.")
+    return Pose(x, y, heading)
+
+
+def text_of(asked: Mapping[str, Any], key: str, otherwise: str) -> str:
+    """Return a text, or another where nothing stands under that key.
+
+    Raises:
+        LineError: something stands there that is no text.
+    """
+    value = asked.get(key, otherwise)
+    if not isinstance(value, str):
+        raise LineError(f"{key} must be a text.")
+    return value
+
+
+def picture_of(told: Mapping[str, Any]) -> Picture:
+    """Return what the chest screen is to show."""
+    return Picture(
+        str(told.get("text", "")),
+        str(told.get("number", "")),
+        tuple(map(str, told.get("before", ()))),
+        str(told.get("asks", "")),
+    )
+
+
+def _finite(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:  # a whole number beyond any float
+        return None
+    return number if math.isfinite(number) else None

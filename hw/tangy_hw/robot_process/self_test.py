@@ -1,0 +1,157 @@
+"""A trial of a robot's devices: each driver is opened and listened to, and nothing is moved."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from tangy_hw.device_protocols import Device, DeviceError, MachineClock
+from tangy_hw.drivers.camera import Camera
+from tangy_hw.drivers.registry import DRIVERS, Wiring, open_device
+from tangy_hw.perception.camera_hub import Sources
+from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
+from tangy_hw.perception.requests.source_names import requests_named
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.health import ERROR, OK, WARN
+from tangy_profiles.robot import Robot
+from tangy_profiles.room import load_room
+
+SECONDS = 5.0  # in which a device that works has said something: cameras take the longest
+TICK_SECONDS = 0.05
+SEATED = ("user1", "user2", "user3", "user4")  # who is there makes no difference to a trial
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What was found of one device: whether it works, and a sentence about it.
+
+    `absent`: something is wanting, and not broken: nothing says what drives it, or nobody looks at
+    the screen yet.
+    """
+
+    device: str
+    ok: bool
+    text: str
+    absent: bool = False
+
+
+async def try_robot(
+    robot: Robot,
+    activity: Activity,
+    cameras: Sources,
+    seconds: float = SECONDS,
+    *,
+    pairing: Mapping[str, str] = MappingProxyType({}),
+) -> list[Trial]:
+    """Open every driver and camera that a robot's profile names, and listen to what they say.
+
+    Args:
+        robot: whose devices they are.
+        activity: what it is for.
+        cameras: where its cameras' pictures come from, by device.
+        seconds: for which is waited for a device at most.
+        pairing: by what tablets are known, as `RobotSetup` has it.
+
+    Returns:
+        What was found, in the order of the profile.
+    """
+    wiring = Wiring(robot, activity, MachineClock(), pairing=pairing)
+    found: dict[str, Trial] = {}
+    opened: dict[str, Device | Camera] = {
+        name: Camera(source, device=name) for name, source in cameras.items()
+    }
+    for name, driver in robot.drivers.items():
+        if name == REQUESTS:
+            continue  # no driver of these: it is tried below
+        try:
+            opened[name] = open_device(wiring, name, {"kind": driver.kind, **driver.settings})
+        except DeviceError as error:
+            found[name] = Trial(name, False, str(error))
+    shared: Sequence[Any] = (*wiring.links.values(), *wiring.diagnosing.values())
+    started: list[Any] = []
+    try:
+        for one in (*shared, *opened.values()):
+            started.append(one)
+            await one.start()
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if all(one.reading().state == OK for one in opened.values()):
+                break
+            await asyncio.sleep(TICK_SECONDS)
+        for name, one in opened.items():
+            found[name] = _tried(robot, name, one, wiring, seconds)
+    finally:
+        for one in reversed(started):
+            await one.close()
+    if REQUESTS in robot.devices:
+        found[REQUESTS] = await _try_requests(robot, seconds)
+    for name, device in robot.devices.items():
+        if device.looks_at and name not in found:
+            what = "nothing says where its pictures come from; name its source in"
+            found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
+    driven = {device for devices, _ in DRIVERS.values() for device in devices}
+    for name in driven - {"navigator"}:  # without one of its own, Tangy finds the way
+        if name in robot.devices and name not in found:
+            what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."
+            found[name] = Trial(name, False, what, absent=True)
+    return [found[name] for name in (*robot.devices, *(set(found) - set(robot.devices)))
+            if name in found]  # fmt: skip
+
+
+async def _try_requests(robot: Robot, seconds: float) -> Trial:
+    """Open what tells who asks for help, and see that it is there."""
+    from tangy_hw.perception.requests.sources import open_requests
+
+    try:
+        name, corners = requests_named(robot)
+        if not name:
+            what = "nothing tells who asks; name a source under [drivers] in"
+            return Trial(REQUESTS, False, f"{what} {robot.file.name}.", absent=True)
+        opened = open_requests(name, load_room(), SEATED, corners=corners)
+    except TangyError as error:
+        return Trial(REQUESTS, False, str(error))
+    async with opened:
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if opened.reading().state == OK:
+                break
+            await asyncio.sleep(TICK_SECONDS)
+        works = opened.reading().state == OK
+    text = f"{name} works." if works else f"{name} cannot be reached, or tells nothing."
+    return Trial(REQUESTS, works, text)
+
+
+def _tried(
+    robot: Robot, name: str, device: Device | Camera, wiring: Wiring, seconds: float
+) -> Trial:
+    where = _where(robot, name, device)
+    reading = device.reading()
+    if reading.state == OK:
+        return Trial(name, True, f"{where} works.")
+    if isinstance(device, Camera):
+        return Trial(name, False, device.sight.why or f"{where} gives no pictures.")
+    why = str(getattr(device, "why", ""))
+    if why:  # whose it is stands before it; a screen that waits for a tablet is not broken
+        said = why.removeprefix(f"{name}: ")
+        return Trial(name, False, said, absent=reading.state == WARN)
+    link = wiring.links.get(str(robot.drivers[name].settings.get("at", "")))
+    if link is not None and not link.connected:
+        return Trial(name, False, f"nobody answers at {link.url}.")
+    if reading.state == ERROR:
+        return Trial(name, False, f"{where} reports an error.")
+    if reading.state == WARN:
+        return Trial(name, False, f"{where} warns that something is wrong with it.")
+    return Trial(name, False, f"{where} has sent nothing within {seconds:g} s.")
+
+
+def _where(robot: Robot, name: str, device: Device | Camera) -> str:
+    if isinstance(device, Camera):
+        return device.name
+    driver = robot.drivers[name]
+    at = driver.settings.get("at", "")
+    return f"{driver.kind} at {at}" if at else driver.kind
