@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tangy_sim.faulty import FaultyWorld
+from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, Move
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.monitoring.telling import move_words, whom_to_call

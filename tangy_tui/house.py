@@ -241,9 +241,9 @@ class House:
 
     def teaching_world(self, shown: Demonstration) -> World:
         """Make the simulated world of a demonstration, in which people ask more often."""
-        from tangy_sim.guide import GuidedWorld
-        from tangy_sim.users import load_users
-        from tangy_sim.world import SimulatedWorld
+        from tangy_sim.worlds.guidance import GuidedWorld
+        from tangy_sim.worlds.users import load_users
+        from tangy_sim.worlds.world import SimulatedWorld
 
         kind = GuidedWorld if shown.guided else SimulatedWorld
         return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
@@ -270,8 +270,8 @@ class House:
             TangyError: one of the injections is none, or the fault rules have a mistake.
         """
         from tangy_profiles.fault_file import load_faults
-        from tangy_sim.faulty import FaultyWorld
-        from tangy_sim.injection import read_injection
+        from tangy_sim.worlds.faulty_world import FaultyWorld
+        from tangy_sim.worlds.injection import read_injection
         from tangy_tui.monitoring.accepted import expected_effects
         from tangy_tui.monitoring.supervision import Supervision
 
@@ -302,7 +302,7 @@ class House:
         Args:
             asks: somebody is there to say what to do where Tangy is not sure.
         """
-        from tangy_sim.world import SimulatedWorld
+        from tangy_sim.worlds.world import SimulatedWorld
 
         seed = self.game_seed(seed)
         world = SimulatedWorld(self.activity, list(self.names), seed=seed)

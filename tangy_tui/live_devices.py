@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.health import Health
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import Injection
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import Injection
 
 OLDEST = 0.05
 """Seconds for which a reading is not asked for anew: the rules look at it 40 times a second."""

@@ -20,8 +20,8 @@ from tangy_profiles.activity import Activity, load_activity, read_activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.store import Store
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 
 # The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile(

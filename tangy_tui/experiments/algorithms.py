@@ -14,7 +14,7 @@ from math import log
 from random import Random
 from typing import Any
 
-from tangy_sim.users import load_users
+from tangy_sim.worlds.users import load_users
 from tangy_tui.experiments.estimates import summary
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.interaction.methods import (

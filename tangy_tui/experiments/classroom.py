@@ -23,9 +23,9 @@ from tangy_profiles.given_file import read_given_text
 from tangy_profiles.person import load_people
 from tangy_profiles.reading import LARGEST_PROFILE
 from tangy_profiles.store import Store
-from tangy_sim.guide import GuidedWorld
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.guidance import GuidedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.experiments.provenance import digest_of
 from tangy_tui.learning.conflicts import Resolution
 from tangy_tui.learning.demonstrating import Teaching

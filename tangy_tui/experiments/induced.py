@@ -15,9 +15,9 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.faults import FaultBook, Remedy
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_sim.compliance import Preferences
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, Kind
+from tangy_sim.worlds.compliance import Preferences
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import AT_ONCE, KINDS, MOVING_ON, WAITING, Kind
 
 LATEST = 30
 """Steps among which the one is drawn from which a fault may come; few games have fewer."""

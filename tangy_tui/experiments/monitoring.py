@@ -11,9 +11,9 @@ from random import Random
 from typing import Any
 
 from tangy_profiles.behaviour import Action
-from tangy_sim.compliance import Preferences
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
+from tangy_sim.worlds.compliance import Preferences
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of
 from tangy_tui.experiments.comparison import TO_ITS_END
 from tangy_tui.experiments.induced import InducingWorld, recovery_of

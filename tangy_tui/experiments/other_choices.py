@@ -13,7 +13,7 @@ from random import Random
 from typing import Any
 
 from tangy_profiles.state import Response
-from tangy_sim.users import load_users
+from tangy_sim.worlds.users import load_users
 from tangy_tui.experiments.classroom import about, activity_of
 from tangy_tui.experiments.estimates import summary
 from tangy_tui.experiments.persuading import CONVERGED, suboptimal_before_convergence

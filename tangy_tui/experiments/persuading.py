@@ -18,9 +18,9 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.reading import plain
-from tangy_sim.compliance import preferences_in_turn
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.compliance import preferences_in_turn
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.experiments.classroom import (
     GUIDED,
     Course,

@@ -13,7 +13,7 @@ from typing import Any
 
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.experiments import comparison, published
 from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of
 from tangy_tui.experiments.estimates import spread

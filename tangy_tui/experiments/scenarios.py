@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from tangy_sim import faulty
+from tangy_sim.worlds import faulty_world
 from tangy_tui.experiments import (
     algorithms,
     incremental,
@@ -161,9 +161,9 @@ def recovery(
             "people": asked.users,
             "demonstrations": f"{supervised.DEMONSTRATIONS}, guided",
             "games with the same people": a_piece,
-            "P(people at the table help)": faulty.HELPS,
-            "P(one turn finds the place)": faulty.FINDS_ITSELF,
-            "P(a restart helps)": faulty.STARTS_AGAIN,
+            "P(people at the table help)": faulty_world.HELPS,
+            "P(one turn finds the place)": faulty_world.FINDS_ITSELF,
+            "P(a restart helps)": faulty_world.STARTS_AGAIN,
             "experts": "come in 5 minutes and mend what was diagnosed",
             "teachers": "scripted: say what the activity expects",
         },

@@ -19,7 +19,7 @@ from tangy_profiles.faults import FaultBook
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.store import Store
-from tangy_sim.faulty import FaultyWorld
+from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion

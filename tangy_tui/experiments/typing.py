@@ -21,8 +21,8 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.experiments.classroom import about, activity_of
 from tangy_tui.experiments.published import USERS
 from tangy_tui.experiments.screen import Screen

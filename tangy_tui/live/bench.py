@@ -21,7 +21,7 @@ from tangy_hw.cancellation import Cancellation
 from tangy_profiles.errors import TangyError
 from tangy_profiles.worker_log import open_log
 
-CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench")
+CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator")
 END_SECONDS = 3.0
 ANSWER_SECONDS = 60.0  # for what it does at once; much less than that on a machine at rest
 

@@ -22,10 +22,10 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_sim import injection
-from tangy_sim.bench.tablet import Tablet
-from tangy_sim.injection import KINDS, Injection, Kind
-from tangy_sim.to_come import ToCome
+from tangy_sim.device_simulator.tablet import Tablet
+from tangy_sim.worlds import injection
+from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.pending_injections import ToCome
 from tangy_tui.live.bench import Bench, BenchError
 
 MARKED = ("clear wrong marks", "set missing marks")

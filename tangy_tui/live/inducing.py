@@ -11,7 +11,7 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Remedy
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_sim.injection import KINDS, WAITING
+from tangy_sim.worlds.injection import KINDS, WAITING
 from tangy_tui.experiments.classroom import GUIDED, Course
 from tangy_tui.experiments.induced import Inducer, Planned
 from tangy_tui.experiments.recovering import plan_of, play_games

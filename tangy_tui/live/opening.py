@@ -16,7 +16,7 @@ from tangy_profiles.health import Health
 from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
-from tangy_sim.injection import Injection
+from tangy_sim.worlds.injection import Injection
 from tangy_tui.live.bench import Bench
 from tangy_tui.live.benched import BenchedWorld
 
@@ -290,7 +290,7 @@ def _drawn_people(
         Cancelled: it was called off meanwhile.
     """
     from tangy_hw.perception.faces.reader import HaarReader
-    from tangy_sim.faces import drawn_face
+    from tangy_sim.rendering.faces import drawn_face
 
     reader = HaarReader()
     known: dict[str, list[list[float]]] = {}

@@ -8,8 +8,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
-from tangy_sim.guide import GuidedWorld
-from tangy_sim.users import load_users
+from tangy_sim.worlds.guidance import GuidedWorld
+from tangy_sim.worlds.users import load_users
 from tangy_tui.learning.effects import Effects, learn_effects
 from tangy_tui.learning.policies import last_policy, load_policy
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy

@@ -22,8 +22,8 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.interaction.facilitation import Acted, Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.asking import Answers

@@ -10,7 +10,7 @@ from typing import Any
 from tangy_profiles.fault_file import check_faults
 from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule
 from tangy_profiles.robot import Robot
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.monitoring.drill_rounds import round_kinds
 from tangy_tui.monitoring.telling import RECOVERY_WORDS
 

@@ -29,7 +29,7 @@ from tangy_tui.verbs.sensors import Cameras, RobotName
 from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
-    from tangy_sim.injection import Injection
+    from tangy_sim.worlds.injection import Injection
     from tangy_tui.house import House
     from tangy_tui.monitoring.supervision import Event, Supervision
 
@@ -180,7 +180,7 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
     Raises:
         TangyError: a file cannot be read, or there is no such fault.
     """
-    from tangy_sim.injection import read_injection
+    from tangy_sim.worlds.injection import read_injection
 
     found: list[Injection] = []
     for text in given:

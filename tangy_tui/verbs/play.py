@@ -185,7 +185,7 @@ def _play_headless(
     expert: bool,
     injected: bool,
 ) -> None:
-    from tangy_sim.faulty import FaultyWorld
+    from tangy_sim.worlds.faulty_world import FaultyWorld
     from tangy_tui.documents import lesson_document
     from tangy_tui.interaction.facilitation import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally

@@ -75,7 +75,7 @@ INJECT_HELP = "help"
 
 def list_injections(as_json: bool) -> None:
     """Print the faults that can be brought about: each with what happens and when it shows."""
-    from tangy_sim.injection import KINDS
+    from tangy_sim.worlds.injection import KINDS
 
     if as_json:
         print_json([{"fault": k.name, "what": k.words, "shows": k.shows} for k in KINDS.values()])

@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 
 from tangy_profiles.activity import load_activity
-from tangy_sim.card_frames import CardCamera
+from tangy_sim.rendering.card_frames import CardCamera
 
 
 def main() -> None:

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from tangy_hw.perception.cards.reader import CardReader
 from tangy_profiles.activity import load_activity
 from tangy_profiles.card_face import HEIGHT, WIDTH, Face
-from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import CardCamera, Frame, View
-from tangy_sim.card_things import tone_of
+from tangy_sim.rendering.card_backgrounds import tone_of
+from tangy_sim.rendering.card_chips import Chip
+from tangy_sim.rendering.card_frames import CardCamera, Frame, View
 from tests.bench.cards import HEAD, Bench, Count, timed
 
 Picture: TypeAlias = NDArray[Any]

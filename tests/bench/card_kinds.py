@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_profiles.activity import load_activity
-from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import HANDS, CardCamera, Frame, some_view
-from tangy_sim.card_odd_chips import odd_chip, sheer_chip
+from tangy_sim.rendering.card_chips import Chip
+from tangy_sim.rendering.card_frames import HANDS, CardCamera, Frame, some_view
+from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
 from tests.bench.cards import Bench
 
 Real: TypeAlias = NDArray[Any]

@@ -42,7 +42,7 @@ from tangy_hw.perception.cards.classifier import (
 from tangy_hw.perception.cards.features import NAMES, SEEN, SPOTS, features_of
 from tangy_hw.perception.cards.rectification import flatten
 from tangy_profiles.card_face import numbers_of
-from tangy_sim.card_frames import CardCamera, Frame
+from tangy_sim.rendering.card_frames import CardCamera, Frame
 from tests.bench.card_kinds import KINDS
 from tests.bench.card_nets import ALONE, AMONG, fit
 

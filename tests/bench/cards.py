@@ -22,8 +22,8 @@ from tangy_hw.perception.cards.reader import CardReader, CardReading
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.cards import judge, judge_partly
-from tangy_sim.card_frames import CardCamera, Frame, some_view
-from tangy_sim.card_things import background
+from tangy_sim.rendering.card_backgrounds import background
+from tangy_sim.rendering.card_frames import CardCamera, Frame, some_view
 
 QUOTED = 150_000  # seed; nothing was chosen on its frames
 Picture: TypeAlias = NDArray[Any]

@@ -17,8 +17,8 @@ from statistics import median, quantiles
 from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
 
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import AT_ONCE, KINDS
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import AT_ONCE, KINDS
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher

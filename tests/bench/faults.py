@@ -21,7 +21,7 @@ from rich.table import Table
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
-from tangy_sim.injection import (
+from tangy_sim.worlds.injection import (
     ASKING,
     CLOSING,
     DRIVING,

@@ -23,7 +23,7 @@ from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_hw.navigation.poses import wrap
 from tangy_profiles.room import load_room
-from tangy_sim.bench.lidar import cast
+from tangy_sim.device_simulator.lidar import cast
 from tests.hw.raycast import Wheels, driven, room_sides
 
 TICK = 0.1  # s

@@ -25,7 +25,7 @@ from tangy_hw.drivers.ros_base import RosBase
 from tangy_hw.drivers.ros_laser import RosLaser
 from tangy_hw.drivers.ros_messages import pose_message, twist_message
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 
 BEAMS = 360
 

@@ -15,8 +15,8 @@ from time import perf_counter
 from tangy_profiles.activity import load_activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.policy import Policy, all_situations, encoder, learn_policy
 
 ROUNDS = 9

@@ -14,7 +14,7 @@ import pytest
 
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.experiments import published, recovering
 from tangy_tui.experiments.comparison import compare
 from tangy_tui.experiments.induced import (

@@ -6,7 +6,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.drivers.ros_messages import pose_message
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 
 
 class MoveBase:

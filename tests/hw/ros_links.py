@@ -11,7 +11,7 @@ from typing import Any
 from websockets.asyncio.server import ServerConnection, serve
 
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 
 SOON = 5  # s within which what must happen at once has happened on any machine
 

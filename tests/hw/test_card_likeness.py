@@ -11,7 +11,7 @@ from tangy_hw.perception.cards.features import NAMES, Measured
 from tangy_hw.perception.cards.likeness import MUDDLED, unlike_others
 from tangy_hw.perception.cards.reader import CardReader
 from tangy_profiles.activity import Activity
-from tangy_sim.card_frames import CardCamera
+from tangy_sim.rendering.card_frames import CardCamera
 from tests.bench.card_harsh import CHOSEN, TROUBLES, HarshCamera
 
 MARKED, UNMARKED, HIDDEN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.1, 0.9)

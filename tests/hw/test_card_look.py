@@ -19,7 +19,7 @@ from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.cards.reader import CardReader, CardReading
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.card_face import numbers_of
-from tangy_sim.card_frames import CardCamera, View
+from tangy_sim.rendering.card_frames import CardCamera, View
 
 BINGO = load_activity("bingo")
 CARD = 17

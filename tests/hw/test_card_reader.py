@@ -22,9 +22,9 @@ from tangy_hw.perception.cards.reader import (
 )
 from tangy_profiles.activity import Activity, load_activity, read_activity
 from tangy_profiles.card_face import numbers_of
-from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import CardCamera, Frame, View
-from tangy_sim.card_odd_chips import odd_chip, sheer_chip
+from tangy_sim.rendering.card_chips import Chip
+from tangy_sim.rendering.card_frames import CardCamera, Frame, View
+from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
 from tests.conftest import TESTS
 
 CLEAN = View(pixels=36, noise=1, quality=95)

@@ -17,9 +17,9 @@ from tangy_hw.perception.cards.card_detection import find_cards
 from tangy_hw.perception.cards.rectification import Flat, flatten
 from tangy_hw.perception.cards.synthesis import NAMES, compared
 from tangy_profiles.activity import load_activity
-from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import CardCamera, View
-from tangy_sim.card_odd_chips import odd_chip
+from tangy_sim.rendering.card_chips import Chip
+from tangy_sim.rendering.card_frames import CardCamera, View
+from tangy_sim.rendering.card_odd_chips import odd_chip
 
 VIEW = View(pixels=34, noise=1, quality=97, blur=0.4, size=(700, 560))
 RED, WHITE = (0.2, 0.2, 0.9), (0.95, 0.95, 0.95)

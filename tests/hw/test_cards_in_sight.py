@@ -13,8 +13,8 @@ from tangy_hw.perception.cards.reader import NO_TAGS, CardReader
 from tangy_hw.perception.cards.tags import is_printed, tags_in
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box
-from tangy_sim.card_frames import CardCamera, Frame, View
-from tangy_sim.card_things import background
+from tangy_sim.rendering.card_backgrounds import background
+from tangy_sim.rendering.card_frames import CardCamera, Frame, View
 
 VIEW = View(pixels=30, noise=2, quality=92, size=(620, 700))
 WHOLE = Box(-3, -3, WIDTH + 3, HEIGHT + 3)

@@ -33,7 +33,7 @@ from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import STALE
 from tangy_profiles.robot import load_robot
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.live_bodies import ToldBody
 from tests.hw.move_base import MoveBase
 from tests.hw.ros_links import SOON, soon, until

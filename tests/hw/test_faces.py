@@ -30,7 +30,7 @@ from tangy_hw.perception.faces.face_votes import vote
 from tangy_hw.perception.faces.gallery import AHEAD, ENOUGH, Gallery, Match, decide
 from tangy_hw.perception.faces.reader import Face, HaarReader
 from tangy_profiles.store import Store
-from tangy_sim.faces import drawn_face
+from tangy_sim.rendering.faces import drawn_face
 
 IDS = ("user1", "user2", "a-b", "b", ".", "..", "Zoë/../x")
 

@@ -11,7 +11,7 @@ import pytest
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.ros_links import Raw, done, linked, soon, until
 
 

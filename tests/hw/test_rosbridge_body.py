@@ -21,7 +21,7 @@ from tangy_hw.drivers.ros_status import RosDiagnostics
 from tangy_hw.drivers.ros_voice import RosVoice
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.ros_links import Now, diagnoses, linked, soon, until
 
 LIMBS = {

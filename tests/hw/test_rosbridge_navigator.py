@@ -17,7 +17,7 @@ from tangy_hw.drivers.ros_messages import pose_message
 from tangy_hw.drivers.ros_navigator import AGAIN_SECONDS, RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import OK, STALE
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.move_base import MoveBase
 from tests.hw.ros_links import SOON, linked, soon, until
 

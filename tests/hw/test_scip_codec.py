@@ -24,7 +24,7 @@ from tangy_hw.drivers.scip_codec import (
     split,
     trouble,
 )
-from tangy_sim.wires.scip_session import measurement, number
+from tangy_sim.servers.scip_session import measurement, number
 
 BODIES = st.lists(
     st.binary(min_size=1, max_size=20).filter(lambda one: b"\n" not in one), min_size=1, max_size=4

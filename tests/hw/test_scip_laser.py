@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from tangy_hw.drivers import scip
 from tangy_hw.drivers.scip import ScipLaser
-from tangy_sim.wires.scip_server import ScipServer
-from tangy_sim.wires.scip_session import URG, UTM, Scanner
+from tangy_sim.servers.scip_server import ScipServer
+from tangy_sim.servers.scip_session import URG, UTM, Scanner
 from tests.hw.waiting import PATIENCE, until
 
 ROOM = np.linspace(0.3, 4.0, URG.beams)

@@ -13,7 +13,7 @@ import pytest
 from tangy_hw.robot_process.self_test import Trial, try_robot
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import Robot, load_robot
-from tangy_sim.wires.scip_server import ScipServer
+from tangy_sim.servers.scip_server import ScipServer
 
 SECONDS = 0.4
 

@@ -16,7 +16,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.interaction.facilitation import (
     ENDED,
     STEP,

@@ -14,8 +14,8 @@ from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Outcome, Situation
 from tangy_profiles.store import Store
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.interaction import facilitation as room
 from tangy_tui.interaction.facilitation import (
     ENDED,

@@ -9,7 +9,7 @@ import pytest
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import FRONT, ActivityState, Situation
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.effects import Effects, Mismatch, learn_effects, transition
 
 Demonstrate = Callable[[str, int, int], Demonstration]

@@ -15,8 +15,8 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.speech.labels import Labels

@@ -11,7 +11,7 @@ import pytest
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.house import House
 from tangy_tui.learning.commands import Command, Phrasebook
 from tangy_tui.learning.speech.ears import Heard

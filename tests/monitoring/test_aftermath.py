@@ -8,7 +8,7 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.health import ERROR, Health, Reading
 from tangy_profiles.robot import load_robot
-from tangy_sim.body import WELL
+from tangy_sim.worlds.devices import WELL
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath

@@ -10,10 +10,10 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import STALE, Reading
 from tangy_profiles.robot import load_robot
-from tangy_sim.body import READINGS, WELL
-from tangy_sim.faulty import FaultyWorld
-from tangy_sim.injection import KINDS, read_injection
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.devices import READINGS, WELL
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_sim.worlds.injection import KINDS, read_injection
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.house import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy

@@ -14,8 +14,8 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Condition, FaultBook, FaultRule
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import Contact, load_robot
-from tangy_sim.body import WELL, readings
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.devices import WELL, readings
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.learning.effects import Effects, Mismatch
 from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import diagnose, narrows

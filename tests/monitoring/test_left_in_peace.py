@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from tangy_profiles.state import FRONT
-from tangy_sim import faulty
+from tangy_sim.worlds import faulty_world
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.monitoring.fault import Moved
@@ -40,7 +40,7 @@ def in_vain(events: list[Event]) -> list[tuple[int, str]]:
 def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str, seed: int
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     events = play(supervise(kind, seed=seed))
     visits = Counter(visit for visit, _ in in_vain(events))
     assert max(visits.values(), default=0) <= MOST
@@ -51,7 +51,7 @@ def test_nobody_is_asked_in_vain_more_than_three_times_in_a_visit(
 def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, beside: str
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     for seed in range(1, 7):
         events = play(supervise("card-out-of-sight~1", beside, seed=seed))
         visits = Counter(visit for visit, _ in in_vain(events))
@@ -62,7 +62,7 @@ def test_a_fault_that_hides_no_card_lets_nobody_be_asked_more_often(
 def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     pressed, refusals = [], 0
     for seed in range(1, 25):
         game = supervise(kind, seed=seed)
@@ -79,7 +79,7 @@ def test_a_way_of_speaking_that_presses_is_not_used_after_a_refusal(
 def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     events = play(supervise("card-out-of-sight~1", seed=seed))
     assert "never-complies" in codes(events)
 
@@ -87,7 +87,7 @@ def test_what_cannot_be_seen_counts_as_not_followed_and_is_named(
 def test_a_covered_camera_says_nothing_of_a_person(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     for seed in range(1, 13):
         assert "never-complies" not in codes(play(supervise("camera-occluded@3", seed=seed)))
 

@@ -10,7 +10,7 @@ import pytest
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.experiments import monitoring
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.monitoring.diagnosis import diagnose

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.store import Store
-from tangy_sim import faulty
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds import faulty_world
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, Taught
 from tangy_tui.learning.library import read_library
@@ -90,7 +90,7 @@ def test_a_fault_in_the_last_step_does_not_hold_the_end_up(supervise: Supervise)
 def test_a_user_is_asked_and_what_helps_ends_it(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 1.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 1.0)
     game = supervise("path-blocked", seed=3)
     events = play(game)
     assert moves(events) == ["asked", "recovered"]
@@ -102,7 +102,7 @@ def test_a_user_is_asked_and_what_helps_ends_it(
 def test_who_does_not_help_is_asked_so_often_and_then_an_expert(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     game = supervise("path-blocked", seed=3)
     events = play(game)
     assert moves(events) == [
@@ -116,7 +116,7 @@ def test_who_does_not_help_is_asked_so_often_and_then_an_expert(
 def test_a_request_that_does_not_end_is_set_aside_in_the_end(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     game = supervise("request-stuck", seed=2)
     assert moves(play(game)) == ["asked", "asked", "escalated", "remedied", "recovered"]
     assert game.faults[0].ladder == ("user", "continue")
@@ -152,7 +152,7 @@ def test_without_a_teacher_an_expert_is_asked(supervise: Supervise) -> None:
 def test_the_same_again_and_again_is_not_asked_for_ever(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 1.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 1.0)
     game = supervise("card-out-of-sight~1", seed=3)
     asked: list[str] = []
     events = game.begin()
@@ -192,7 +192,7 @@ def test_the_critical_one_wins_and_the_other_is_handled_after(
 def test_a_critical_fault_during_the_recovery_of_another_comes_first(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     game = supervise("path-blocked", "laser-disconnected@recovery", seed=3)
     game.begin()
     until(game, lambda now: now.halted)

@@ -12,7 +12,7 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
-from tangy_sim import faulty
+from tangy_sim.worlds import faulty_world
 from tangy_tui.house import House
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
@@ -109,7 +109,7 @@ def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
 def test_a_recovery_has_success_only_where_nothing_else_was_needed(
     house: House, supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     play(supervise("path-blocked", seed=3))
     (fault,) = told(house).faults
     assert (fault.status, fault.ladder) == ("over", ("user", "expert"))

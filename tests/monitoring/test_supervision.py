@@ -11,9 +11,9 @@ from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Remedy
 from tangy_profiles.robot import load_robot
-from tangy_sim import faulty
-from tangy_sim.body import WELL
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds import faulty_world
+from tangy_sim.worlds.devices import WELL
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.game_lines import play_by_lines
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import ENDED, DoneOnce
@@ -35,7 +35,7 @@ from tests.monitoring.conftest import (
 def test_no_name_of_a_person_gets_into_the_log(
     supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     for person in house.people:
         house.rename(person, f"Zoe{person.id[-1]}")
     kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
@@ -148,7 +148,7 @@ def test_an_unexplained_error_cannot_be_cleared_while_it_lasts(
 def test_what_nobody_can_mend_gets_to_the_expert_and_then_ends_the_game(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     game = supervise("path-blocked~1", seed=2)
     events = play(game)
     assert {"asked", "halted", "cleared"} <= set(moves(events, "path-blocked"))
@@ -161,7 +161,7 @@ def test_what_nobody_can_mend_gets_to_the_expert_and_then_ends_the_game(
 def test_only_what_nothing_explains_can_be_called_all_right(
     supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(faulty, "HELPS", 0.0)
+    monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     game = supervise("card-out-of-sight", seed=4)  # it is lost from view in the midst of a visit
     game.begin()
     until(game, lambda now: now.question)
@@ -184,11 +184,11 @@ def test_what_stops_the_robot_breaks_off_what_it_does_and_is_seen_at_once(
     game = supervise(f"{kind}@1", seed=3)
     (act,) = acts(game.begin() + game.step())
     assert not act.outcome.completed
-    assert act.outcome.seconds == faulty.NOTICED
+    assert act.outcome.seconds == faulty_world.NOTICED
     assert [fault.code for fault in game.faults] == [kind]  # and nothing is unexplained
     assert game.halted is game.faults[0]
     ages = [age for key, age in game.halted.evidence.items() if key.endswith(".age")]
-    assert all(float(age) <= faulty.NOTICED for age in ages)
+    assert all(float(age) <= faulty_world.NOTICED for age in ages)
 
 
 def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_once(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from tangy_sim.faulty import FaultyWorld
+from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Fault

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.house import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE

@@ -14,7 +14,7 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import load_people
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
-from tangy_sim.injection import KINDS
+from tangy_sim.worlds.injection import KINDS
 from tangy_tui.learning.checking import Checked, check_activity
 from tangy_tui.learning.commands import Phrasebook
 from tangy_tui.learning.lexicon import Lexicon

@@ -79,7 +79,7 @@ def test_the_engine_runs_without_a_screen() -> None:
     code = (
         "import json, sys\n"
         "import tangy_tui.learning.demonstrating, tangy_tui.learning.policy\n"
-        "import tangy_tui.interaction.facilitation, tangy_tui.lines, tangy_sim.world\n"
+        "import tangy_tui.interaction.facilitation, tangy_tui.lines, tangy_sim.worlds.world\n"
         "print(json.dumps(sorted(sys.modules)))\n"
     )
     done = subprocess.run(  # noqa: S603 - our own interpreter

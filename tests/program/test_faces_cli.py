@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from tangy_profiles.store import Store
-from tangy_sim.faces import drawn_face
+from tangy_sim.rendering.faces import drawn_face
 
 Tangy = Callable[..., CompletedProcess[str]]
 

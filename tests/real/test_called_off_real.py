@@ -19,7 +19,7 @@ ENDS = 2.0  # s in which all is over, on a machine that has a processor to spare
 PATIENCE = 60.0
 PROFILE = Path(__file__).parents[2] / "profiles/tangy_profiles/robots/tangy.toml"
 
-BENCH, ROBOT, CAMERA = "tangy_sim.bench", "tangy_hw.robot_process", "camera_child"
+BENCH, ROBOT, CAMERA = "tangy_sim.device_simulator", "tangy_hw.robot_process", "camera_child"
 STAGES = (BENCH, ROBOT, CAMERA)
 """What is started one after the other."""
 

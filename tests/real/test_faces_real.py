@@ -6,7 +6,7 @@ import json
 import subprocess
 from pathlib import Path
 
-from tangy_sim.faces import drawn_face
+from tangy_sim.rendering.faces import drawn_face
 from tests.hw.pictures import encoded
 from tests.real.camera_server import CameraServer
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.fault_file import load_faults
-from tangy_sim.injection import read_injection
+from tangy_sim.worlds.injection import read_injection
 from tangy_tui.house import House
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.policies import load_policy

@@ -11,7 +11,7 @@ import pytest
 
 from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_source import find_camera
-from tangy_sim.wires.mjpeg_server import MjpegServer
+from tangy_sim.servers.mjpeg_server import MjpegServer
 from tests.hw.pictures import encoded, room, seen
 from tests.hw.waiting import until
 from tests.support.terminal import PATIENCE

@@ -15,8 +15,8 @@ import pytest
 
 from tangy_hw.drivers.scip import ScipLaser
 from tangy_profiles.robot import load_robot
-from tangy_sim.wires.mjpeg_server import MjpegServer
-from tangy_sim.wires.scip_server import ScipServer
+from tangy_sim.servers.mjpeg_server import MjpegServer
+from tangy_sim.servers.scip_server import ScipServer
 from tests.hw.pictures import encoded, room, seen
 from tests.hw.waiting import until
 from tests.support.terminal import PATIENCE, TANGY
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 
 SCANNER = """
 import asyncio, numpy
-from tangy_sim.wires.scip_server import ScipServer
+from tangy_sim.servers.scip_server import ScipServer
 
 async def turn():
     server = ScipServer()

@@ -39,7 +39,7 @@ from tangy_hw.drivers.ros_voice import RosVoice
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
 
 HERE = Path(__file__).parent
 PYTHON = "/usr/bin/python3"

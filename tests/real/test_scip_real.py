@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.scip import ScipLaser
-from tangy_sim.wires.scip_server import ScipServer
-from tangy_sim.wires.scip_session import URG, UTM, Scanner
+from tangy_sim.servers.scip_server import ScipServer
+from tangy_sim.servers.scip_session import URG, UTM, Scanner
 from tests.hw.waiting import until
 from tests.support.terminal import PATIENCE
 

@@ -16,7 +16,7 @@ from tangy_hw.perception.camera_hub import Sensors, camera_sources
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.robot import load_robot
-from tangy_sim.card_frames import CardCamera, View
+from tangy_sim.rendering.card_frames import CardCamera, View
 from tests.hw.pictures import room, seen
 from tests.real.camera_server import CameraServer
 from tests.support.terminal import PATIENCE

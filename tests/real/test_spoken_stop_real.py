@@ -108,7 +108,9 @@ def microphone(folder: Path, terminal: Terminal) -> Iterator[Laptop]:
 @pytest.fixture
 def wheels(family: Family, terminal: Terminal) -> Iterator[Wheels]:
     terminal.until("Steps")
-    (bench,) = (pid for pid, command in family.there().items() if "tangy_sim.bench" in command)
+    (bench,) = (
+        pid for pid, command in family.there().items() if "tangy_sim.device_simulator" in command
+    )
     with connect(rosbridge(bench)) as link:
         yield Wheels(link)
 

@@ -15,8 +15,8 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_profiles.state import FRONT, Situation
 from tangy_profiles.tracker import Tracker
-from tangy_sim.bench.drive import EXACT
-from tangy_sim.bench.world import BenchWorld
+from tangy_sim.device_simulator.drive import EXACT
+from tangy_sim.device_simulator.world import BenchWorld
 
 ACTIVITY, ROOM, ROBOT = load_activity("bingo"), load_room(), load_robot()
 TICK = 0.1

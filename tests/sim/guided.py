@@ -15,7 +15,7 @@ from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.person import load_people
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import Outcome, Situation
-from tangy_sim.guide import GuidedWorld
+from tangy_sim.worlds.guidance import GuidedWorld
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")

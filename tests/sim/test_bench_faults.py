@@ -9,9 +9,9 @@ import pytest
 
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.state import FRONT
-from tangy_sim.bench.drive import RADIUS
-from tangy_sim.bench.world import BenchWorld
-from tangy_sim.injection import KINDS
+from tangy_sim.device_simulator.drive import RADIUS
+from tangy_sim.device_simulator.world import BenchWorld
+from tangy_sim.worlds.injection import KINDS
 from tests.sim.bench_game import ACTIVITY, ROBOT, bench, drive_to, say
 
 RULES = {rule.code: rule for rule in load_faults(ROBOT).rules}

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_sim.bench.drive import EXACT, RADIUS, SILENCE, Odometer, Wheels
-from tangy_sim.bench.floor import Floor, Pose
-from tangy_sim.bench.joints import FASTEST, Joints
-from tangy_sim.bench.lidar import Lidar, cast
+from tangy_sim.device_simulator.drive import EXACT, RADIUS, SILENCE, Odometer, Wheels
+from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.joints import FASTEST, Joints
+from tangy_sim.device_simulator.lidar import Lidar, cast
 from tests.sim.bench_game import ROBOT, ROOM
 
 EMPTY = np.zeros((0, 3))

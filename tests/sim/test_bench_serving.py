@@ -24,13 +24,13 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.scip import ScipLaser
 from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_profiles.health import ERROR
-from tangy_sim.bench.__main__ import main
-from tangy_sim.bench.lidar import Lidar
-from tangy_sim.bench.serving import Bench
+from tangy_sim.device_simulator.__main__ import main
+from tangy_sim.device_simulator.device_servers import Bench
+from tangy_sim.device_simulator.lidar import Lidar
 from tests.sim.bench_game import ROBOT, bench
 
 FACES = {f"user{number}": number for number in range(1, 5)}
-CHILD = (sys.executable, "-P", "-m", "tangy_sim.bench", "--activity", "bingo")
+CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator", "--activity", "bingo")
 
 
 class Peer:

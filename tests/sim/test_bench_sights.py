@@ -15,11 +15,11 @@ from tangy_hw.perception.cards.reader import CardReader
 from tangy_hw.perception.faces.gallery import Gallery
 from tangy_hw.perception.faces.reader import HaarReader
 from tangy_hw.perception.requests.signs import SignWatcher, TableView
-from tangy_sim.bench.people import HIDES
-from tangy_sim.bench.sights import HeadCamera
-from tangy_sim.bench.signs import CORNERS, InfraredCamera
-from tangy_sim.bench.world import HeadScene
-from tangy_sim.faces import drawn_face
+from tangy_sim.device_simulator.camera_views import HeadCamera
+from tangy_sim.device_simulator.people import HIDES
+from tangy_sim.device_simulator.signs import CORNERS, InfraredCamera
+from tangy_sim.device_simulator.world import HeadScene
+from tangy_sim.rendering.faces import drawn_face
 from tests.sim.bench_game import ACTIVITY, ROOM, bench, drive_to
 
 PEOPLE = ("user1", "user2", "user3", "user4")

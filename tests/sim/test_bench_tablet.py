@@ -10,7 +10,7 @@ from tangy_hw.device_protocols import Picture
 from tangy_hw.drivers import chest
 from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import Pairing
-from tangy_sim.bench.tablet import Tablet
+from tangy_sim.device_simulator.tablet import Tablet
 from tests.hw.waiting import PATIENCE, until
 
 

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
-from tangy_sim.compliance import preferences_in_turn, respond
-from tangy_sim.users import UserModel, load_users, waiting_calls, waiting_time
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.compliance import preferences_in_turn, respond
+from tangy_sim.worlds.users import UserModel, load_users, waiting_calls, waiting_time
+from tangy_sim.worlds.world import SimulatedWorld
 
 STRATEGIES = ("neutral", "praise", "suggestion", "scarcity")
 
@@ -142,7 +142,7 @@ def test_what_cannot_happen_is_waited_for_for_ever_and_what_must_comes_at_once()
 def test_a_mistake_in_the_user_model_is_one_line(
     tmp_path: Path, old: str, new: str, said: tuple[str, ...]
 ) -> None:
-    text = (Path(str(files("tangy_sim"))) / "users.toml").read_text(encoding="utf-8")
+    text = (Path(str(files("tangy_sim.worlds"))) / "users.toml").read_text(encoding="utf-8")
     assert old in text
     path = tmp_path / "mine.toml"
     path.write_text(text.replace(old, new, 1), encoding="utf-8")

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.state import FRONT
-from tangy_sim.guide import GuidedWorld
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.guidance import GuidedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.policy import learn_policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.world import World

@@ -12,8 +12,8 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.state import Situation
-from tangy_sim.guide import GuidedWorld
-from tangy_sim.plan import Plan
+from tangy_sim.worlds.guidance import GuidedWorld
+from tangy_sim.worlds.guided_plan import Plan
 from tests.sim.guided import (
     BINGO,
     IDS,

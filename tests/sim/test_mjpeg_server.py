@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from tangy_sim.wires.mjpeg_server import MjpegServer
+from tangy_sim.servers.mjpeg_server import MjpegServer
 from tests.hw.waiting import PATIENCE, until
 
 

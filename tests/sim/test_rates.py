@@ -8,8 +8,8 @@ import pytest
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.behaviour import Action
-from tangy_sim.users import load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import load_users
+from tangy_sim.worlds.world import SimulatedWorld
 
 BINGO = load_activity("bingo")
 USERS = load_users()

@@ -15,8 +15,8 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.person import load_people
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_sim.users import UserModel, load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import UserModel, load_users
+from tangy_sim.worlds.world import SimulatedWorld
 
 BINGO = load_activity("bingo")
 USERS = load_users()

@@ -8,8 +8,8 @@ import pytest
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.state import FRONT
-from tangy_sim.users import UserModel, load_users
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.users import UserModel, load_users
+from tangy_sim.worlds.world import SimulatedWorld
 
 FITTED = {
     "greeting": 20, "joke": 29.3, "call number": 714, "celebrate": 20, "remove markers": 24.6,

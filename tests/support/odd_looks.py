@@ -11,7 +11,7 @@ from typing import Any
 
 from tangy_profiles.behaviour import Action
 from tangy_profiles.state import ActivityState, Outcome, UserState
-from tangy_sim.faulty import FaultyWorld
+from tangy_sim.worlds.faulty_world import FaultyWorld
 
 LATE, MISREAD, UNREADABLE = "late", "misread", "unreadable"
 ODD = (LATE, MISREAD, UNREADABLE)

@@ -12,7 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 
-from tangy_sim.injection import AT_ONCE, KINDS, Kind
+from tangy_sim.worlds.injection import AT_ONCE, KINDS, Kind
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceList, Line

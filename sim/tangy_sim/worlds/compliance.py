@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from random import Random
 
 from tangy_profiles.state import Response
-from tangy_sim.users import UserModel
+from tangy_sim.worlds.users import UserModel
 
 Preferences = Mapping[str, Mapping[str, float]]
 """Person -> strategy -> probability of complying within the patience window."""

@@ -18,7 +18,7 @@ from typing import Any
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
-from tangy_sim.wires.rosbridge_client import Client, encoded, full_name
+from tangy_sim.servers.rosbridge_client import Client, encoded, full_name
 
 Message = Mapping[str, Any]
 Hears = Callable[[Message], None]

@@ -18,15 +18,15 @@ from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
-from tangy_sim.bench.drive import RADIUS, Odometer, Wheels, moved
-from tangy_sim.bench.faults import COMES_BACK, Faults
-from tangy_sim.bench.floor import Floor, Pose
-from tangy_sim.bench.hearing import Hearing, speaking_seconds
-from tangy_sim.bench.joints import Joints
-from tangy_sim.bench.lidar import Lidar
-from tangy_sim.bench.people import People
-from tangy_sim.injection import KINDS
-from tangy_sim.users import UserModel
+from tangy_sim.device_simulator.drive import RADIUS, Odometer, Wheels, moved
+from tangy_sim.device_simulator.faults import COMES_BACK, Faults
+from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.joints import Joints
+from tangy_sim.device_simulator.lidar import Lidar
+from tangy_sim.device_simulator.people import People
+from tangy_sim.device_simulator.speech_reception import Hearing, speaking_seconds
+from tangy_sim.worlds.injection import KINDS
+from tangy_sim.worlds.users import UserModel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

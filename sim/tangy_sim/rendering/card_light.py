@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from tangy_sim.card_frames import View
+    from tangy_sim.rendering.card_frames import View
 
     Picture = NDArray[Any]
     Real = NDArray[Any]

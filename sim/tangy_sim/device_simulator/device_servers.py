@@ -12,14 +12,14 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tangy_sim.bench import messages
-from tangy_sim.bench.film import Film
-from tangy_sim.bench.lidar import Lidar
-from tangy_sim.bench.world import BenchWorld
-from tangy_sim.injection import KINDS
-from tangy_sim.wires.rosbridge_server import RosbridgeServer
-from tangy_sim.wires.scip_server import ScipServer
-from tangy_sim.wires.scip_session import Scanner
+from tangy_sim.device_simulator import messages
+from tangy_sim.device_simulator.camera_streams import Film
+from tangy_sim.device_simulator.lidar import Lidar
+from tangy_sim.device_simulator.world import BenchWorld
+from tangy_sim.servers.rosbridge_server import RosbridgeServer
+from tangy_sim.servers.scip_server import ScipServer
+from tangy_sim.servers.scip_session import Scanner
+from tangy_sim.worlds.injection import KINDS
 
 SCANNER = Scanner("UTM-30LX", 0.02, 30.0, 480, 360, 180, 10.0, 1)
 """360 beams over 270 degrees, ten times a second; nearer than such a one is, to see a cloth."""

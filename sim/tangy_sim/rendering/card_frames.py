@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 from tangy_profiles.card_face import HEIGHT, LAST_CARD, USUAL_SEED, WIDTH, Face
 from tangy_profiles.card_picture import draw_face
 from tangy_profiles.cards import Deck
-from tangy_sim.card_chips import Chip, faint_chip, put_chip, some_chip
-from tangy_sim.card_hands import draw_hand
-from tangy_sim.card_light import exposed, lit_scene, moved, project
-from tangy_sim.card_odd_chips import odd_chip
-from tangy_sim.card_things import background
+from tangy_sim.rendering.card_backgrounds import background
+from tangy_sim.rendering.card_chips import Chip, faint_chip, put_chip, some_chip
+from tangy_sim.rendering.card_hands import draw_hand
+from tangy_sim.rendering.card_light import exposed, lit_scene, moved, project
+from tangy_sim.rendering.card_odd_chips import odd_chip
 
 if TYPE_CHECKING:
     import numpy as np

@@ -16,10 +16,10 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.cards import CardState
 from tangy_profiles.state import FRONT, ActivityState, Outcome
-from tangy_sim.compliance import Preferences
-from tangy_sim.plan import FEWEST, LINE, Cue, Plan
-from tangy_sim.users import Player, UserModel
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds.compliance import Preferences
+from tangy_sim.worlds.guided_plan import FEWEST, LINE, Cue, Plan
+from tangy_sim.worlds.users import Player, UserModel
+from tangy_sim.worlds.world import SimulatedWorld
 
 Some = TypeVar("Some")
 

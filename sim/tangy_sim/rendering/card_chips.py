@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from math import cos, hypot, pi, radians, sin, tan
 from typing import TYPE_CHECKING, Any
 
-from tangy_sim.card_things import Tone, tone_of
+from tangy_sim.rendering.card_backgrounds import Tone, tone_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,7 +7,7 @@ from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
 from tangy_profiles.card_face import HEIGHT, WIDTH, Face
-from tangy_sim.card_things import tone_of
+from tangy_sim.rendering.card_backgrounds import tone_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_sim.wires.scip_session import CLOCK, URG, Scanner, Session
+from tangy_sim.servers.scip_session import CLOCK, URG, Scanner, Session
 
 MOST_UNSENT = 1 << 18
 """Bytes that wait for a client that is slow; then it misses scans, as it would with a scanner."""

@@ -20,8 +20,8 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, load_people
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
-from tangy_sim.bench.serving import Bench
-from tangy_sim.bench.world import BenchWorld
+from tangy_sim.device_simulator.device_servers import Bench
+from tangy_sim.device_simulator.world import BenchWorld
 
 LONGEST_LINE = 1 << 20
 
@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="tangy_sim.bench", description=__doc__)
+    parser = argparse.ArgumentParser(prog="tangy_sim.device_simulator", description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--users", type=int, default=4, help="how many people play")
     person = parser.add_argument("--person", action="append", default=[], metavar="ID=NAME")

@@ -1,4 +1,4 @@
-"""What is wrong on the bench: the kinds of `tangy_sim.injection`, brought about in devices.
+"""What is wrong on the bench: the kinds of `tangy_sim.worlds.injection`, brought about in devices.
 
 Here it is only kept what is wrong, with whom and since when; each room of the bench asks for its
 own kinds and does what follows. What cannot be brought about here is kept all the same and told.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tangy_sim.injection import KINDS, Kind
+from tangy_sim.worlds.injection import KINDS, Kind
 
 MUTE = ("voice-dead", "screen-dead")
 """What is put right together when a robot is neither heard nor seen."""

@@ -6,8 +6,8 @@ from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING
 
-from tangy_sim.card_chips import HUES, Chip, Outline
-from tangy_sim.card_things import Tone, tone_of
+from tangy_sim.rendering.card_backgrounds import Tone, tone_of
+from tangy_sim.rendering.card_chips import HUES, Chip, Outline
 
 if TYPE_CHECKING:
     import numpy as np

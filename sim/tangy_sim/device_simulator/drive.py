@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
-from tangy_sim.bench.floor import Floor, Pose
+from tangy_sim.device_simulator.floor import Floor, Pose
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,10 +10,10 @@ import asyncio
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
-from tangy_sim.bench.sights import HeadCamera
-from tangy_sim.bench.signs import CORNERS, InfraredCamera
-from tangy_sim.bench.world import BenchWorld, HeadScene
-from tangy_sim.wires.mjpeg_server import MjpegServer
+from tangy_sim.device_simulator.camera_views import HeadCamera
+from tangy_sim.device_simulator.signs import CORNERS, InfraredCamera
+from tangy_sim.device_simulator.world import BenchWorld, HeadScene
+from tangy_sim.servers.mjpeg_server import MjpegServer
 
 HEAD, INFRARED = "/head", "/infrared"
 PAUSE = 0.08  # s of real time from one frame of the head's camera to the next

@@ -15,13 +15,13 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
-from tangy_sim import injection
-from tangy_sim.body import readings
-from tangy_sim.compliance import Preferences
-from tangy_sim.injection import KINDS, Injection, Kind
-from tangy_sim.to_come import ToCome
-from tangy_sim.users import Player, UserModel
-from tangy_sim.world import SimulatedWorld
+from tangy_sim.worlds import injection
+from tangy_sim.worlds.compliance import Preferences
+from tangy_sim.worlds.devices import readings
+from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.pending_injections import ToCome
+from tangy_sim.worlds.users import Player, UserModel
+from tangy_sim.worlds.world import SimulatedWorld
 
 HELPS = 0.8
 """P(somebody at the table does what Tangy asks for when it needs help)."""

@@ -16,11 +16,11 @@ import numpy as np
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import USUAL_SEED
-from tangy_sim.bench.world import HeadScene
-from tangy_sim.card_chips import Chip
-from tangy_sim.card_frames import CardCamera, View
-from tangy_sim.card_things import background, tone_of
-from tangy_sim.faces import drawn_face
+from tangy_sim.device_simulator.world import HeadScene
+from tangy_sim.rendering.card_backgrounds import background, tone_of
+from tangy_sim.rendering.card_chips import Chip
+from tangy_sim.rendering.card_frames import CardCamera, View
+from tangy_sim.rendering.faces import drawn_face
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

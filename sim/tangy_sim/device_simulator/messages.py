@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import cos, floor, sin
 from typing import Any
 
-from tangy_sim.bench.floor import Pose
+from tangy_sim.device_simulator.floor import Pose
 
 Message = dict[str, Any]
 OK, WARN, ERROR, STALE = range(4)

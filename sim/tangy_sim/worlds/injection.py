@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
-from tangy_sim.body import Symptom, dead, lasting, otherwise, silent
+from tangy_sim.worlds.devices import Symptom, dead, lasting, otherwise, silent
 
 AT_ONCE = "at once"
 DRIVING = "driving"

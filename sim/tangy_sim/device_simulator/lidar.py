@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tangy_sim.bench.floor import Floor, Pose
+from tangy_sim.device_simulator.floor import Floor, Pose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tangy_sim.injection import Injection, Kind
+from tangy_sim.worlds.injection import Injection, Kind
 
 
 class ToCome:

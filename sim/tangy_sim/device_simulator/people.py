@@ -1,8 +1,8 @@
 """The bench's people: they hear calls, mark cards, slip, put signs up, and do what they are asked.
 
-They play as those of `tangy_sim.world` do, by the same rates, but in continuous time: whatever they
-do, they do some seconds after they had reason to. Rates are per call; how long a robot takes for a
-call is its own business, so people's time goes on with what they hear: by one call for each
+They play as those of `tangy_sim.worlds.world` do, by the same rates, but in continuous time: what
+they do, they do some seconds after they had reason to. Rates are per call; how long a robot takes
+for a call is its own business, so people's time goes on with what they hear: by one call for each
 behaviour before the group, by `away_calls` for each at somebody's seat. Random streams are seeded
 apart, as in the world: cards, users, compliance, and the moments at which things are done.
 """
@@ -20,12 +20,12 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.card_face import LAST_CARD, USUAL_SEED, numbers_of
 from tangy_profiles.person import Person
 from tangy_profiles.state import FRONT, Response
-from tangy_sim.bench.agenda import Agenda
-from tangy_sim.bench.faults import Faults
-from tangy_sim.bench.hearing import Heard
-from tangy_sim.compliance import Preferences, preferences_in_turn, respond
-from tangy_sim.faulty import HELPS
-from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
+from tangy_sim.device_simulator.agenda import Agenda
+from tangy_sim.device_simulator.faults import Faults
+from tangy_sim.device_simulator.speech_reception import Heard
+from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
+from tangy_sim.worlds.faulty_world import HELPS
+from tangy_sim.worlds.users import Player, UserModel, load_users, waiting_calls, waiting_time
 
 MARKS = (1.5, 5.0)  # s after a call in which it is marked
 SLIPS = (1.0, 8.0)  # s after a call in which another number is

@@ -41,7 +41,7 @@ def load_users(path: Path | None = None) -> UserModel:
     Raises:
         ProfileError: one line that says file, key and value.
     """
-    top = read_toml(path or Path(str(files("tangy_sim"))) / "users.toml")
+    top = read_toml(path or Path(str(files("tangy_sim.worlds"))) / "users.toml")
     play, teaching, compliance = top.table("play"), top.table("teaching"), top.table("compliance")
     model = UserModel(
         miss=play.number("miss", 0, 1),

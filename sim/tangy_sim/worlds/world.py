@@ -21,9 +21,9 @@ from tangy_profiles.health import Health
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
-from tangy_sim.body import WELL
-from tangy_sim.compliance import Preferences, preferences_in_turn, respond
-from tangy_sim.users import Player, UserModel, load_users, waiting_calls, waiting_time
+from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
+from tangy_sim.worlds.devices import WELL
+from tangy_sim.worlds.users import Player, UserModel, load_users, waiting_calls, waiting_time
 
 AGREEING, MOST_LOOKS = 3, 5
 """Looks at a card that agree before it counts as read, and looks that are taken at most."""

@@ -1,0 +1,1 @@
+"""Pictures that are drawn: cards as a camera sees them, and faces."""

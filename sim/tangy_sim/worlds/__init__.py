@@ -1,0 +1,1 @@
+"""Simulated worlds: the room, its people, its faults, and guidance for its teachers."""
