@@ -132,10 +132,10 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 @pytest.fixture(scope="session")
 def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
+    from tangy_tui.console.demo import learn
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Next
-    from tangy_tui.story import learn
 
     folder = tmp_path_factory.mktemp("taught") / "data"
     house = House(folder)

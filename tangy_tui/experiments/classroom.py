@@ -28,11 +28,11 @@ from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.experiments.provenance import digest_of
 from tangy_tui.learning.conflicts import Resolution
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
+from tangy_tui.learning.teaching_session import Teaching
 from tangy_tui.world import World
 
 GUIDED = "guided"

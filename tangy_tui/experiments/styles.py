@@ -9,10 +9,10 @@ from random import Random
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.experiments.classroom import Steps
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.scripted_teacher import MOST_STEPS
 from tangy_tui.learning.teaching_events import Executed, Undo
-from tangy_tui.learning.verifying import Asked, Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Asked, Reply, Say
 
 Order = Callable[[Sequence[str], Sequence[str], str, Random], str]
 """Chooses whom to go to: (who asks, first come first; the seats; where the robot is; chance)."""

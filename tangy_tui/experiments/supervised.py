@@ -23,8 +23,8 @@ from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.learning.asking import Answers
 from tangy_tui.learning.library import BEGUN, FINISHED, STEP
+from tangy_tui.learning.online_learning import Answers
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import expected_effects
 from tangy_tui.monitoring.scripted_people import go_on_by_script

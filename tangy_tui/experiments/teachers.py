@@ -29,8 +29,8 @@ from tangy_tui.experiments.published import SCENARIO_ONE, USERS
 from tangy_tui.experiments.styles import STYLES, StyledTeacher
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.learning.conflicts import Resolution, find_conflicts
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.teaching_session import Teaching
 
 FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
 """Games that a teacher gives at least and at most."""

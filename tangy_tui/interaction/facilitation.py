@@ -18,14 +18,14 @@ from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED
-from tangy_tui.interaction.not_sure import remedy_for, why_not
 from tangy_tui.interaction.observation import Observation
 from tangy_tui.interaction.persuasion import Choice, Persuasion
-from tangy_tui.learning.asking import Answers, Lesson
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.demonstrating import NOTHING_SAID
+from tangy_tui.interaction.uncertainty import remedy_for, why_not
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.online_learning import Answers, Lesson
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.learning.verifying import Verifier
+from tangy_tui.learning.teaching_session import NOTHING_SAID
+from tangy_tui.learning.verification import Verifier
 from tangy_tui.world import World
 
 BEGUN = "game begun"

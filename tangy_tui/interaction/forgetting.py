@@ -11,8 +11,8 @@ from tangy_profiles.erasure import NameEraser
 from tangy_profiles.person import Person
 from tangy_profiles.saved_files import erase_from_files
 from tangy_profiles.store import Store
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.words import spoken, words_of
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.words import spoken, words_of
 
 
 class Forgotten(NamedTuple):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
-from tangy_tui.learning.verifying import Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Reply, Say
 
 SCRIPTED = "scripted"
 """The name under which its demonstrations are kept."""

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import Outcome
-from tangy_tui.learning.verifying import (
+from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
     Offered,

@@ -26,8 +26,8 @@ from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.interaction.facilitation import Acted, Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.learning.asking import Answers
 from tangy_tui.learning.effects import Effects
+from tangy_tui.learning.online_learning import Answers
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.diagnosis import narrows

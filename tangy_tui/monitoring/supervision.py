@@ -25,7 +25,7 @@ from tangy_tui.interaction.facilitation import (
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.verifying import Verifier
+from tangy_tui.learning.verification import Verifier
 from tangy_tui.monitoring import accepted
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import (

@@ -39,10 +39,10 @@ from textual.notifications import SeverityLevel
 from textual.screen import Screen
 
 from tangy_tui.ui.clean_output import CleanOutput, clean
-from tangy_tui.ui.fresh_keys import Clock
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
+from tangy_tui.ui.type_ahead_guard import Clock
 
 HANGUP_CODE = 129
 TERMINATED_CODE = 143

@@ -19,8 +19,8 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.house import House
-from tangy_tui.live.benched import BenchedWorld
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.workspace import House
 from tangy_tui.monitoring.fault import (
     ENDINGS,
     OPEN,

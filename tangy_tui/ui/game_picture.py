@@ -7,7 +7,7 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import (
     Acted,
     DoneOnce,
@@ -19,6 +19,7 @@ from tangy_tui.interaction.facilitation import (
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.situations import counted, lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.fault_console import write_fault
@@ -30,7 +31,6 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, lesson_words, once_words
 
 DRIVING_SHARE = 0.5
 """The share of a step's time in which the picture of the robot drives."""

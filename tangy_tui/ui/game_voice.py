@@ -8,7 +8,7 @@ from typing import Any
 
 from textual.app import App
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.supervision import Event

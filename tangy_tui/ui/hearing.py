@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.learning.verification import Reply, Say, Stop
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.question import VerifyingDialog
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
@@ -24,8 +24,8 @@ from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.input import Ears
     from tangy_tui.ui.widgets.log_view import Kind
 
 WAITS = 0.05

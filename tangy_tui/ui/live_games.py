@@ -11,9 +11,9 @@ from tangy_profiles.errors import TangyError
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_tui.app.robot_opening import Opening
+    from tangy_tui.app.switching_on import SwitchingOn
     from tangy_tui.learning.policy import Policy
-    from tangy_tui.live.opening import Opening
-    from tangy_tui.live.switching_on import SwitchingOn
     from tangy_tui.ui.program import Program
 
 TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
@@ -30,7 +30,7 @@ BENCH = (
 
 async def play_from_home(program: Program, policy: Policy) -> None:
     """Ask first, and play: with the robot, if its file names drivers, or on the bench."""
-    from tangy_tui.live.opening import opening_of
+    from tangy_tui.app.robot_opening import opening_of
     from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 
     house = program.house
@@ -53,7 +53,7 @@ async def play_live(
 
     It is left off where somebody calls it off meanwhile.
     """
-    from tangy_tui.live.switching_on import SwitchingOn
+    from tangy_tui.app.switching_on import SwitchingOn
 
     house = program.house
     robot = SwitchingOn(opening)

@@ -9,7 +9,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.ui.widgets.room_view import RoomView
 
 WidgetT = TypeVar("WidgetT", bound=Widget)

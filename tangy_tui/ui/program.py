@@ -11,20 +11,20 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House, teacher_name
+from tangy_tui.app.workspace import House, teacher_name
 from tangy_tui.learning import library, policies
-from tangy_tui.ui.eyes import Eyes
-from tangy_tui.ui.how_far import how_far
+from tangy_tui.ui.camera_session import Eyes
+from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
+from tangy_tui.ui.progress_summary import how_far
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
-from tangy_tui.ui.storytelling import tell_story_aside
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sensors
-    from tangy_tui.learning.demonstrating import Teaching
     from tangy_tui.learning.policy import Policy
+    from tangy_tui.learning.teaching_session import Teaching
 
 T = TypeVar("T")
 
@@ -192,7 +192,7 @@ class Program(SoundingApp):
         self.run_worker(self._learn())
 
     async def _learn(self) -> None:
-        from tangy_tui.story import learn
+        from tangy_tui.console.demo import learn
         from tangy_tui.ui.screens.conflicts import ConflictsScreen, settle_conflicts
 
         if self._busy or any(isinstance(s, ConflictsScreen) for s in self.screen_stack):
@@ -278,7 +278,7 @@ class Program(SoundingApp):
 
     async def compare(self, first: str | None = None) -> None:
         """Open the comparison of two policies that are chosen; `first` is one of them already."""
-        from tangy_tui.learning.comparing import find_policy
+        from tangy_tui.learning.comparison import find_policy
         from tangy_tui.ui.screens.compare import CompareScreen, choose_two
 
         house = self.house
@@ -305,7 +305,7 @@ class Program(SoundingApp):
 
     async def action_phrases(self) -> None:
         """Open the phrasebook; while it says a word aloud, the microphone is shut."""
-        from tangy_tui.learning.aloud import hear
+        from tangy_tui.speech.aloud import hear
         from tangy_tui.ui.screens.phrases import PhrasesScreen
 
         async def say(phones: str) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import Acted
-from tangy_tui.learning.explaining import Why, explain
+from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.why import WhyDialog

@@ -15,15 +15,15 @@ from rich.text import Text
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, leading, probability_best
 from tangy_profiles.reading import plain
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.learning.comparing import Row
+from tangy_tui.learning.comparison import Row
+from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
-from tangy_tui.learning.listing import ListRow
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.situations import agreement_words, conflict_lines, counted
 from tangy_tui.ui.local_time import local_time
-from tangy_tui.wording import agreement_words, conflict_lines, counted
 
 T = TypeVar("T")
 

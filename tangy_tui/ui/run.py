@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.ui.app import run_app
+from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
-from tangy_tui.ui.storytelling import tell_story
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sensors
-    from tangy_tui.learning.demonstrating import Teaching
+    from tangy_tui.app.robot_opening import Opening
     from tangy_tui.learning.policy import Policy
-    from tangy_tui.learning.speech.ears import Ears
-    from tangy_tui.live.opening import Opening
+    from tangy_tui.learning.teaching_session import Teaching
+    from tangy_tui.speech.input import Ears
 
 
 def run_program(house: House, *, ascii_only: bool, voice: bool = False) -> int:

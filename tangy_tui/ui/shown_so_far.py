@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.coverage import Coverage, coverage
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.teaching_session import Teaching
 
 
 class ShownSoFar:

@@ -16,7 +16,7 @@ from tangy_tui.ui.hearing import Hearing
 from tangy_tui.ui.speaking import OFF, ON, Speaker
 
 if TYPE_CHECKING:
-    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.speech.input import Ears
 
 
 VOICE = "Voice on or off"

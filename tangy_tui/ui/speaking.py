@@ -16,7 +16,7 @@ from tangy_tui.ui.hearing import Hearing
 
 if TYPE_CHECKING:
     from tangy_hw.audio.voice import Rendered, Voice
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
 
 GAP = 0.15
 """Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""

@@ -8,17 +8,17 @@ from typing import Any
 from textual.screen import Screen
 from textual.widgets import Static
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.coverage import Coverage, missing_words
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.teaching_events import Executed, StepUndone
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.text.situations import counted, state_words, step_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, state_words, step_words
 
 DRIVING_PACE = 4.0
 """How many times faster than the robot the picture of it drives: nobody waits for a picture."""

@@ -16,7 +16,7 @@ from tangy_tui.verbs.opening import open_house
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.robot import Robot
-    from tangy_tui.learning.checking import Checked
+    from tangy_tui.speech.activity_check import Checked
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -107,7 +107,7 @@ def activity_phrases(
     as_json: Json = False,
 ) -> None:
     """Show the phrasebook: what can be said for what, and how every word is said."""
-    from tangy_tui.learning.phrase_list import list_phrases
+    from tangy_tui.speech.phrase_list import list_phrases
 
     with open_house(data, activity, users, write=False) as house:
         listed = list_phrases(house.activity, house.people)
@@ -134,8 +134,8 @@ def activity_hear(
     import asyncio
 
     from tangy_profiles.activity import load_activity
-    from tangy_tui.learning.aloud import hear
-    from tangy_tui.learning.lexicon import phones_of
+    from tangy_tui.speech.aloud import hear
+    from tangy_tui.speech.lexicon import phones_of
 
     phones = phones_of(text, load_activity(activity))
     if not as_json:
@@ -161,7 +161,7 @@ def _check(name: str, robot: Robot) -> tuple[Checked, Activity | None]:
     from tangy_profiles.activity import load_activity
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
-    from tangy_tui.learning.checking import Checked, check_activity
+    from tangy_tui.speech.activity_check import Checked, check_activity
 
     try:
         activity = load_activity(name)

@@ -14,7 +14,7 @@ import typer
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.sensor_lines import CAMERA_STATES
+from tangy_tui.text.sensors import CAMERA_STATES
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 

@@ -15,7 +15,7 @@ from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.learning.conflicts import Conflict
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import Edit
@@ -34,8 +34,8 @@ def list_them(
     activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
 ) -> None:
     """List the demonstrations: teacher, date, length, coverage, and what to mind of them."""
+    from tangy_tui.learning.demonstration_rows import list_rows
     from tangy_tui.learning.library import read_library
-    from tangy_tui.learning.listing import list_rows
     from tangy_tui.ui import reports
 
     with open_house(data, activity, 4, write=False) as house:
@@ -55,9 +55,9 @@ def show(
     as_json: Json = False,
 ) -> None:
     """Show one demonstration, step by step."""
-    from tangy_tui.documents import demonstration_document
     from tangy_tui.learning.library import read_library
-    from tangy_tui.wording import step_words
+    from tangy_tui.text.documents import demonstration_document
+    from tangy_tui.text.situations import step_words
 
     with open_house(data, activity, 8, write=False) as house:
         library = read_library(house.store, house.activity.name)
@@ -148,9 +148,9 @@ def conflicts(
     as_json: Json = False,
 ) -> None:
     """Show the situations to which demonstrations give different answers, side by side."""
-    from tangy_tui.documents import conflict_document
     from tangy_tui.learning.library import read_library
-    from tangy_tui.wording import conflict_lines
+    from tangy_tui.text.documents import conflict_document
+    from tangy_tui.text.situations import conflict_lines
 
     with open_house(data, activity, 4, write=False) as house:
         library = read_library(house.store, house.activity.name)
@@ -232,7 +232,7 @@ def _change(
 ) -> None:
     """Make a change of the library and say what it was."""
     from tangy_tui.learning.editing import Editor
-    from tangy_tui.wording import counted
+    from tangy_tui.text.situations import counted
 
     with open_house(data, activity, 4) as house:
         editor = Editor(house.store, house.activity)
@@ -254,7 +254,7 @@ def _edit_document(edit: Edit) -> dict[str, Any]:
 
 
 def _edit_words(house: House, editor: Editor, edit: Edit) -> str:
-    from tangy_tui.wording import edit_words
+    from tangy_tui.text.situations import edit_words
 
     return edit_words(house.activity, editor.library, edit)
 

@@ -37,12 +37,12 @@ def drill(
     With --json the answers come as lines on standard input. --scores lists the sheets of everybody,
     or of --who.
     """
-    from tangy_tui.house import teacher_name
+    from tangy_tui.app.workspace import teacher_name
 
     name = teacher_name() if who is None else read_name(who, "--who: a name")
     with open_house(data, activity, users, write=not scores) as house:
         if scores:
-            from tangy_tui.drill_lines import sheets_lines
+            from tangy_tui.console.drills import sheets_lines
             from tangy_tui.monitoring.drill_sheet import read_sheets
             from tangy_tui.ui.local_time import local_time
 
@@ -60,8 +60,8 @@ def drill(
             raise typer.Exit(
                 run_drill(house, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
             )
-        from tangy_tui.drill_lines import drill_by_lines, left_words
-        from tangy_tui.inputs import line_reader
+        from tangy_tui.console.drills import drill_by_lines, left_words
+        from tangy_tui.console.inputs import line_reader
         from tangy_tui.monitoring.drill import Drill
 
         if not as_json:

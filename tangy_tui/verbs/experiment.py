@@ -109,7 +109,7 @@ def third(
     def scenario(where: Where) -> dict[str, Any]:
         if simulated:
             return recovery(asked, where)
-        from tangy_tui.live.inducing import GAMES_A_PIECE, play_on_bench
+        from tangy_tui.experiments.device_faults import GAMES_A_PIECE, play_on_bench
 
         return recovery(asked, where, bench=play_on_bench, a_piece=GAMES_A_PIECE)
 
@@ -125,10 +125,10 @@ def _run(
     report: Path | None,
     as_json: bool,
 ) -> None:
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.experiments.comparison import SOURCES, compare
     from tangy_tui.experiments.report import report as page_of
     from tangy_tui.experiments.sweep import Where
-    from tangy_tui.house import data_folder
     from tangy_tui.pages import page
 
     if jobs == 0 or jobs < -1:

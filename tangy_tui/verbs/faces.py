@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tangy_hw.perception.faces.gallery import Gallery, Match
     from tangy_hw.perception.faces.reader import Face, FaceReader
     from tangy_hw.perception.pictures import Picture
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
 
 app = typer.Typer(
     rich_markup_mode=None,

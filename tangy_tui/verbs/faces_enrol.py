@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tangy_hw.perception.faces.enrolment import Enrolment
     from tangy_hw.perception.faces.gallery import Gallery
     from tangy_profiles.store import Store
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
 
 EVERY = 0.4  # seconds between two pictures of a camera: the head has moved
 Tell = Callable[[str], None]

@@ -13,10 +13,10 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import as_given
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.ears import Ears
-    from tangy_tui.learning.speech.recordings import Recorder
+    from tangy_tui.app.workspace import House
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.input import Ears
+    from tangy_tui.speech.recordings import Recorder
 
 Mic = Annotated[
     str | None,
@@ -69,8 +69,8 @@ class Listening:
         """
         if self.mic is None:
             return None
-        from tangy_tui.learning.speech.calibration import settings_for
-        from tangy_tui.learning.speech.ears import Ears
+        from tangy_tui.speech.calibration import settings_for
+        from tangy_tui.speech.input import Ears
 
         return Ears(
             self.mic,
@@ -86,7 +86,7 @@ class Listening:
 
 def _recorder(house: House, teacher: str) -> Recorder | None:
     """Record a teacher who agrees; nothing is recorded without a yes."""
-    from tangy_tui.learning.speech.recordings import Recorder, consent, consent_question, consented
+    from tangy_tui.speech.recordings import Recorder, consent, consent_question, consented
 
     if not consented(house.store, teacher):
         if not sys.stdin.isatty():
@@ -103,7 +103,7 @@ def _recorder(house: House, teacher: str) -> Recorder | None:
 
 def _options(house: House) -> str:
     """Return the options with which another command means the same data folder."""
-    from tangy_tui.house import data_folder
+    from tangy_tui.app.workspace import data_folder
 
     folder = house.store.folder
     return as_given(None if folder == data_folder(None) else folder)

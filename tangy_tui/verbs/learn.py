@@ -16,7 +16,7 @@ from tangy_tui.verbs.opening import open_house, say_notices
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.learning.policies import Change
     from tangy_tui.learning.policy import Policy
 
@@ -41,7 +41,6 @@ def learn(
     """Learn a policy from the demonstrations, after settling what they disagree about."""
     from dataclasses import replace
 
-    from tangy_tui.documents import policy_document
     from tangy_tui.learning.forest_cache import ForestCache
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import (
@@ -52,6 +51,7 @@ def learn(
         unused_name,
     )
     from tangy_tui.learning.policy import FORESTS, learn_policy
+    from tangy_tui.text.documents import policy_document
 
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
@@ -126,7 +126,7 @@ def _settle_conflicts(house: House) -> None:
     """Put each conflict to the person at the terminal, before anything is learnt."""
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import read_library
-    from tangy_tui.wording import conflict_lines
+    from tangy_tui.text.situations import conflict_lines
 
     library = read_library(house.store, house.activity.name)
     editor = Editor(house.store, house.activity)
@@ -157,7 +157,7 @@ def _settle_conflicts(house: House) -> None:
 
 
 def _only_unfinished(shown: list[Demonstration]) -> str:
-    from tangy_tui.wording import counted
+    from tangy_tui.text.situations import counted
 
     steps = counted(sum(len(d.steps) for d in shown), "step")
     return (
@@ -175,7 +175,7 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
 
 def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> None:
     from tangy_tui.learning.coverage import NOT_SHOWN
-    from tangy_tui.wording import counted
+    from tangy_tui.text.situations import counted
 
     activity = house.activity
     unseen = [s for s in activity.situations if not policy.decide(s).seen]
@@ -225,7 +225,7 @@ def _tell_changed(
 
 
 def _find(house: House, name: str) -> Policy:
-    from tangy_tui.learning.comparing import find_policy
+    from tangy_tui.learning.comparison import find_policy
     from tangy_tui.learning.policies import need_policy
 
     need_policy(house.store, house.activity)
@@ -235,8 +235,8 @@ def _find(house: House, name: str) -> Policy:
 
 
 def _show(house: House, name: str, as_json: bool) -> None:
-    from tangy_tui.documents import policy_document
     from tangy_tui.learning.library import effects_of, read_library
+    from tangy_tui.text.documents import policy_document
     from tangy_tui.ui import reports
 
     learnt = _find(house, name)
@@ -265,8 +265,8 @@ def _list_policies(house: House, as_json: bool) -> None:
 
 
 def _compare(house: House, a: str, b: str, as_json: bool) -> None:
-    from tangy_tui.documents import comparison_document
-    from tangy_tui.learning.comparing import compare, find_policy
+    from tangy_tui.learning.comparison import compare, find_policy
+    from tangy_tui.text.documents import comparison_document
     from tangy_tui.ui import reports
 
     first, notices = find_policy(house.store, house.activity, a)
@@ -280,9 +280,9 @@ def _compare(house: House, a: str, b: str, as_json: bool) -> None:
 
 
 def _why(house: House, name: str, wanted: str, as_json: bool) -> None:
-    from tangy_tui.documents import why_document
-    from tangy_tui.learning.explaining import explain, shown_words, why_words
+    from tangy_tui.learning.explanation import explain, shown_words, why_words
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.documents import why_document
 
     policy = _find(house, name)
     library = read_library(house.store, house.activity.name)

@@ -18,9 +18,9 @@ from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, pri
 from tangy_tui.verbs.opening import open_house, say_notices
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.evidence import Settings
+    from tangy_tui.app.workspace import House
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.evidence import Settings
 
 
 def listen(
@@ -53,8 +53,8 @@ def listen(
     (call_number-3.wav) or that of its folder (call number/3.wav). Everything that is no command is
     named none, noise or speech, or lies in a folder of that name.
     """
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.speech.calibration import is_checked, settings_for
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.calibration import is_checked, settings_for
 
     if bool(files) + (bench is not None) + forget_recordings != 1:
         raise TangyError("Give WAV files, or a folder of them with --bench DIR.")
@@ -80,7 +80,7 @@ def _listen(
     names: dict[str, str],
     as_json: bool,
 ) -> None:
-    from tangy_tui.learning.speech.listening import listen as hear
+    from tangy_tui.speech.transcription import listen as hear
 
     def show(done: int, rows: Sequence[dict[str, Any]]) -> None:
         for row in rows:
@@ -123,11 +123,11 @@ def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
 
 
 def _bench(folder: Path, phrasebook: Phrasebook, settings: Settings, as_json: bool) -> None:
-    from tangy_tui.learning.lexicon import Lexicon
-    from tangy_tui.learning.speech.labels import Labels
-    from tangy_tui.learning.speech.practice import Practice, practise
-    from tangy_tui.learning.speech.recogniser import Recogniser
-    from tangy_tui.learning.speech.report import practice_lines
+    from tangy_tui.speech.labels import Labels
+    from tangy_tui.speech.lexicon import Lexicon
+    from tangy_tui.speech.practice import Practice, practise
+    from tangy_tui.speech.recogniser import Recogniser
+    from tangy_tui.speech.report import practice_lines
 
     found = Labels(phrasebook).find(folder)
     heard = Lexicon(phrasebook, suggest=lambda word: "").heard()
@@ -168,8 +168,8 @@ def _progress() -> Iterator[Callable[[int, int], None]]:
 
 
 def _forget(house: House, as_json: bool) -> None:
-    from tangy_tui.learning.speech.recordings import FOLDER, forget_recordings
-    from tangy_tui.wording import counted
+    from tangy_tui.speech.recordings import FOLDER, forget_recordings
+    from tangy_tui.text.situations import counted
 
     count, left = forget_recordings(house.store)
     if as_json:

@@ -12,6 +12,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
+from tangy_tui.text.situations import counted
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_house
@@ -26,11 +27,10 @@ from tangy_tui.verbs.playing import (
     who_answers,
 )
 from tangy_tui.verbs.sensors import Cameras, RobotName
-from tangy_tui.wording import counted
 
 if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.monitoring.supervision import Event, Supervision
 
 PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
@@ -107,8 +107,8 @@ def live(
     "stop the robot" stops it at once, and what it asks can be answered by voice.
     """
     from tangy_hw.perception.requests.source_names import read_corners
-    from tangy_tui.inputs import keys_from_terminal
-    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.console.inputs import keys_from_terminal
+    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
     if INJECT_HELP in (inject or ()):
@@ -132,8 +132,8 @@ def live(
         need_policy(house.store, house.activity, policy)
         learnt = recall(house, policy, quiet=as_json)
         number = house.game_seed(seed)
-        from tangy_tui.live.dealing import read_dealt
-        from tangy_tui.live.opening import check_map, opening_of
+        from tangy_tui.app.dealing import read_dealt
+        from tangy_tui.app.robot_opening import check_map, opening_of
 
         if map_:
             check_map(house, map_)
@@ -162,7 +162,7 @@ def live(
             )
         if not as_json:
             print("Switching the robot on ...", file=sys.stderr)
-        from tangy_tui.live.switching_on import switched_on
+        from tangy_tui.app.switching_on import switched_on
 
         with switched_on(opening, stepped=bench) as world:
             if not (as_json or bench) and world.link.tablet:
@@ -202,7 +202,7 @@ def _play(
     house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
 ) -> bool:
     """Play games, tell of them, and return whether all of them came to their end."""
-    from tangy_tui.live.playing import LiveGames
+    from tangy_tui.app.live_games import LiveGames
     from tangy_tui.ui import reports
 
     played = LiveGames(house, supervision)

@@ -68,9 +68,9 @@ def log_list(data: Data = None, as_json: Json = False) -> None:
 @app.command("show")
 def log_show(game: Which, activity: Of = "", data: Data = None, as_json: Json = False) -> None:
     """Tell one game step by step: what was seen, done and said, responses, faults."""
-    from tangy_tui.log_lines import replay_lines
     from tangy_tui.monitoring.games import find_game, read_games
     from tangy_tui.monitoring.replay import read_replays
+    from tangy_tui.text.log import replay_lines
 
     with _open(data) as (store, names):
         found = find_game(read_games(store), game)
@@ -95,10 +95,10 @@ def log_report(
     as_json: Json = False,
 ) -> None:
     """Report on a session: what happened, faults and recoveries, people, what to look after."""
-    from tangy_tui.log_lines import session_lines
     from tangy_tui.monitoring.games import find_games, read_games
     from tangy_tui.monitoring.session import read_session
     from tangy_tui.pages import page
+    from tangy_tui.text.log import session_lines
 
     if html is not None:
         page.check_place(html, "--html")
@@ -136,7 +136,7 @@ def log_world(
     """
     from tangy_profiles.game_world import read_game_world
     from tangy_profiles.store import Store
-    from tangy_tui.house import data_folder
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.interaction.game_worlds import GameWorlds
     from tangy_tui.monitoring.games import find_game, read_games
 
@@ -157,7 +157,7 @@ def _open(data: Path | None) -> Iterator[tuple[Store, dict[str, str]]]:
     """Open the log for reading, with the names of the people."""
     from tangy_profiles.person import MOST_PEOPLE, load_people
     from tangy_profiles.store import Store
-    from tangy_tui.house import data_folder
+    from tangy_tui.app.workspace import data_folder
 
     with Store.open(data_folder(data), write=False) as store:
         say_notices(store.notices)

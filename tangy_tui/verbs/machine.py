@@ -23,8 +23,8 @@ def doctor(
     With --robot each driver that the robot's profile names is tried, too; nothing is moved. The
     exit status is 1 where the data folder, or a device of that robot, is broken.
     """
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.doctor import examine, examine_robot
-    from tangy_tui.house import data_folder
 
     findings = examine(data_folder(data))
     wanted = {"data folder"}  # what was asked for: what else is missing, Tangy does without

@@ -66,7 +66,7 @@ def forward(data: Path | None, socket: Path | None) -> None:
     from tangy_hw.audio.forwarding import Forwarder, TakenOver
     from tangy_hw.audio.piped_source import open_standard_input
     from tangy_hw.audio.sources import SOCKET_NAME
-    from tangy_tui.house import data_folder
+    from tangy_tui.app.workspace import data_folder
 
     if sys.stdin is not None and sys.stdin.isatty():
         there = as_given(data) + ("" if socket is None else f" --socket {shlex.quote(str(socket))}")

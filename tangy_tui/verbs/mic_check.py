@@ -14,11 +14,11 @@ from tangy_tui.verbs.opening import open_house
 
 if TYPE_CHECKING:
     from tangy_hw.audio.source import Source
-    from tangy_tui.house import House
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.lexicon import Lexicon
-    from tangy_tui.learning.speech.calibration import Asked
-    from tangy_tui.learning.speech.checking import Checked
+    from tangy_tui.app.workspace import House
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.calibration import Asked
+    from tangy_tui.speech.lexicon import Lexicon
+    from tangy_tui.speech.microphone_check import Checked
 
 ALONE = 3.0  # s without any sound, after which a check is given up where nobody could help
 
@@ -48,8 +48,8 @@ def check(
     microphone or the file gives no voice.
     """
     from tangy_hw.audio.sources import open_source
-    from tangy_tui.learning.speech.calibration import forget as forget_check
-    from tangy_tui.learning.speech.calibration import keep
+    from tangy_tui.speech.calibration import forget as forget_check
+    from tangy_tui.speech.calibration import keep
 
     with open_house(data, activity, 4, write=not listed) as house:
         if listed:
@@ -79,7 +79,7 @@ def check(
 
 def _list(house: House, as_json: bool) -> None:
     """Print what is to be said."""
-    from tangy_tui.learning.speech.checking import numbered
+    from tangy_tui.speech.microphone_check import numbered
 
     _, _, asked = _asked(house)
     if as_json:
@@ -91,9 +91,9 @@ def _list(house: House, as_json: bool) -> None:
 
 def _asked(house: House) -> tuple[Phrasebook, Lexicon, list[Asked]]:
     """Return what can be said, what of it can be heard, and what is to be said."""
-    from tangy_tui.learning.commands import Phrasebook
-    from tangy_tui.learning.lexicon import Lexicon
-    from tangy_tui.learning.speech.checking import to_say
+    from tangy_tui.language.commands import Phrasebook
+    from tangy_tui.speech.lexicon import Lexicon
+    from tangy_tui.speech.microphone_check import to_say
 
     phrasebook = Phrasebook(house.activity, house.people)
     lexicon = Lexicon(phrasebook, suggest=lambda word: "")
@@ -101,8 +101,8 @@ def _asked(house: House) -> tuple[Phrasebook, Lexicon, list[Asked]]:
 
 
 async def _run(house: House, source: Source, as_json: bool) -> Checked:
-    from tangy_tui.learning.speech.checking import MicrophoneCheck
-    from tangy_tui.learning.speech.recogniser import Recogniser
+    from tangy_tui.speech.microphone_check import MicrophoneCheck
+    from tangy_tui.speech.recogniser import Recogniser
 
     def on_stderr(sentence: str) -> None:
         print(plain(sentence), file=sys.stderr, flush=True)
@@ -129,7 +129,7 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
 
 def _patience(mic: str) -> float:
     """Return how many seconds somebody has to plug in a microphone, or to begin to send."""
-    from tangy_tui.learning.speech.checking import PATIENCE
+    from tangy_tui.speech.microphone_check import PATIENCE
 
     from_elsewhere = mic.partition(":")[0] == "socket"
     return PATIENCE if sys.stderr.isatty() or from_elsewhere else ALONE
@@ -137,8 +137,8 @@ def _patience(mic: str) -> float:
 
 def _lines(checked: Checked, mic: str) -> list[str]:
     """Say what came of it."""
-    from tangy_tui.learning.speech.evidence import USUAL
-    from tangy_tui.learning.speech.loudness import CLEAR, FAIR
+    from tangy_tui.speech.evidence import USUAL
+    from tangy_tui.speech.loudness import CLEAR, FAIR
 
     figures, above = checked.chosen.figures, checked.voice - checked.room
     how = "clear" if above >= CLEAR else "enough" if above >= FAIR else "too little"

@@ -13,7 +13,7 @@ from tangy_tui.ui.terminal import terminal_kind
 
 if TYPE_CHECKING:
     from tangy_profiles.store import Store
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
 
 MOST_TOLD = 5
 """Events that are named one by one where they were left out."""
@@ -28,7 +28,7 @@ def open_house(
     Raises:
         TangyError: where the folder, the activity or the robot cannot be read.
     """
-    from tangy_tui.house import House, data_folder
+    from tangy_tui.app.workspace import House, data_folder
 
     house = House(data_folder(data), activity=activity, users=users, write=write, robot=robot)
     try:

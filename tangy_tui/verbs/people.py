@@ -18,7 +18,7 @@ from tangy_tui.verbs.opening import open_house
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
     from tangy_profiles.persuading import Persuading
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.interaction.feedback import Entry
     from tangy_tui.interaction.record import Record
 
@@ -65,7 +65,7 @@ def people_list(
     as_json: Json = False,
 ) -> None:
     """List the people, with how often each strategy has worked."""
-    from tangy_tui.documents import person_document
+    from tangy_tui.text.documents import person_document
     from tangy_tui.ui import people_report
 
     with open_house(data, activity, users, write=False) as house:
@@ -106,7 +106,7 @@ def people_history(
     as_json: Json = False,
 ) -> None:
     """List what a person was asked to do, game by game, with the numbers `void` takes."""
-    from tangy_tui.documents import entry_document
+    from tangy_tui.text.documents import entry_document
     from tangy_tui.ui import people_report
 
     with open_house(data, activity, users, write=False) as house:
@@ -253,8 +253,8 @@ def people_rename(
     as_json: Json = False,
 ) -> None:
     """Give a person another name; what Tangy has learnt of them stays."""
-    from tangy_tui.learning.clashes import find_clash
-    from tangy_tui.learning.naming import how_said, naming_lines
+    from tangy_tui.speech.name_conflicts import find_clash
+    from tangy_tui.speech.name_pronunciation import how_said, naming_lines
 
     with open_house(data, "bingo", users) as house:
         found = house.find_person(person)
@@ -328,7 +328,7 @@ def _world(word: str) -> GameWorld | None:
 
 
 def _printed(record: Record, as_json: bool) -> bool:
-    from tangy_tui.documents import person_document
+    from tangy_tui.text.documents import person_document
 
     if as_json:
         print_json(person_document(record))

@@ -19,7 +19,7 @@ from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.interaction.forgetting import Forgotten
 
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask first, for scripts.")]

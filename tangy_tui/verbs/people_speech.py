@@ -39,8 +39,8 @@ def people_pronounce(
     as_json: Json = False,
 ) -> None:
     """Say how a person's name is pronounced, so that it is heard when it is spoken."""
-    from tangy_tui.learning.clashes import find_clash
-    from tangy_tui.learning.naming import accept_suggested, how_said
+    from tangy_tui.speech.name_conflicts import find_clash
+    from tangy_tui.speech.name_pronunciation import accept_suggested, how_said
 
     changes = phones is not None or accept or forget
     if (phones is not None) + accept + forget > 1:
@@ -120,7 +120,7 @@ def _check_voice(wanted: VoicePreference) -> None:
 
 
 def _hear(phones: str, person: Person, sink: str) -> None:
-    from tangy_tui.learning.aloud import hear
+    from tangy_tui.speech.aloud import hear
 
     if not phones:
         raise TangyError(plain(f"Nobody knows how {person.name} is said: give the phones."))

@@ -31,8 +31,8 @@ from tangy_tui.verbs.playing import (
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
-    from tangy_tui.learning.asking import Lesson
+    from tangy_tui.app.workspace import House
+    from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.monitoring.supervision import Supervision
 
 
@@ -77,8 +77,8 @@ def play(
     from; a critical fault halts Tangy until staff clear it, and without staff ends the game.
     With --camera that device is real: cover its lens, and Tangy asks to have it uncovered.
     """
-    from tangy_tui.inputs import keys_from_terminal
-    from tangy_tui.learning.commands import Phrasebook
+    from tangy_tui.console.inputs import keys_from_terminal
+    from tangy_tui.language.commands import Phrasebook
     from tangy_tui.learning.policies import need_policy
 
     if INJECT_HELP in (inject or ()):
@@ -130,8 +130,8 @@ def play(
                 house, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
             )
             return
-        from tangy_tui.game_lines import play_by_lines
-        from tangy_tui.inputs import line_reader
+        from tangy_tui.console.games import play_by_lines
+        from tangy_tui.console.inputs import line_reader
         from tangy_tui.learning.library import read_library
 
         read = None if scripted else line_reader(None)
@@ -169,7 +169,7 @@ def demo(
             status = run_demo(house, seed=seed, ascii_only=ascii_only)
             print("Teach it yourself: tangy teach. All you can do: tangy --help.")
             raise typer.Exit(status)
-        from tangy_tui.story import tell
+        from tangy_tui.console.demo import tell
 
         tally = tell(house, seed, (lambda _: None) if as_json else print)
         if as_json:
@@ -186,13 +186,13 @@ def _play_headless(
     injected: bool,
 ) -> None:
     from tangy_sim.worlds.faulty_world import FaultyWorld
-    from tangy_tui.documents import lesson_document
     from tangy_tui.interaction.facilitation import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
     from tangy_tui.monitoring.scripted_people import go_on_by_script
+    from tangy_tui.text.documents import lesson_document
+    from tangy_tui.text.situations import counted, lesson_words
     from tangy_tui.ui import reports
-    from tangy_tui.wording import counted, lesson_words
 
     tally = Tally()
     lessons: list[Lesson] = []

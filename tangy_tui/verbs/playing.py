@@ -12,7 +12,7 @@ from tangy_tui.verbs.common import print_json
 from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.learning.policy import Policy
 
 PolicyName = Annotated[
@@ -39,7 +39,7 @@ def who_answers(teacher: str | None, expert: str) -> str:
     Raises:
         TangyError: there is no such expert.
     """
-    from tangy_tui.house import teacher_name
+    from tangy_tui.app.workspace import teacher_name
 
     if expert not in ("", SCRIPTED):
         raise TangyError(plain(f"--expert {expert}: there is only 'scripted'."))

@@ -14,8 +14,8 @@ from tangy_tui.verbs.opening import full_screen, open_house
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sensors
-    from tangy_tui.house import House
-    from tangy_tui.sensor_lines import Told
+    from tangy_tui.app.workspace import House
+    from tangy_tui.text.sensors import Told
 
 Cameras = Annotated[
     list[str] | None,
@@ -64,12 +64,12 @@ def sensors(
     live = [told for told in found if told.live]
     works = all(told.well for told in live)
     if as_json:
-        from tangy_tui.sensor_lines import sensor_document
+        from tangy_tui.text.sensors import sensor_document
 
         devices = [sensor_document(told) for told in found]
         print_json({"works": works, "devices": devices, "card": card["document"]})
     else:
-        from tangy_tui.sensor_lines import sensor_line
+        from tangy_tui.text.sensors import sensor_line
 
         width = max(len(told.device.label) for told in found)
         for told in found:
@@ -86,7 +86,7 @@ async def _look(
     house: House, sensors: Sensors, seconds: float
 ) -> tuple[list[Told], dict[str, Any]]:
     """Look at all devices for so many s; return what is told of them, and of the last card."""
-    from tangy_tui.sensor_lines import Teller, card_document, card_words
+    from tangy_tui.text.sensors import Teller, card_document, card_words
 
     async with sensors:
         with sensors.reading_cards():

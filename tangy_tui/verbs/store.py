@@ -14,7 +14,7 @@ app = typer.Typer(rich_markup_mode=None, help="The log that everything is kept i
 def store_check(data: Data = None, as_json: Json = False) -> None:
     """Read the whole log and name what is wrong with it; the exit status is 1 if anything is."""
     from tangy_profiles.store import Store
-    from tangy_tui.house import data_folder
+    from tangy_tui.app.workspace import data_folder
     from tangy_tui.monitoring.log_check import log_problems
 
     folder = data_folder(data)

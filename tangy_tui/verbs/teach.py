@@ -26,10 +26,10 @@ from tangy_tui.verbs.hearing import (
 from tangy_tui.verbs.opening import full_screen, open_house
 
 if TYPE_CHECKING:
-    from tangy_tui.house import House
-    from tangy_tui.learning.demonstrating import Teaching
-    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.app.workspace import House
     from tangy_tui.learning.teaching_events import Again
+    from tangy_tui.learning.teaching_session import Teaching
+    from tangy_tui.speech.input import Ears
 
 
 def teach(
@@ -67,8 +67,8 @@ def teach(
     ascii_only: common.Ascii = False,
 ) -> None:
     """Demonstrate an activity: say or type what Tangy should do, and confirm with Y."""
-    from tangy_tui.house import teacher_name
-    from tangy_tui.inputs import keys_from_terminal
+    from tangy_tui.app.workspace import teacher_name
+    from tangy_tui.console.inputs import keys_from_terminal
 
     who = teacher_name(teacher)
     if who == "scripted" and script is not None:
@@ -111,9 +111,9 @@ def _again(wanted: str | None) -> Again | None:
 
 
 def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
-    from tangy_tui.documents import demonstration_document
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Finished, Next
+    from tangy_tui.text.documents import demonstration_document
 
     scripted = ScriptedTeacher(teaching)
     teaching.begin()
@@ -145,10 +145,10 @@ def _teach_by_lines(
     *,
     resume: bool,
 ) -> None:
-    from tangy_tui.documents import demonstration_document
-    from tangy_tui.house import data_folder, teacher_name
-    from tangy_tui.inputs import line_reader
-    from tangy_tui.lines import TeachingLines, command_line
+    from tangy_tui.app.workspace import data_folder, teacher_name
+    from tangy_tui.console.inputs import line_reader
+    from tangy_tui.console.teaching import TeachingLines, command_line
+    from tangy_tui.text.documents import demonstration_document
 
     folder = house.store.folder
     usual = signature(teach).parameters["activity"].default
@@ -189,7 +189,7 @@ def _seen(house: House, teaching: Teaching) -> list[str]:
 
 def _why(house: House, teaching: Teaching) -> list[str]:
     """Say what Tangy would do now by what it has been shown, and why."""
-    from tangy_tui.learning.explaining import explain, foresee, why_words
+    from tangy_tui.learning.explanation import explain, foresee, why_words
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policy import NothingToLearnFrom
 

@@ -19,12 +19,12 @@ from time import perf_counter, process_time
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import AT_ONCE, KINDS
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.console.demo import learn
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.story import learn
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.play import PlayScreen

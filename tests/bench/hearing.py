@@ -136,8 +136,8 @@ def be_the_child(folder: Path) -> int:
     from tangy_hw.audio.synthesis import Synthesiser
     from tangy_hw.audio.voice import Voice
     from tangy_profiles.voice import VoicePreference
-    from tangy_tui.house import House
-    from tangy_tui.learning.speech.ears import Ears
+    from tangy_tui.app.workspace import House
+    from tangy_tui.speech.input import Ears
     from tangy_tui.ui.app import run_app
     from tangy_tui.ui.program import Program
     from tangy_tui.ui.screens.teach import TeachScreen

@@ -16,8 +16,8 @@ from collections.abc import Callable, Sequence
 from random import Random
 from time import perf_counter, process_time
 
-from tangy_tui.learning import pronouncing, spelling
-from tangy_tui.learning.espeak_phones import PROGRAM, espeak_phones
+from tangy_tui.language import pronunciation, spelling
+from tangy_tui.language.espeak_phones import PROGRAM, espeak_phones
 
 NAMES = """
 ada agnes albert alice amelia andrea angela anita anna arthur audrey barbara beatrice bernard betty
@@ -49,7 +49,7 @@ def apart(one: Sequence[str], other: Sequence[str]) -> int:
 
 def by_spelling(word: str) -> str:
     """Guess from the dictionary without the word."""
-    without = re.sub(rf"\n{word}(\(\d\))? [^\n]*", "", pronouncing._dictionary())
+    without = re.sub(rf"\n{word}(\(\d\))? [^\n]*", "", pronunciation._dictionary())
     return spelling.guess(word, without)
 
 
@@ -58,7 +58,7 @@ def measure(title: str, words: Sequence[str], guess: Callable[[str], str]) -> No
     begun, used = perf_counter(), process_time()
     for word in words:
         guessed = guess(word).split()
-        known = [way.split() for way in pronouncing.pronounce(word)]
+        known = [way.split() for way in pronunciation.pronounce(word)]
         error, length = min((apart(guessed, way), len(way)) for way in known)
         right += error == 0
         errors += error
@@ -75,14 +75,14 @@ def main() -> None:
     """Measure both guesses on words and on names, and the look-up."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 500
     begun = process_time()
-    lines = pronouncing._dictionary().split("\n")
+    lines = pronunciation._dictionary().split("\n")
     print(f"dictionary read in {(process_time() - begun) * 1000:.0f} ms CPU, {len(lines)} lines")
     usual = [w for line in lines if re.fullmatch("[a-z]{3,}", w := line.partition(" ")[0])]
     words = Random(5).sample(usual, count)
-    names = [name for name in NAMES.split() if pronouncing.pronounce(name)]
+    names = [name for name in NAMES.split() if pronunciation.pronounce(name)]
     begun = process_time()
     for word in words:
-        pronouncing.pronounce(word)
+        pronunciation.pronounce(word)
     print(f"a look-up takes {(process_time() - begun) / count * 1000:.2f} ms CPU")
     guesses: dict[str, Callable[[str], str]] = {"spelling": by_spelling}
     if shutil.which(PROGRAM):

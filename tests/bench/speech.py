@@ -37,14 +37,14 @@ from tangy_hw.audio.wav import RATE, read_wav
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_profiles.room import load_room
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech import understanding
-from tangy_tui.learning.speech.decoding import Decoder, make_decoder
-from tangy_tui.learning.speech.evidence import Evidence, Expecting, Settings
-from tangy_tui.learning.speech.listening import tier_of
-from tangy_tui.learning.speech.recogniser import Recogniser
-from tangy_tui.learning.stop_sentence import stops
-from tangy_tui.learning.verifying import Reply, Say
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.speech import understanding
+from tangy_tui.speech.decoder import Decoder, make_decoder
+from tangy_tui.speech.evidence import Evidence, Expecting, Settings
+from tangy_tui.speech.recogniser import Recogniser
+from tangy_tui.speech.transcription import tier_of
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 
 Samples: TypeAlias = NDArray[np.float64]

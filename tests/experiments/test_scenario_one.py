@@ -14,7 +14,7 @@ from tangy_tui.experiments import incremental, mistakes, teachers
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, SEED_SPACE, Course, activity_of, taught
 from tangy_tui.experiments.estimates import share_interval, summary
 from tangy_tui.experiments.styles import STYLES, StyledTeacher, anybody, by_seat, last_come, nearest
-from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.learning.teaching_session import Teaching
 
 SETTINGS = {"activity": "bingo", "most": incremental.MOST_GAMES}
 SEATS = ("a", "b", "c", "d")

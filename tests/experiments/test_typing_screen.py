@@ -7,7 +7,7 @@ import pytest
 from tangy_tui.experiments.classroom import activity_of
 from tangy_tui.experiments.screen import Screen
 from tangy_tui.experiments.typing import shortest
-from tangy_tui.learning.commands import Phrasebook
+from tangy_tui.language.commands import Phrasebook
 
 DRAWN = (
     b"\x1b[?1049h\x1b[>25u\x1b[?2026$p\x1b]22;default\x07\x1b]0;a title\x1b\\"

@@ -28,12 +28,12 @@ from tangy_tui.interaction.facilitation import (
     Unsure,
 )
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.learning.asking import Answers
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
+from tangy_tui.learning.online_learning import Answers
 from tangy_tui.learning.policies import POLICY, load_policy
 from tangy_tui.learning.policy import PAPER, SURE, Policy
-from tangy_tui.learning.verifying import Asked, Reply, Say, Verified
+from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tests.interaction.conftest import FEW, acts
 from tests.interaction.gaps import learnt, otherwise, without
 

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.store import Store
-from tangy_tui.house import House
-from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import learn_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Again, Begun, Executed, Redo, StepUndone, Undo
-from tangy_tui.learning.verifying import Refused, Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Refused, Reply, Say
 
 YES = Reply(yes=True)
 

@@ -18,10 +18,9 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.lexicon import Lexicon
-from tangy_tui.learning.speech import checking
-from tangy_tui.learning.speech.calibration import (
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.speech import microphone_check
+from tangy_tui.speech.calibration import (
     SHIFTS,
     SURELY,
     WEIGHTS,
@@ -35,9 +34,10 @@ from tangy_tui.learning.speech.calibration import (
     microphone,
     settings_for,
 )
-from tangy_tui.learning.speech.checking import Checked, MicrophoneCheck, to_say
-from tangy_tui.learning.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
-from tangy_tui.learning.speech.labels import Label
+from tangy_tui.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.speech.labels import Label
+from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.speech.microphone_check import Checked, MicrophoneCheck, to_say
 
 COMMAND, OTHER = Asked("call number", Label("call number")), Asked("tea", None)
 
@@ -318,7 +318,7 @@ class TestChecking:
         asked: list[Asked],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
-        monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
+        monkeypatch.setattr(microphone_check, "LOOK_SECONDS", 0.0)
         with pytest.raises(SoundError, match=r"nothing was heard for 0 s.* plugged in"):
             await self.check(Silent(), activity, people, asked, patience=0.0)
 
@@ -330,9 +330,9 @@ class TestChecking:
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
         said: list[int | None] = [*range(1, len(asked) + 1)]
-        monkeypatch.setattr(checking, "LOOK_SECONDS", 0.0)
+        monkeypatch.setattr(microphone_check, "LOOK_SECONDS", 0.0)
         muted, told = Muted(said, mended=True), list[str]()
-        monkeypatch.setattr(checking, "Meter", lambda: Meter(lambda: muted.now))
+        monkeypatch.setattr(microphone_check, "Meter", lambda: Meter(lambda: muted.now))
         checked = await self.check(muted, activity, people, asked, told)
         assert checked.parted
         assert -85 < checked.room < -75
@@ -381,7 +381,7 @@ class TestChecking:
         people: tuple[Person, ...],
         asked: list[Asked],
         told: list[str] | None = None,
-        patience: float = checking.PATIENCE,
+        patience: float = microphone_check.PATIENCE,
     ) -> Checked:
         def tell(sentence: str) -> None:
             if told is not None:

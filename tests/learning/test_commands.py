@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import Person, load_people
-from tangy_tui.learning.commands import KEYWORDS_AT_LEAST, Phrasebook
-from tangy_tui.learning.words import FILLERS, LONGEST_TEXT
+from tangy_tui.language.commands import KEYWORDS_AT_LEAST, Phrasebook
+from tangy_tui.language.words import FILLERS, LONGEST_TEXT
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))
 NAMED = Phrasebook(

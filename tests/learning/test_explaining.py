@@ -14,11 +14,11 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.house import House
-from tangy_tui.learning.comparing import choices, compare, find_policy
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.comparison import choices, compare, find_policy
 from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
-from tangy_tui.learning.explaining import explain, foresee, shown_words, why_words
+from tangy_tui.learning.explanation import explain, foresee, shown_words, why_words
 from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
 from tangy_tui.learning.policies import keep_policy, kept_policies
 from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy

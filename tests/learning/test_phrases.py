@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import Room, load_room
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.phrase_list import items, list_phrases
-from tangy_tui.learning.words import clean, words_of
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.words import clean, words_of
+from tangy_tui.speech.phrase_list import items, list_phrases
 
 BINGO = load_activity("bingo")
 ROOM = load_room()

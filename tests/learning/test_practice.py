@@ -11,12 +11,12 @@ from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
-from tangy_tui.learning.speech.labels import STOP, Label, Labels
-from tangy_tui.learning.speech.practice import Practice, practise
-from tangy_tui.learning.speech.recogniser import SpeechUnavailable
-from tangy_tui.learning.speech.report import practice_lines
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.speech.labels import STOP, Label, Labels
+from tangy_tui.speech.practice import Practice, practise
+from tangy_tui.speech.recogniser import SpeechUnavailable
+from tangy_tui.speech.report import practice_lines
 
 BROKEN = "broken"
 

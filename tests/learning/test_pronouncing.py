@@ -14,12 +14,10 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.person import Person
 from tangy_profiles.phones import PHONES, read_name_phones, read_phones
-from tangy_tui.learning import espeak_phones, spelling
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.espeak_phones import FROM_IPA, TO_ESPEAK, from_ipa
-from tangy_tui.learning.lexicon import Lexicon, phones_of
-from tangy_tui.learning.naming import how_said
-from tangy_tui.learning.pronouncing import (
+from tangy_tui.language import espeak_phones, spelling
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.espeak_phones import FROM_IPA, TO_ESPEAK, from_ipa
+from tangy_tui.language.pronunciation import (
     check,
     check_name,
     pronounce,
@@ -28,6 +26,8 @@ from tangy_tui.learning.pronouncing import (
     to_espeak,
     unknown_words,
 )
+from tangy_tui.speech.lexicon import Lexicon, phones_of
+from tangy_tui.speech.name_pronunciation import how_said
 
 phones = st.lists(st.sampled_from(sorted(PHONES)), min_size=1, max_size=12)
 
@@ -108,7 +108,7 @@ class TestLookingUp:
 
     def test_it_does_not_load_the_decoder(self) -> None:
         code = (
-            "import sys; from tangy_tui.learning.pronouncing import pronounce, suggest\n"
+            "import sys; from tangy_tui.language.pronunciation import pronounce, suggest\n"
             "assert pronounce('joke'); sys.exit('pocketsphinx' in sys.modules)"
         )
         subprocess.run([sys.executable, "-c", code], check=True)  # noqa: S603 - our own interpreter

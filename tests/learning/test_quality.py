@@ -11,9 +11,9 @@ import pytest
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
+from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import BEGUN, STEP, UNDONE, Library, read_library
-from tangy_tui.learning.listing import heard_words, list_rows
 from tangy_tui.learning.quality import quality_notes
 from tests.shown import answering, log_demonstration
 

@@ -17,19 +17,10 @@ from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.speech.labels import Labels
-from tangy_tui.learning.speech.recordings import (
-    FOLDER,
-    Recorder,
-    consent,
-    consent_question,
-    consented,
-    forget_recordings,
-)
+from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import Begun, StepUndone, TeachingEvent
-from tangy_tui.learning.verifying import (
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
     Refused,
@@ -37,6 +28,15 @@ from tangy_tui.learning.verifying import (
     Reply,
     Say,
     Stop,
+)
+from tangy_tui.speech.labels import Labels
+from tangy_tui.speech.recordings import (
+    FOLDER,
+    Recorder,
+    consent,
+    consent_question,
+    consented,
+    forget_recordings,
 )
 
 SOUND = b"\1\0" * 8000

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tangy_tui.learning.speech.bandwidth import widened
-from tangy_tui.learning.speech.evidence import RATE
+from tangy_tui.speech.bandwidth import widened
+from tangy_tui.speech.evidence import RATE
 
 
 def _speech(seconds: float = 1.0, *, upto: float, seed: int = 1) -> NDArray[np.float64]:

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tangy_tui.learning.speech import beside as room
-from tangy_tui.learning.speech.beside import Beside
+from tangy_tui.speech import forked_worker as room
+from tangy_tui.speech.forked_worker import Beside
 
 
 def _who(asked: int) -> tuple[int, int]:
@@ -81,7 +81,7 @@ def test_closing_ends_it() -> None:
 
 ENDS = """
 import os, signal, sys
-from tangy_tui.learning.speech import beside
+from tangy_tui.speech import beside
 beside._processors = lambda: range(2)
 one = beside.Beside(lambda asked: os.getpid())
 one.ask(0)

@@ -12,13 +12,13 @@ import pytest
 from tangy_hw.audio.wav import RATE, SoundError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech import ears as room
-from tangy_tui.learning.speech.ears import Ears, Heard
-from tangy_tui.learning.speech.recogniser import SpeechUnavailable
-from tangy_tui.learning.speech.recordings import Recorder
-from tangy_tui.learning.speech.utterance import LONGEST_TALK, MOST_WAITING
-from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.speech import input as room
+from tangy_tui.speech.input import Ears, Heard
+from tangy_tui.speech.recogniser import SpeechUnavailable
+from tangy_tui.speech.recordings import Recorder
+from tangy_tui.speech.utterance import LONGEST_TALK, MOST_WAITING
 from tests.learning.speech_fakes import PATIENCE, FakeRecogniser, FakeSource, soon, sound
 
 BOOK = Phrasebook(load_activity("bingo"), load_people(4))

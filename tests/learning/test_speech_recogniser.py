@@ -13,9 +13,9 @@ import pytest
 
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.worker_log import KEPT, MOST
-from tangy_tui.learning.speech import recogniser as room
-from tangy_tui.learning.speech.evidence import LONGEST, Evidence, Wanted
-from tangy_tui.learning.speech.recogniser import END_SECONDS, Recogniser, SpeechUnavailable
+from tangy_tui.speech import recogniser as room
+from tangy_tui.speech.evidence import LONGEST, Evidence, Wanted
+from tangy_tui.speech.recogniser import END_SECONDS, Recogniser, SpeechUnavailable
 from tests.learning.speech_fakes import PATIENCE, Workers, soon
 
 WANTED = Wanted(("call number",))

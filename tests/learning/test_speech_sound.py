@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tangy_hw.audio.wav import RATE
-from tangy_tui.learning.speech.cleaning import cleaned
-from tangy_tui.learning.speech.endpointing import MARGIN, WINDOW, Endpoints, pieces
+from tangy_tui.speech.endpointing import MARGIN, WINDOW, Endpoints, pieces
+from tangy_tui.speech.noise_reduction import cleaned
 from tests.hw.sounds import pcm
 
 Samples = NDArray[np.float64]

@@ -21,10 +21,12 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech import listening
-from tangy_tui.learning.speech import worker as room
-from tangy_tui.learning.speech.evidence import (
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_sentence import STOPS, stops
+from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.speech import transcription
+from tangy_tui.speech import worker as room
+from tangy_tui.speech.evidence import (
     LONGEST,
     RATE,
     USUAL,
@@ -33,8 +35,8 @@ from tangy_tui.learning.speech.evidence import (
     Settings,
     Wanted,
 )
-from tangy_tui.learning.speech.language import dictionary, grammar, open_model, phrase_model
-from tangy_tui.learning.speech.understanding import (
+from tangy_tui.speech.language import dictionary, grammar, open_model, phrase_model
+from tangy_tui.speech.understanding import (
     SURE,
     UNDERSTOOD,
     UNSURE,
@@ -44,9 +46,7 @@ from tangy_tui.learning.speech.understanding import (
     understand,
     wanted,
 )
-from tangy_tui.learning.speech.worker import LARGEST_PIECE, STANDS, Worker
-from tangy_tui.learning.stop_sentence import STOPS, stops
-from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.speech.worker import LARGEST_PIECE, STANDS, Worker
 from tests.hw.sounds import wav
 from tests.learning.speech_fakes import FakeRecogniser, sound
 
@@ -137,8 +137,8 @@ class TestLanguage:
 
     def test_nothing_heavy_is_imported_with_these_rooms(self) -> None:
         code = (
-            "import sys, tangy_tui.learning.commands, tangy_tui.learning.speech.ears\n"
-            "import tangy_tui.learning.speech.listening, tangy_tui.learning.speech.worker\n"
+            "import sys, tangy_tui.language.commands, tangy_tui.speech.input\n"
+            "import tangy_tui.speech.transcription, tangy_tui.speech.worker\n"
             "heavy = {'numpy', 'pocketsphinx', 'textual', 'rich'} & set(sys.modules)\n"
             "sys.exit(str(heavy) if heavy else 0)"
         )
@@ -470,13 +470,13 @@ class TestListening:
     @pytest.fixture(autouse=True)
     def _fake(self, monkeypatch: pytest.MonkeyPatch) -> None:
         FakeRecogniser.made = []
-        monkeypatch.setattr(listening, "Recogniser", FakeRecogniser)
+        monkeypatch.setattr(transcription, "Recogniser", FakeRecogniser)
 
     def test_a_file_is_one_command(self, tmp_path: Path) -> None:
         files = [tmp_path / f"{letter}.wav" for letter in "csx"]
         for file in files:
             file.write_bytes(wav(sound(file.stem)))
-        rows = listening.listen(files, BOOK)
+        rows = transcription.listen(files, BOOK)
         assert [row["file"] for row in rows] == [str(file) for file in files]
         assert [row["tier"] for row in rows] == ["sure", "stop", "nothing"]
         assert [row["behaviour"] for row in rows] == ["call number", None, None]
@@ -495,11 +495,11 @@ class TestListening:
             happened.append(f"read {file.stem}")
             return read_wav(file)
 
-        monkeypatch.setattr(listening, "read_wav", noted)
+        monkeypatch.setattr(transcription, "read_wav", noted)
         files = [tmp_path / f"{letter}.wav" for letter in "cj"]
         for file in files:
             file.write_bytes(wav(sound(file.stem)))
-        listening.listen(
+        transcription.listen(
             files,
             BOOK,
             tell=lambda done, rows: happened.append(f"{done}: {rows[0]['behaviour']}"),
@@ -509,17 +509,17 @@ class TestListening:
     def test_a_file_that_is_no_command_is_cut_at_its_pauses(self, tmp_path: Path) -> None:
         file = tmp_path / "two.wav"
         file.write_bytes(wav(sound("c") + sound(" ", 1) + sound("j")))
-        rows = listening.listen([file], BOOK)
+        rows = transcription.listen([file], BOOK)
         assert [row["behaviour"] for row in rows] == ["call number", "joke"]
 
     def test_what_comes_after_the_longest_utterance_is_heard_too(self, tmp_path: Path) -> None:
         file = tmp_path / "long.wav"
         file.write_bytes(wav(sound("c", LONGEST) + sound(" ", 0.5) + sound("j")))
-        rows = listening.listen([file], BOOK)
+        rows = transcription.listen([file], BOOK)
         assert [row["behaviour"] for row in rows] == ["call number", "joke"]
 
     def test_no_files_are_no_rows(self) -> None:
-        assert listening.listen([], BOOK) == []
+        assert transcription.listen([], BOOK) == []
         assert FakeRecogniser.made == []
 
     def test_a_file_that_cannot_be_read_is_named_before_anything_is_decoded(
@@ -530,5 +530,5 @@ class TestListening:
         good.write_bytes(wav(sound("c")))
         for name in ("none.wav", "text.wav"):
             with pytest.raises(TangyError, match=name):
-                listening.listen([good, tmp_path / name], BOOK)
+                transcription.listen([good, tmp_path / name], BOOK)
         assert FakeRecogniser.made == []

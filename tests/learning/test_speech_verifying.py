@@ -12,10 +12,10 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.house import House
-from tangy_tui.learning.commands import Command, Phrasebook
-from tangy_tui.learning.speech.ears import Heard
-from tangy_tui.learning.verifying import (
+from tangy_tui.app.workspace import House
+from tangy_tui.console.teaching import STOPPED, TeachingLines
+from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.learning.verification import (
     NO_QUESTION,
     WHICH,
     Asked,
@@ -29,7 +29,7 @@ from tangy_tui.learning.verifying import (
     Verifier,
     answer_help,
 )
-from tangy_tui.lines import STOPPED, TeachingLines
+from tangy_tui.speech.input import Heard
 
 ACTIVITY = load_activity("bingo")
 PEOPLE = load_people(4)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity, read_activity
 from tangy_profiles.person import load_people
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.stop_sentence import STOPS, stops, stops_whatever_follows
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_sentence import STOPS, stops, stops_whatever_follows
 from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.learning.stop_sentences import (
     MENTIONING,

@@ -13,11 +13,11 @@ from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Refused, Rejected, Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")

@@ -20,10 +20,10 @@ from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.teaching_events import Executed, Next, StepUndone, TeacherCommand, Undo
-from tangy_tui.learning.verifying import Asked, Refused, Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Asked, Refused, Reply, Say
 from tangy_tui.world import World
 
 BINGO = load_activity("bingo")

@@ -9,7 +9,7 @@ from shutil import copytree
 import pytest
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy

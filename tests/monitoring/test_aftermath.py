@@ -9,7 +9,7 @@ from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.health import ERROR, Health, Reading
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.devices import WELL
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
 from tangy_tui.monitoring.detection import device_evidence
@@ -101,7 +101,7 @@ class Robot:
 
 @pytest.fixture
 def robot(monkeypatch: pytest.MonkeyPatch) -> Robot:
-    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", -1.0)
+    monkeypatch.setattr("tangy_tui.app.partly_live_world.OLDEST", -1.0)
     return Robot()
 
 

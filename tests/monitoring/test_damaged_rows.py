@@ -21,14 +21,12 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import BODIES
 from tangy_profiles.store import Store
+from tangy_tui.app.workspace import House
 from tangy_tui.doctor import examine
-from tangy_tui.documents import entry_document, library_document, person_document
-from tangy_tui.house import House
 from tangy_tui.interaction.feedback import Feedback
+from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.listing import heard_words, list_rows
 from tangy_tui.learning.policies import changes, kept_policies, load_policy
-from tangy_tui.log_lines import replay_lines, session_lines
 from tangy_tui.monitoring.accepted import expected_effects, read_accepted
 from tangy_tui.monitoring.drill_sheet import last_sheet, read_sheets
 from tangy_tui.monitoring.games import read_games, uncleared
@@ -36,7 +34,9 @@ from tangy_tui.monitoring.log_check import log_problems
 from tangy_tui.monitoring.replay import read_replays
 from tangy_tui.monitoring.session import read_session
 from tangy_tui.pages.session import session_page
-from tangy_tui.wording import edit_words
+from tangy_tui.text.documents import entry_document, library_document, person_document
+from tangy_tui.text.log import replay_lines, session_lines
+from tangy_tui.text.situations import edit_words
 from tests.support.every_kind import write_every_kind
 
 Tangy = Callable[..., CompletedProcess[str]]

@@ -14,7 +14,7 @@ from tangy_sim.worlds.devices import READINGS, WELL
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS, read_injection
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector, device_evidence, symptoms

@@ -16,7 +16,7 @@ from tangy_profiles.faults import RECOVERIES
 from tangy_profiles.person import Person
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
-from tangy_tui.drill_lines import (
+from tangy_tui.console.drills import (
     device_words,
     drill_by_lines,
     round_parts,

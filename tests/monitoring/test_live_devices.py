@@ -6,7 +6,7 @@ import pytest
 
 from tangy_hw.drivers.camera_state import Sight
 from tangy_profiles.health import Health
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tests.monitoring.conftest import codes, moves, until
 
@@ -30,7 +30,7 @@ class Camera:
 
 @pytest.fixture
 def camera(monkeypatch: pytest.MonkeyPatch) -> Camera:
-    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", -1.0)
+    monkeypatch.setattr("tangy_tui.app.partly_live_world.OLDEST", -1.0)
     return Camera()
 
 
@@ -77,7 +77,7 @@ def test_devices_that_are_not_real_stay_simulated(
 def test_a_camera_is_not_asked_more_often_than_its_readings_change(
     house: House, learnt: Policy, camera: Camera, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tangy_tui.live_devices.OLDEST", 60.0)
+    monkeypatch.setattr("tangy_tui.app.partly_live_world.OLDEST", 60.0)
     game = house.supervision(learnt, 3, live=camera.health)
     game.begin()
     first = game.world.health()

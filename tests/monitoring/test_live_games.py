@@ -6,9 +6,9 @@ from typing import cast
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.house import House
+from tangy_tui.app.live_games import LiveGames
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
-from tangy_tui.live.playing import LiveGames
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.monitoring.supervision import Event
 from tests.hw.links import FakeLink, LaidCard

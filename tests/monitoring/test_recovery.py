@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, Taught
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy

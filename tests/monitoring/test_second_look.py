@@ -8,7 +8,7 @@ from typing import cast
 import pytest
 
 from tangy_profiles.state import ActivityState, Situation, UserState
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.observation import MOST_LOOKS, Observation
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World

@@ -13,17 +13,17 @@ import pytest
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Policy
-from tangy_tui.log_lines import MOST_TOLD, replay_lines, session_lines
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
 from tangy_tui.monitoring.replay import Answered, Done, Noted, Replay, read_replays
 from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
+from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
 from tests.monitoring.conftest import Supervise, acts, play
 
 FAULTS = ("laser-disconnected@6", "path-blocked", "voice-dead@9", "request-stuck", "no-effect@20")

@@ -14,8 +14,8 @@ from tangy_profiles.robot import load_robot
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.game_lines import play_by_lines
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.console.games import play_by_lines
 from tangy_tui.interaction.facilitation import ENDED, DoneOnce
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import read_accepted, take_back

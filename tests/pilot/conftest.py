@@ -39,7 +39,7 @@ from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.terminal import TerminalKind

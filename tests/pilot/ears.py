@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from tangy_profiles.voice import VoicePreference
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech.ears import Ears
+from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.verifying import Reply, Say, Stop
+from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.speech.input import Ears
 
 
 @dataclass

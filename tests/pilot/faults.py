@@ -6,14 +6,14 @@ import asyncio
 from collections.abc import Callable
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tests.pilot.conftest import StillClock, TangyPilot

@@ -12,7 +12,7 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.health import OK, Fact, Reading
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen

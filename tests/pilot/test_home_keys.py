@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.house import House
+from tangy_tui.app import robot_opening
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy
-from tangy_tui.live import opening
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.live import LiveScreen
@@ -70,7 +70,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
         yield live_world(house, link)
         opened.append(False)
 
-    monkeypatch.setattr(opening, "open_bench", bench)
+    monkeypatch.setattr(robot_opening, "open_bench", bench)
     async with run(app=Program(house, clock=StillClock())) as pilot:
         await until(pilot, lambda: "no robot is named" in screen_text(pilot.app))
         for answer in ("n", "y"):

@@ -12,7 +12,7 @@ from textual.app import App
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy
@@ -20,11 +20,11 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
-from tangy_tui.ui.fresh_keys import Clock
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
+from tangy_tui.ui.type_ahead_guard import Clock
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyTable

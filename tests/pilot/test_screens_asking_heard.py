@@ -8,14 +8,14 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import ForestSettings, Policy
-from tangy_tui.learning.verifying import Reply, Stop
+from tangy_tui.learning.verification import Reply, Stop
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.phrases import PhrasesScreen
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine

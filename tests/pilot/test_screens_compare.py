@@ -11,7 +11,7 @@ from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policies import POLICY, keep_policy, last_policy
 from tangy_tui.learning.policy import ForestSettings
 from tangy_tui.ui.dialogs.choose import ChooseDialog

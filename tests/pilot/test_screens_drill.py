@@ -12,7 +12,7 @@ from textual.app import App
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.store import Store
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.monitoring.drill import Drill
 from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Tabletop

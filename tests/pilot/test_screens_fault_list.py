@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE
 from tangy_tui.ui.dialogs.critical import CriticalDialog

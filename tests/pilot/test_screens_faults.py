@@ -9,7 +9,7 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE, Diagnosed
 from tangy_tui.monitoring.supervision import Event

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import OVER, read_faults
 from tangy_tui.monitoring.games import uncleared
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.play import PlayScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript

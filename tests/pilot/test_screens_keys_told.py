@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.screens.home import HomeScreen

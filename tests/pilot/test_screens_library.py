@@ -13,9 +13,9 @@ from textual.app import App
 from textual.widgets import Static
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.demonstration_rows import list_rows
 from tangy_tui.learning.library import Library, read_library
-from tangy_tui.learning.listing import list_rows
 from tangy_tui.learning.policies import last_policy, load_policy
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.words import WordsDialog

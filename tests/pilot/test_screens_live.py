@@ -14,14 +14,14 @@ from textual.app import App
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.health import OK, Reading
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.verifying import Stop
+from tangy_tui.learning.verification import Stop
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.asking import AskingPanel
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tests.hw.links import LaidCard

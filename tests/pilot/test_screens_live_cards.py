@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.choose import ChooseDialog

@@ -15,9 +15,9 @@ from textual.app import App
 from tangy_hw.drivers.camera_state import Sight
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import STALE
-from tangy_tui.house import House
+from tangy_tui.app.sensing import LinkedSensors
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
-from tangy_tui.live.sensing import LinkedSensors
 from tangy_tui.ui.screens.sensors import SensorsScreen
 from tangy_tui.ui.widgets.block_picture import BLOCK
 from tests.pilot.conftest import SMALL, screen_text

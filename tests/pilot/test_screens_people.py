@@ -12,7 +12,7 @@ from textual.app import App
 
 from tangy_profiles.persuading import Persuading
 from tangy_profiles.store import Store
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.feedback import AWAITED, Feedback
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog

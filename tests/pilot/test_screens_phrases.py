@@ -9,7 +9,7 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen

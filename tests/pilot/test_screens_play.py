@@ -8,11 +8,11 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.console.demo import learn
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
-from tangy_tui.story import learn
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program

@@ -9,17 +9,17 @@ from typing import Any
 import pytest
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.policy_options import comparison_options
 from tangy_tui.ui.program import Program
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.help import HelpScreen, help_for
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.screens.policy import PolicyScreen
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.command_bar import CommandInput
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.status_line import StatusLine

@@ -17,7 +17,7 @@ from tangy_hw.drivers.camera_state import Sight
 from tangy_hw.perception.camera_hub import CardSight, SeenCard
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen

@@ -13,7 +13,7 @@ from textual.app import App
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live

@@ -8,10 +8,10 @@ import pytest
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
-from tangy_tui.learning.explaining import Why
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.teaching_events import TeacherCommand, TeachingEvent
-from tangy_tui.ui import foresight
+from tangy_tui.ui import policy_preview
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import Help, HelpScreen
@@ -127,13 +127,13 @@ async def test_escape_while_tangy_thinks_stops_that_and_no_more(
     run: Run, house: House, typed: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     let_go = Event()
-    grounds = foresight._grounds
+    grounds = policy_preview._grounds
 
     def slow(house: House, present: Demonstration, situation: Situation) -> Why:
         let_go.wait(20)
         return grounds(house, present, situation)
 
-    monkeypatch.setattr(foresight, "_grounds", slow)
+    monkeypatch.setattr(policy_preview, "_grounds", slow)
     ended: list[bool | None] = []
     why = [*"why", "enter"] if typed else ["escape", "w"]
     async with run(app=program(house, ended), notifications=True) as pilot:

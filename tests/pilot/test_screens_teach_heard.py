@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 from textual.app import App
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.library import read_demonstrations
-from tangy_tui.learning.verifying import Reply, Stop
+from tangy_tui.learning.verification import Reply, Stop
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen

@@ -9,7 +9,7 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.voice import VoicePreference
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui import speaking
 from tangy_tui.ui.program import Program

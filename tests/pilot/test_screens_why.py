@@ -12,9 +12,9 @@ from textual.app import App
 
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.state import Situation
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.persuasion import Choice
-from tangy_tui.learning.explaining import Why, explain
+from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.ui.dialogs.why import WhyDialog

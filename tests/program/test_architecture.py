@@ -61,7 +61,7 @@ def test_the_contracts_are_those_of_the_house() -> None:
 
 
 @pytest.mark.parametrize(
-    "module", ["tangy_tui", "tangy_tui.cli", "tangy_tui.house", "tangy_tui.ui.screens.live"]
+    "module", ["tangy_tui", "tangy_tui.cli", "tangy_tui.app.workspace", "tangy_tui.ui.screens.live"]
 )
 def test_importing_loads_nothing_heavy(module: str) -> None:
     code = f"import json, sys, {module}; print(json.dumps(sorted(sys.modules)))"
@@ -78,8 +78,9 @@ def test_importing_loads_nothing_heavy(module: str) -> None:
 def test_the_engine_runs_without_a_screen() -> None:
     code = (
         "import json, sys\n"
-        "import tangy_tui.learning.demonstrating, tangy_tui.learning.policy\n"
-        "import tangy_tui.interaction.facilitation, tangy_tui.lines, tangy_sim.worlds.world\n"
+        "import tangy_tui.learning.teaching_session, tangy_tui.learning.policy\n"
+        "import tangy_tui.interaction.facilitation, tangy_tui.console.teaching\n"
+        "import tangy_sim.worlds.world\n"
         "print(json.dumps(sorted(sys.modules)))\n"
     )
     done = subprocess.run(  # noqa: S603 - our own interpreter

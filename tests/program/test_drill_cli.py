@@ -10,8 +10,8 @@ from subprocess import CompletedProcess
 import pytest
 
 from tangy_profiles.store import Store
-from tangy_tui import inputs
-from tangy_tui.drill_lines import KEPT, NOTHING_KEPT
+from tangy_tui.console import inputs
+from tangy_tui.console.drills import KEPT, NOTHING_KEPT
 
 Tangy = Callable[..., CompletedProcess[str]]
 

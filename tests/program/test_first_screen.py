@@ -13,7 +13,7 @@ PAINT = """
 import asyncio, json, sys
 from pathlib import Path
 import tangy_tui
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.ui.program import Program
 
 async def paint():

@@ -18,13 +18,13 @@ from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
-from tangy_tui.game_lines import belief_lines, game_lines, play_by_lines
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.console.games import belief_lines, game_lines, play_by_lines
+from tangy_tui.console.teaching import TeachingLines, command_line
 from tangy_tui.interaction.facilitation import Learnt
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
-from tangy_tui.learning.verifying import Reply, Say
-from tangy_tui.lines import TeachingLines, command_line
+from tangy_tui.learning.verification import Reply, Say
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 Tangy = Callable[..., CompletedProcess[str]]

@@ -14,14 +14,14 @@ import pytest
 
 from tangy_hw.audio.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
-from tangy_tui.house import House, data_folder
-from tangy_tui.learning.speech import listening
-from tangy_tui.learning.speech.calibration import Chosen, Figures
-from tangy_tui.learning.speech.checking import PATIENCE, Checked, MicrophoneCheck
-from tangy_tui.learning.speech.evidence import RATE, Settings, Wanted
-from tangy_tui.learning.speech.loudness import LOUD, loudness
-from tangy_tui.learning.speech.recogniser import Recogniser
-from tangy_tui.learning.speech.recordings import consent, consented
+from tangy_tui.app.workspace import House, data_folder
+from tangy_tui.speech import transcription
+from tangy_tui.speech.calibration import Chosen, Figures
+from tangy_tui.speech.evidence import RATE, Settings, Wanted
+from tangy_tui.speech.loudness import LOUD, loudness
+from tangy_tui.speech.microphone_check import PATIENCE, Checked, MicrophoneCheck
+from tangy_tui.speech.recogniser import Recogniser
+from tangy_tui.speech.recordings import consent, consented
 from tangy_tui.verbs import hearing, mic_check
 from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
@@ -107,7 +107,7 @@ def test_lines_say_the_tier_and_the_choices(
 
     monkeypatch.setattr("tangy_tui.verbs.listen.print_line", line)
 
-    monkeypatch.setattr(listening, "listen", hear)
+    monkeypatch.setattr(transcription, "listen", hear)
     tangy("people", "rename", "user2", "Rosa", "--data", tmp_path / "data")
     done = tangy("listen", "a.wav", "--data", tmp_path / "data")
     assert done.returncode == 0, done.stderr
@@ -133,7 +133,7 @@ def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
             tell(done, [])
         return []
 
-    monkeypatch.setattr(listening, "listen", hear)
+    monkeypatch.setattr(transcription, "listen", hear)
     monkeypatch.setattr("tangy_tui.verbs.listen._progress", progress)
     done = tangy("listen", "a.wav", "b.wav", "--json", "--data", tmp_path / "data")
     assert json.loads(done.stdout) == []
@@ -143,7 +143,7 @@ def test_progress_is_shown_beside_a_document_where_somebody_can_see_it(
 def test_a_file_that_ends_early_is_heard_and_told_of(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(listening, "listen", lambda files, book, settings, tell: [])
+    monkeypatch.setattr(transcription, "listen", lambda files, book, settings, tell: [])
     whole, cut = tmp_path / "whole.wav", tmp_path / "cut.wav"
     whole.write_bytes(wav(pcm(tone(1.0))))
     cut.write_bytes(wav(pcm(tone(1.0)))[:-16_000])
@@ -155,7 +155,7 @@ def test_a_file_that_ends_early_is_heard_and_told_of(
 def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usual_ones(
     tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(listening, "listen", lambda files, book, settings, tell: [])
+    monkeypatch.setattr(transcription, "listen", lambda files, book, settings, tell: [])
     folder = tmp_path / "two words"
     told = tangy("listen", "a.wav", "--mic", "arecord", "--data", folder).stderr
     assert told.count("\n") == 1

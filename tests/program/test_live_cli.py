@@ -11,8 +11,8 @@ import pytest
 from tangy_hw.navigation.map_files import write_map
 from tangy_hw.navigation.occupancy import OccupancyMap, map_of_room
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
-from tangy_tui.live.opening import check_map
+from tangy_tui.app.robot_opening import check_map
+from tangy_tui.app.workspace import House
 
 
 @pytest.fixture

@@ -14,9 +14,9 @@ import pytest
 
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.live import bench
-from tangy_tui.live.bench import Bench
-from tangy_tui.live.switching_on import SwitchingOn, switched_on
+from tangy_tui.app import device_simulator
+from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.switching_on import SwitchingOn, switched_on
 
 WORLD = cast(LiveWorld, object())
 
@@ -146,7 +146,9 @@ def test_a_hang_up_that_is_to_be_ignored_is_ignored() -> None:
 
 
 def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bench, "CHILD", (sys.executable, "-c", "import time; time.sleep(60)"))
+    monkeypatch.setattr(
+        device_simulator, "CHILD", (sys.executable, "-c", "import time; time.sleep(60)")
+    )
     cancellation = Cancellation()
     caller = threading.Timer(0.2, cancellation.cancel)
     caller.start()
@@ -160,7 +162,7 @@ def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyP
             robot="/dev/null",
             cancellation=cancellation,
         )
-    assert time.monotonic() - began < bench.END_SECONDS  # it is not waited for
+    assert time.monotonic() - began < device_simulator.END_SECONDS  # it is not waited for
     caller.join()
 
 

@@ -23,7 +23,7 @@ FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
 
 @pytest.fixture(scope="module")
 def _played(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from tangy_tui.house import House
+    from tangy_tui.app.workspace import House
     from tangy_tui.learning.policies import load_policy
     from tests.monitoring.conftest import play
 

@@ -17,8 +17,8 @@ import pytest
 
 from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
-from tangy_tui.house import House
-from tangy_tui.learning.verifying import Reply, Say
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.verification import Reply, Say
 
 Tangy = Callable[..., CompletedProcess[str]]
 

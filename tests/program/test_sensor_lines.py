@@ -6,7 +6,7 @@ import pytest
 
 from tangy_profiles.health import OK, Health, Reading
 from tangy_profiles.robot import load_robot
-from tangy_tui.sensor_lines import Teller, Told, rate_words, sensor_document, sensor_line
+from tangy_tui.text.sensors import Teller, Told, rate_words, sensor_document, sensor_line
 
 ROBOT = load_robot()
 

@@ -8,7 +8,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
-from tangy_tui.wording import card_words, state_words, step_words
+from tangy_tui.text.situations import card_words, state_words, step_words
 
 NUMBERS = tuple(range(1, 26))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tangy_hw.robot_setup import RobotSetup
-from tangy_tui.live.bench import Bench
+from tangy_tui.app.device_simulator import Bench
 
 FRONT = (5.0, 1.2, 1.5708)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_tui.live.bench import Bench
+from tangy_tui.app.device_simulator import Bench
 from tests.real.bench_setup import setup_on
 from tests.support.terminal import TANGY, Terminal, Tmux
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tangy_sim.device_simulator.tablet import Tablet
-from tangy_tui.live.bench import Bench
+from tangy_tui.app.device_simulator import Bench
 from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
 from tests.support.terminal import TANGY, Terminal
 

@@ -11,9 +11,9 @@ import pytest
 from tangy_hw.navigation.map_files import write_map
 from tangy_hw.navigation.occupancy import map_of_room
 from tangy_profiles.fault_file import load_faults
-from tangy_tui.house import House
-from tangy_tui.live.benched import BenchedWorld
-from tangy_tui.live.opening import open_bench
+from tangy_tui.app.robot_opening import open_bench
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.workspace import House
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FOUND = 0.15  # metres by which it may be off

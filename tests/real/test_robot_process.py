@@ -24,7 +24,7 @@ from tangy_hw.robot_client.client import CHILD, RobotLink
 from tangy_hw.robot_process.controller import HAZARD_SECONDS
 from tangy_hw.robot_process.program_pipe import LONGEST_LINE
 from tangy_hw.robot_process.stop_latch import BrokenOff
-from tangy_tui.live.bench import Bench
+from tangy_tui.app.device_simulator import Bench
 from tests.real.bench_setup import setup_on
 
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ import pytest
 
 from tangy_hw.robot_client.client import HANGS_SECONDS, RobotLink
 from tangy_hw.robot_process.stop_latch import BrokenOff
-from tangy_tui.live.bench import Bench
+from tangy_tui.app.device_simulator import Bench
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FAR = [9.0, 1.2, 1.57]  # some ten seconds away

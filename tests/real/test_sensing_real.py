@@ -10,8 +10,8 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import load_robot
-from tangy_tui.live.bench import Bench
-from tangy_tui.live.sensing import LinkedSensors
+from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.sensing import LinkedSensors
 from tests.real.bench_setup import setup_on
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]

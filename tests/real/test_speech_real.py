@@ -23,14 +23,14 @@ import pytest
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import Person, load_people
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.speech.ears import Ears
-from tangy_tui.learning.speech.evidence import LONGEST, USUAL, Evidence, Settings, Wanted
-from tangy_tui.learning.speech.listening import listen, tier_of
-from tangy_tui.learning.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
-from tangy_tui.learning.speech.understanding import understand, wanted
-from tangy_tui.learning.speech.worker import Worker
-from tangy_tui.learning.verifying import Say, Stop
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.verification import Say, Stop
+from tangy_tui.speech.evidence import LONGEST, USUAL, Evidence, Settings, Wanted
+from tangy_tui.speech.input import Ears
+from tangy_tui.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
+from tangy_tui.speech.transcription import listen, tier_of
+from tangy_tui.speech.understanding import understand, wanted
+from tangy_tui.speech.worker import Worker
 from tests.hw.sounds import wav
 from tests.real.voices import FESTIVAL, NOISES, Voices
 from tests.support.terminal import PATIENCE, ended
@@ -455,8 +455,8 @@ class TestWorker:
     def test_it_ends_when_the_program_is_killed(self) -> None:
         code = (
             "import asyncio\n"
-            "from tangy_tui.learning.speech.evidence import Wanted\n"
-            "from tangy_tui.learning.speech.recogniser import Recogniser\n"
+            "from tangy_tui.speech.evidence import Wanted\n"
+            "from tangy_tui.speech.recogniser import Recogniser\n"
             "async def run():\n"
             "    recogniser = Recogniser()\n"
             "    starting = asyncio.create_task(recogniser.start(Wanted(('call number',))))\n"
@@ -478,8 +478,8 @@ class TestWorker:
             "import asyncio, os, sys\n"
             "from pathlib import Path\n"
             "from tangy_hw.audio.wav import read_wav\n"
-            "from tangy_tui.learning.speech.evidence import Wanted\n"
-            "from tangy_tui.learning.speech.recogniser import Recogniser\n"
+            "from tangy_tui.speech.evidence import Wanted\n"
+            "from tangy_tui.speech.recogniser import Recogniser\n"
             "async def run():\n"
             "    asyncio.get_running_loop().slow_callback_duration = 60.0\n"
             "    recogniser = Recogniser(log=Path(sys.argv[2]))\n"

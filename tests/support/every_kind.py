@@ -9,18 +9,18 @@ from tangy_profiles.events import BODIES
 from tangy_profiles.persuading import Persuading
 from tangy_profiles.store import LOST, Store
 from tangy_profiles.voice import VoicePreference
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.feedback import AWAITED, Feedback
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
-from tangy_tui.learning.speech import calibration, recordings
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.monitoring.accepted import read_accepted, take_back
 from tangy_tui.monitoring.drill_sheet import DRILL, Answered, Sheet
 from tangy_tui.monitoring.fault import ACCEPTED, FAULT
 from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.speech import calibration, recordings
 
 
 def write_every_kind(folder: Path) -> None:

@@ -5,7 +5,7 @@
     arecord           the local microphone; arecord:DEVICE for one of several
     socket            a laptop's microphone, handed on by `tangy mic`; socket:PATH for another place
 
-With `-` the keys must come from elsewhere: see `tangy_tui.inputs`.
+With `-` the keys must come from elsewhere: see `tangy_tui.console.inputs`.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 
 
 class ConfirmDialog(Dialog[bool]):

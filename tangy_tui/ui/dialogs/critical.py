@@ -28,9 +28,9 @@ from tangy_tui.ui.fault_words import (
     mark_of,
     still_there_words,
 )
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 

@@ -15,7 +15,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.learning.policies import Change
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 
 Use = Literal["use", "keep", "back"]

@@ -15,11 +15,11 @@ from textual.widgets import Input, Static
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
-from tangy_tui.learning.naming import how_said
-from tangy_tui.learning.pronouncing import check_name
+from tangy_tui.language.pronunciation import check_name
+from tangy_tui.speech.name_pronunciation import how_said
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 
 LONGEST = 200
 EXPLAINED = (

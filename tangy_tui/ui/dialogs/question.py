@@ -16,10 +16,10 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.learning.verifying import WHICH, Asked, Offered, Reply
+from tangy_tui.learning.verification import WHICH, Asked, Offered, Reply
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.rows import shorten
 
 MOST_ALTERNATIVES = 3

@@ -12,12 +12,13 @@ from textual.containers import Vertical
 from textual.content import Content
 
 from tangy_profiles.beliefs import Beta
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.persuasion import Choice
 from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.explaining import Why, why_words
+from tangy_tui.learning.explanation import Why, why_words
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
+from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import OpenStep
@@ -25,7 +26,6 @@ from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 from tangy_tui.ui.widgets.policy_table import bar
 from tangy_tui.ui.widgets.posteriors import curve
 from tangy_tui.ui.widgets.rows import Span, fit, shorten
-from tangy_tui.wording import counted
 
 LONGEST_BAR = 20
 LONGEST_CURVE = 16

@@ -13,7 +13,7 @@ from textual.content import Content
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
 from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
 from tangy_tui.ui.widgets.rows import Row
 

@@ -10,9 +10,10 @@ from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
-from tangy_tui.house import House
-from tangy_tui.learning.comparing import Row, compare
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.comparison import Row, compare
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -24,7 +25,6 @@ from tangy_tui.ui.reasons import why_row
 from tangy_tui.ui.widgets.page import Line, Page
 from tangy_tui.ui.widgets.rows import Span, fit
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-from tangy_tui.wording import counted
 
 SIDE_BY_SIDE = 110
 """From this width a situation and both policies stand on one line."""

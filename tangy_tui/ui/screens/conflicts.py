@@ -12,19 +12,19 @@ from textual.containers import Grid
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
+from tangy_tui.text.situations import counted, edit_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.words import WordsDialog
-from tangy_tui.ui.fresh_keys import FreshKeys, clock_of
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
+from tangy_tui.ui.type_ahead_guard import FreshKeys, clock_of
 from tangy_tui.ui.widgets.answer_steps import AnswerSteps
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-from tangy_tui.wording import counted, edit_words
 
 ASKED = (
     "Which is right? Press its number, b if all of them are, o for something else. Esc leaves it "

@@ -12,10 +12,11 @@ from textual.widgets import Static
 
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.demonstration_rows import heard_words, state_of
 from tangy_tui.learning.library import Library, read_library
-from tangy_tui.learning.listing import heard_words, state_of
 from tangy_tui.learning.quality import quality_notes
+from tangy_tui.text.situations import counted, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -24,7 +25,6 @@ from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, step_words
 
 
 async def show_again(app: App[Any], library: Library, id: str, number: int) -> None:

@@ -11,10 +11,11 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.learning.listing import UNFINISHED, ListRow, list_rows
+from tangy_tui.text.situations import counted, edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -23,7 +24,6 @@ from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.demonstration_list import DemonstrationList
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
-from tangy_tui.wording import counted, edit_words, step_words
 
 TAKEN_BACK = "undone"
 """The state of what an edit made that was taken back: it is not in the list."""

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.drill_lines import (
+from tangy_tui.console.drills import (
     WELCOME,
     Told,
     question_words,
@@ -25,8 +25,8 @@ from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.fresh_keys import SETTLE_SECONDS, clock_of
 from tangy_tui.ui.panels import LOW, KeyLine, key_line, panel
+from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS, clock_of
 from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap

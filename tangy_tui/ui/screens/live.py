@@ -21,12 +21,12 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT
-from tangy_tui.house import House
+from tangy_tui.app.seats import Seats
+from tangy_tui.app.sensing import LinkedSensors
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.policy import Decision
-from tangy_tui.learning.verifying import Verified
-from tangy_tui.live.benched import BenchedWorld
-from tangy_tui.live.seats import Seats
-from tangy_tui.live.sensing import LinkedSensors
+from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog

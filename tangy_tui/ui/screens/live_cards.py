@@ -8,8 +8,8 @@ from typing import Any
 from textual.app import App
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.house import House
-from tangy_tui.live.card_news import BY, CardNews
+from tangy_tui.app.card_news import BY, CardNews
+from tangy_tui.app.workspace import House
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.fault_console import FaultConsole

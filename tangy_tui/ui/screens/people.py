@@ -11,11 +11,11 @@ from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GAME_WORLDS
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.feedback import Entry
 from tangy_tui.interaction.record import Record
 from tangy_tui.interaction.saying import change_words, entry_words, on_day
-from tangy_tui.learning.aloud import hear
+from tangy_tui.speech.aloud import hear
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close, close_after

@@ -13,9 +13,9 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
-from tangy_tui.learning.aloud import hear
-from tangy_tui.learning.phrase_list import Item, items, list_phrases
+from tangy_tui.app.workspace import House
+from tangy_tui.speech.aloud import hear
+from tangy_tui.speech.phrase_list import Item, items, list_phrases
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close

@@ -9,7 +9,7 @@ from typing import ClassVar
 from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House, teacher_name
+from tangy_tui.app.workspace import House, teacher_name
 from tangy_tui.interaction.facilitation import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.facilitation import Unsure
-from tangy_tui.learning.verifying import Verified
+from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.game_voice import GameVoice
-from tangy_tui.ui.screens.asking import AskingPanel, Instead, learn_answer
 from tangy_tui.ui.screens.play_keys import NOT_ACCEPTABLE
 from tangy_tui.ui.screens.play_panels import PlayPanels
+from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, learn_answer
 
 
 class PlayAsking(PlayPanels):

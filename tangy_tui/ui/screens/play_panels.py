@@ -10,17 +10,17 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.eyes import Eyes
+from tangy_tui.ui.camera_session import Eyes
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.panels import KeyLine, panel, room_panel
-from tangy_tui.ui.screens.asking import AskingPanel
 from tangy_tui.ui.screens.play_keys import keys
+from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.log_view import Kind, LogView

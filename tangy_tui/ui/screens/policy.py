@@ -9,9 +9,10 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
 from tangy_profiles.activity import Activity
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.panels import key_line, panel
@@ -20,7 +21,6 @@ from tangy_tui.ui.reasons import why_row
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.policy_table import PolicyRow, PolicyTable
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-from tangy_tui.wording import counted
 
 
 def policy_rows(activity: Activity, policy: Policy) -> list[PolicyRow]:

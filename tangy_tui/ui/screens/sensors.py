@@ -13,8 +13,8 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tangy_profiles.health import Health
-from tangy_tui.house import House
-from tangy_tui.sensor_lines import Sensing, Teller, Told, age_words, card_words, rate_words, remark
+from tangy_tui.app.workspace import House
+from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words, rate_words, remark
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close

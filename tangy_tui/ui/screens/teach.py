@@ -15,9 +15,8 @@ from textual.widgets import Static
 from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.house import House
-from tangy_tui.learning.demonstrating import Teaching
-from tangy_tui.learning.stop_sentence import stops
+from tangy_tui.app.workspace import House
+from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -30,14 +29,15 @@ from tangy_tui.learning.teaching_events import (
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.verifying import Asked, NotUnderstood, Offered, Refused, Rejected, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected, Say
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
-from tangy_tui.ui.foresight import show_why
 from tangy_tui.ui.hearing import HearingLine, hearing_of
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
+from tangy_tui.ui.policy_preview import show_why
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
 from tangy_tui.ui.screens.teach_keys import AGAIN, WATCHING

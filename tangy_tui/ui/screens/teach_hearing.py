@@ -7,11 +7,11 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.house import House
-from tangy_tui.learning.commands import Phrasebook
-from tangy_tui.learning.demonstrating import Teaching
+from tangy_tui.app.workspace import House
+from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.verifying import Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Say
 from tangy_tui.ui.hearing import Hearing
 from tangy_tui.ui.screens.teach_keys import BY_KEY, HANDS_FREE, HEARING_KEYS, KEYS
 from tangy_tui.ui.widgets.command_bar import CommandBar

@@ -8,10 +8,10 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.learning.demonstrating import Teaching
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.verifying import Asked, Reply, Say
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import Asked, Reply, Say
 from tangy_tui.ui.base import on_top
 from tangy_tui.ui.widgets.command_bar import CommandBar
 

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 from textual.message import Message
 
-from tangy_tui.house import House
+from tangy_tui.app.workspace import House
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.library import Library
+from tangy_tui.text.situations import counted
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
 from tangy_tui.ui.widgets.rows import shorten
-from tangy_tui.wording import counted
 
 LINES_OF_A_STEP = 3
 

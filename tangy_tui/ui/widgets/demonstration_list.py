@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from rich.cells import cell_len
 from textual.message import Message
 
-from tangy_tui.learning.listing import ListRow
+from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.widgets.choice_list import ChoiceList, Line

@@ -21,8 +21,8 @@ from tangy_profiles.room import Point, Room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fresh_keys import Clock, clock_of
 from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.type_ahead_guard import Clock, clock_of
 from tangy_tui.ui.widgets.room_drawing import draw_room
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
 from tangy_tui.ui.widgets.rows import Row, draw

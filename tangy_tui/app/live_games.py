@@ -1,0 +1,125 @@
+"""Live games without a screen: played to their end by scripted people, and added up."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
+from tangy_tui.app.seats import Seats
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.interaction.facilitation import Acted, GameEnded
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.monitoring.fault import fault_documents
+from tangy_tui.monitoring.scripted_people import go_on_by_script
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+if TYPE_CHECKING:
+    from tangy_tui.app.workspace import House
+
+
+class LiveGames:
+    """Games that were played live, and what they add up to."""
+
+    def __init__(self, house: House, supervision: Supervision) -> None:
+        """Begin to count."""
+        self.tally = Tally()
+        self.faults: list[dict[str, Any]] = []
+        self.card_doubts: list[dict[str, Any]] = []
+        """Why cards were not judged, as JSON has it."""
+        self.seconds = 0.0
+        """How long the games took in the robot's time."""
+        self.took = 0.0
+        self._house = house
+        self._supervision = supervision
+        self._seats = Seats(house.name)
+        self._cards = CardNews(house.name)
+        self._card_notes: list[CardNote] = []
+
+    def play(
+        self,
+        games: Iterable[int],
+        *,
+        expert: bool,
+        tell: Callable[[list[Event]], None] = lambda _: None,
+    ) -> None:
+        """Play games, one after another.
+
+        Args:
+            games: as many as it gives.
+            expert: staff are there to clear what halts the robot.
+            tell: is told what happens.
+        """
+        for _ in games:
+            began = time.monotonic()
+            self._play(expert, tell)
+            self.took += time.monotonic() - began
+
+    def _play(self, expert: bool, tell: Callable[[list[Event]], None]) -> None:
+        game, world = self._supervision, self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        world.link.release()  # nobody is there to say that all is well
+        events = game.begin()
+        self.tally.add(events)
+        self._look_at_cards(events)
+        tell(events)
+        since = world.link.time
+        stopped = None
+        while not game.over:
+            events = go_on_by_script(game, expert=expert)
+            self.tally.add(events)
+            stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), stopped)
+            self._look_at_cards(events)
+            tell(events)
+        self.seconds += world.link.time - since
+        self.faults += fault_documents(game.faults, stopped)
+        if isinstance(world, BenchedWorld):
+            self.tally.add_injections(world.came, world.still_to_come)
+
+    def lines(self, events: list[Event]) -> list[str]:
+        """Say what happened, for whoever waits, and who was seen where somebody else sits."""
+        world = self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        lines = (_told(self._house, event) for event in events)
+        cards = (note.words for note in self._card_notes)
+        return [*filter(None, (*lines, *cards)), *self._seats.news(events, world.sitting)]
+
+    def _look_at_cards(self, events: list[Event]) -> None:
+        """Take in what is new of whose card is whose, and log it."""
+        game, world = self._supervision, self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        self._card_notes = self._cards.take(events, world.cards)
+        for note in self._card_notes:
+            game.note(note.note, BY)
+            if note.doubt is not None:
+                self.card_doubts.append(doubt_document(note.doubt, game.game.games))
+
+    def document(self) -> dict[str, Any]:
+        """Return what `tangy live --json` prints."""
+        world = self._supervision.world
+        beliefs = self._supervision.persuasion.beliefs
+        found = self.tally.to_json(self._house.activity.situations, beliefs, self.faults)
+        found["card_doubts"] = self.card_doubts
+        if isinstance(world, BenchedWorld):
+            found |= world.score.to_json()
+            found["real_time_factor"] = round(self.seconds / self.took, 2) if self.took else None
+            if world.injections:
+                found["injected"] = self.tally.injected
+                found["did_not_come_about"] = self.tally.absent
+        return found
+
+
+def _told(house: House, event: Event) -> str:
+    """Say in one line what happened, for whoever waits; "" of what needs no line."""
+    match event:
+        case Acted(number=number, action=action, outcome=outcome, speech=speech):
+            whom = "" if action.target is None else f" ({house.name(action.target)})"
+            done = "" if outcome.completed else "  not carried out"
+            return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
+        case GameEnded(steps=steps, stopped=None):
+            return f"The game was played to its end in {steps} steps."
+        case GameEnded(stopped=str(why)):
+            return f"The game was stopped: {why}"
+    return ""

@@ -1,0 +1,305 @@
+"""Opening a robot for games: the one that is there, or the bench, and the world that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tangy_hw.cancellation import Cancellation
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import FACING, PACE_SECONDS, LiveWorld
+from tangy_hw.robot_setup import RobotSetup
+from tangy_profiles.health import Health
+from tangy_profiles.reading import plain
+from tangy_profiles.room import Room
+from tangy_profiles.state import FRONT
+from tangy_sim.worlds.injection import Injection
+from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+
+if TYPE_CHECKING:
+    from tangy_profiles.faults import FaultBook
+    from tangy_profiles.robot import Robot
+    from tangy_tui.app.workspace import House
+
+W = TypeVar("W", bound=LiveWorld)
+B = TypeVar("B", bound=BenchedWorld)
+
+LOG, BENCH_LOG = "robot.log", "bench.log"  # in the data folder: what goes wrong in the processes
+PICTURES = 10  # of each drawn face that the bench's people are known by
+CAMERA = "camera"
+
+Opening = Callable[[bool, Cancellation], AbstractContextManager[LiveWorld]]
+"""Opens a robot, or its bench (in a hurry, if that is wanted), unless it is called off."""
+
+
+def opening_of(
+    house: House,
+    *,
+    bench: bool,
+    injections: Sequence[Injection] = (),
+    own: Mapping[str, Any] | None = None,
+    **both: Any,
+) -> Opening:
+    """Return what opens the robot, or its bench.
+
+    Args:
+        house: whose robot it is.
+        bench: its devices are simulated.
+        injections: the faults that are to come on the bench.
+        own: what only a robot that is there is told: its cameras, request sensor, and cards.
+        both: what both are told, as `open_bench` and `open_robot` have it.
+    """
+    from tangy_profiles.fault_file import load_faults
+
+    def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
+        told: dict[str, Any] = {"book": load_faults(house.robot), "cancellation": cancellation}
+        if bench:
+            return open_bench(house, stepped=stepped, injections=injections, **told, **both)
+        return open_robot(house, **told, **(own or {}), **both)
+
+    return opening
+
+
+@contextmanager
+def open_bench(
+    house: House,
+    *,
+    seed: int,
+    stepped: bool,
+    pace: float = PACE_SECONDS,
+    book: FaultBook | None = None,
+    injections: Sequence[Injection] = (),
+    kind: type[B] = BenchedWorld,  # type: ignore[assignment]
+    map_: str = "",
+    lost: bool = False,
+    cancellation: Cancellation | None = None,
+) -> Iterator[B]:
+    """Open the robot's own devices as a bench simulates them.
+
+    Args:
+        seed: of the people, their cards, and all that is left to chance.
+        stepped: in a hurry: time passes as fast as it can be computed.
+        pace: s between calls.
+        book: the fault rules, by which a behaviour is broken off.
+        injections: the faults that are to come in each game.
+        kind: the kind of world.
+        map_: the robot finds its way by this map, not by the measures of the room.
+        lost: the robot is not told where it stands.
+        cancellation: by which this can be called off before it is open.
+
+    Raises:
+        Cancelled: it was called off.
+        TangyError: the bench or the robot process does not begin.
+    """
+    folder = house.store.folder
+    cancellation = cancellation or Cancellation()
+    bench = Bench(
+        seed=seed,
+        people=house.names,
+        stepped=stepped,
+        activity=house.profile,
+        robot=str(house.robot.file),
+        log=folder / BENCH_LOG,
+        cancellation=cancellation,
+    )
+    try:
+        at = bench.wires.rosbridge
+        setup = RobotSetup(
+            robot=str(house.robot.file),
+            activity=house.profile,
+            people=tuple(house.names),
+            drivers={
+                **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
+                "laser": {"kind": "scip", "at": bench.wires.scip},
+                "screen": {"kind": "page", "port": 0},
+            },
+            cameras={CAMERA: bench.wires.head},
+            requests=f"signs:{bench.wires.infrared}",
+            corners=bench.wires.corners,
+            start=None if lost else _start(house.room, tuple(house.names)),
+            map=map_,
+            stepped=stepped,
+            seed=seed,
+            faces=_drawn_people(bench.wires.faces, cancellation),
+            log=str(folder / LOG),
+        )
+        linked = _linked(
+            kind, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+        )
+        with linked as world:
+            try:
+                world.on(bench, injections, seed)
+                yield world
+            finally:
+                world.leave()
+    finally:
+        bench.close()
+
+
+ROSBRIDGE = ("base", "stop_button", "arms", "voice")
+"""The devices of the bench that are reached by rosbridge."""
+
+
+@contextmanager
+def open_robot(
+    house: House,
+    *,
+    seed: int,
+    pace: float = PACE_SECONDS,
+    book: FaultBook | None = None,
+    cameras: Sequence[str] = (),
+    requests: str = "",
+    corners: tuple[tuple[float, float], ...] = (),
+    map_: str = "",
+    lost: bool = False,
+    cards: Mapping[str, int] | None = None,
+    cancellation: Cancellation | None = None,
+) -> Iterator[LiveWorld]:
+    """Open a robot that is there, by the drivers of its profile.
+
+    Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
+    robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by
+    itself. `cards` are the numbers of the cards that were dealt, by person. Until it is open it
+    can be called off by `cancellation`.
+
+    Raises:
+        Cancelled: it was called off.
+        TangyError: the profile names none, or the robot process does not begin.
+    """
+    if not house.robot.drivers:
+        raise DeviceError(
+            f"{house.robot.file.name} names no drivers, so there is no robot to be reached: "
+            "try --bench, or name them as docs/robots.md tells."
+        )
+    from tangy_hw.drivers.chest_pairing import keep_pairing
+    from tangy_hw.perception.faces.face_store import read_faces
+    from tangy_hw.perception.faces.reader import open_reader
+    from tangy_hw.perception.requests.source_names import requests_named
+
+    cancellation = cancellation or Cancellation()
+    name, named = requests_named(house.robot)
+    requests, corners = requests or name, corners or named
+    known = read_faces(house.store, open_reader(house.robot.faces).kind)
+    setup = RobotSetup(
+        robot=str(house.robot.file),
+        activity=house.profile,
+        people=tuple(house.names),
+        cameras=dict(named.split("=", 1) for named in cameras),
+        requests=requests,
+        corners=corners,
+        start=None if lost else _start(house.room, tuple(house.names)),
+        seed=seed,
+        faces={p: rows.tolist() for p, rows in known.items() if p in house.names},
+        map=map_,
+        log=str(house.store.folder / LOG),
+        pairing=keep_pairing(house.store.folder).to_json(),
+    )
+    linked = _linked(
+        LiveWorld, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+    )
+    with linked as world:
+        world.cards.dealt.deal(cards or {})
+        yield world
+
+
+@contextmanager
+def _linked(
+    kind: type[W],
+    setup: RobotSetup,
+    house: House,
+    *,
+    seed: int,
+    pace: float,
+    book: FaultBook | None,
+    cancellation: Cancellation,
+) -> Iterator[W]:
+    link = RobotLink(setup, log=house.store.folder / LOG, cancellation=cancellation)
+    try:
+        link.start()
+        link.beat()  # a game begins by what the robot says of itself
+        world = kind(
+            house.activity,
+            list(house.names),
+            link,
+            house.robot,
+            house.room,
+            seed=seed,
+            names=house.names,
+            pace=pace,
+            knows_faces=bool(setup.faces),
+        )
+        if book is not None:
+            world.commands.diagnosed = _Diagnosis(book, house.robot)
+        yield world
+    finally:
+        link.close()
+
+
+class _Diagnosis:
+    """Says which faults the devices show, of themselves."""
+
+    def __init__(self, book: FaultBook, robot: Robot) -> None:
+        self._book = book
+        self._robot = robot
+
+    def __call__(self, health: Health) -> Mapping[str, bool]:
+        """Return the codes of the faults, and whether each is critical."""
+        from tangy_tui.monitoring.detection import device_evidence
+        from tangy_tui.monitoring.diagnosis import diagnose
+
+        evidence = device_evidence(self._robot, health)
+        return {one.rule.code: one.rule.critical for one in diagnose(self._book, evidence)}
+
+
+def check_map(house: House, map_: str) -> None:
+    """Look whether a robot could play by a map, before one is switched on.
+
+    Raises:
+        TangyError: it is no map, or the robot cannot stand there where it has to.
+    """
+    from tangy_hw.navigation.map_files import MapFileError, read_map
+    from tangy_hw.navigation.planning import PlanError, check_goal
+
+    known = read_map(Path(map_))
+    people = tuple(house.names)
+    for place in (FRONT, *people):
+        at = house.room.stand(place, people)
+        try:
+            check_goal(known, (at.x, at.y))
+        except PlanError as error:
+            where = "the front" if place == FRONT else f"{house.name(place)}'s place"
+            told = f"{map_}: {where} ({at.x:g}, {at.y:g}) cannot be driven to on it. {error}"
+            raise MapFileError(plain(told)) from None
+
+
+def _start(room: Room, people: tuple[str, ...]) -> tuple[float, float, float]:
+    front = room.stand(FRONT, people)
+    return front.x, front.y, FACING
+
+
+def _drawn_people(
+    faces: Mapping[str, int], cancellation: Cancellation
+) -> dict[str, list[list[float]]]:
+    """Describe the drawn faces of the bench's people, as an enrolment would.
+
+    Raises:
+        Cancelled: it was called off meanwhile.
+    """
+    from tangy_hw.perception.faces.reader import HaarReader
+    from tangy_sim.rendering.faces import drawn_face
+
+    reader = HaarReader()
+    known: dict[str, list[list[float]]] = {}
+    for person, number in faces.items():
+        vectors = []
+        for one in range(PICTURES):
+            cancellation.check()
+            found = reader.read(drawn_face(number, 100 + one))
+            if found and found[0].vector is not None:
+                vectors.append(found[0].vector)
+        known[person] = [[round(float(v), 5) for v in vector] for vector in vectors]
+    return known

@@ -1,0 +1,270 @@
+"""A world on the bench: faults are brought about in its devices, and what is seen is checked.
+
+The bench knows how things really are; the robot does not. Only the count of what was read rightly
+(`Score`) is told, when it has been read.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from math import hypot
+from random import Random
+from typing import Any
+
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.live_world import DRIVES, LiveWorld
+from tangy_profiles.behaviour import Action
+from tangy_profiles.faults import Remedy
+from tangy_profiles.game_world import BENCH, GameWorld
+from tangy_profiles.health import OK
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_sim.device_simulator.tablet import Tablet
+from tangy_sim.worlds import injection
+from tangy_sim.worlds.injection import KINDS, Injection, Kind
+from tangy_sim.worlds.pending_injections import ToCome
+from tangy_tui.app.device_simulator import Bench, BenchError
+
+MARKED = ("clear wrong marks", "set missing marks")
+EXPERT_SECONDS = 60.0  # that an expert takes on the bench
+NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
+
+
+@dataclass
+class Score:
+    """What was read and found rightly, of how much."""
+
+    reads: Counter[str] = field(default_factory=Counter)
+    identities: Counter[str] = field(default_factory=Counter)
+    off: list[float] = field(default_factory=list)
+    """How far off the robot believed to be after each drive, arrived or not, in metres."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as `tangy live --json` prints it."""
+        off = sorted(self.off)
+
+        def quantile(share: float) -> float | None:
+            return round(off[min(len(off) - 1, int(share * len(off)))], 4) if off else None
+
+        return {
+            "reads": {name: self.reads[name] for name in ("right", "hidden", "wrong")},
+            "identities": {name: self.identities[name] for name in ("right", "unknown", "wrong")},
+            "pose_error_m": {"median": quantile(0.5), "p95": quantile(0.95)},
+        }
+
+
+class BenchedWorld(LiveWorld):
+    """A real world whose devices a bench simulates. Between games everything is put right."""
+
+    played_in: GameWorld = BENCH
+    bench: Bench
+    injections: Sequence[Injection] = ()
+
+    def on(self, bench: Bench, injections: Sequence[Injection] = (), seed: int = 1) -> BenchedWorld:
+        """Name the bench that it is on, and the faults that are to come in each game."""
+        self.bench = bench
+        self.injections = tuple(injections)
+        self.score = Score()
+        self.came: list[tuple[int, str]] = []
+        self._chance = Random(f"{seed}/faults").random
+        self._to_come = ToCome((), self._chance)
+        self.cards.looked = self._check
+        self._heard = 0  # of those who said that they would like help
+        self._listens = False
+        self._tablet: Tablet | None = None
+        self._open_tablet()
+        return self
+
+    def _open_tablet(self) -> None:
+        """Open the page of the chest screen, another one after the robot process has begun anew."""
+        if self._tablet is not None:
+            self._tablet.close()
+        screen, code = self.link.screen, self.link.code
+        self._tablet = Tablet(screen, code, self._read) if screen else None
+        self._switch_tablet()
+
+    def _read(self, text: str) -> None:
+        """Let the people at the table read what the tablet shows."""
+        with suppress(BenchError):  # it is being closed
+            self.bench.do("read", text=text)
+
+    def leave(self) -> None:
+        """Close what looks at the robot from outside."""
+        if self._tablet is not None:
+            self._tablet.close()
+
+    def begin(self) -> ActivityState:
+        """Begin a game on the bench, with other cards, and nothing wrong."""
+        self.cards.dealt.deal(self.bench.do("begin")["cards"])
+        self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+        if any(r.device == "voice" and r.state != OK for r in self.health()):
+            self.link.do("restart", device="voice")  # it is thought dead until it has spoken
+        self.came = []
+        self._heard, self._listens = 0, False
+        self._to_come = ToCome(self.injections, self._chance)
+        self._pass_until(lambda: not self.commands.diagnosed(self.health()))
+        return super().begin()
+
+    @property
+    def still_to_come(self) -> list[str]:
+        """The injections that have not come about in this game, but for those by chance."""
+        return self._to_come.words
+
+    @property
+    def present(self) -> list[str]:
+        """The kinds of fault that are there."""
+        return [fault["kind"] for fault in self.truth()["faults"]]
+
+    def truth(self) -> dict[str, Any]:
+        """Return how things really are."""
+        told: dict[str, Any] = self.bench.do("truth")["truth"]
+        return told
+
+    def observe(self) -> ActivityState:
+        """Return the joint state; staff at the bench pass on who says that they need help."""
+        if self._listens and not self.over:
+            spoken = self.truth()["spoken"]
+            for person in spoken[self._heard :]:
+                self.requests.ask_for(person)
+            self._heard = len(spoken)
+        return super().observe()
+
+    # ------------------------------------------------------------------------ faults
+
+    def inject(self, kind: str) -> None:
+        """Bring about a fault; what devices show at once is waited for.
+
+        Raises:
+            KeyError: there is no such kind.
+        """
+        chosen = KINDS[kind]
+        self.bench.do("inject", kind=kind)
+        self.came.append((self.tracker.step + 1, kind))
+        if kind == "navigation-failed":  # there is no such program on the bench
+            self.link.do("fail", device="navigator", state="ERROR")
+        self._switch_tablet()
+        if chosen.shows == injection.AT_ONCE and self.link.setup.stepped:
+            self._let_show(chosen)
+
+    def _let_show(self, kind: Kind) -> None:
+        """Wait until devices show a fault, where the bench's time does not pass by itself."""
+        self._pass_until(lambda: kind.code in self.commands.diagnosed(self.health()))
+
+    def _pass_until(self, holds: Callable[[], bool]) -> None:
+        """Let a little time pass until something holds."""
+        until = time.monotonic() + NOTICED_SECONDS
+        while not holds() and time.monotonic() < until:
+            if self.link.setup.stepped:
+                with suppress(DeviceError):
+                    self.link.do("wait", seconds=0.2)
+            self.link.beat()
+
+    def lift(self, kind: str) -> None:
+        """Put a fault right."""
+        self.bench.do("lift", kind=kind)
+        if kind == "navigation-failed":
+            self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+
+    def _switch_tablet(self) -> None:
+        if self._tablet is not None:
+            self._tablet.on = "screen-dead" not in self.present
+
+    def can_show(self, kind: Kind, action: Action) -> bool:
+        """Say whether a fault of a kind would be seen if it came with an action."""
+        tracker, behaviour = self.tracker, action.behaviour
+        beside = tracker.place in tracker.queue
+        match kind.shows:
+            case injection.DRIVING:
+                return behaviour.effect in DRIVES
+            case injection.LOOKING:
+                if tracker.seen is None:
+                    return beside and behaviour.effect == "bring card closer"
+                return behaviour.effect in MARKED
+            case injection.ASKING:
+                return beside and behaviour.effect in MARKED and tracker.allows(behaviour)
+            case injection.CLOSING:
+                settled = self.activity.card_states[-1].name
+                return beside and behaviour.closes == "always" and tracker.seen == settled
+            case injection.WAITING:
+                return len(tracker.queue) > 1
+            case injection.MOVING_ON:
+                return beside and behaviour.effect in MARKED
+            case _:
+                return True
+
+    def execute(self, action: Action) -> Outcome:
+        """Let faults come that are due, and carry out the action."""
+        if not self.over:
+            self._let_faults_come(action)
+        outcome = super().execute(action)
+        if action.behaviour.effect in DRIVES:
+            self._note_place()
+        return outcome
+
+    def _let_faults_come(self, action: Action) -> None:
+        step = self.tracker.step + 1
+        for kind in self._to_come.due(step, lambda kind: self.can_show(kind, action)):
+            if kind.name not in self.present:
+                self.inject(kind.name)
+
+    def recover(self, remedy: Remedy) -> float:
+        """Let the robot, somebody at the table or an expert do something about a fault."""
+        for kind in self._to_come.due_in_recovery():
+            if kind.name not in self.present:
+                self.inject(kind.name)
+        if remedy.kind == "call expert":
+            stood = self.stood()
+            if self.link.silent or self.link.state.failed:
+                super().recover(remedy)
+                self._open_tablet()
+            return stood + self._expert_comes(remedy)
+        if remedy.kind == "other requests":
+            self._listens = True
+        if remedy.kind == "restart":
+            self.bench.do("restart", device=remedy.device)
+            self._switch_tablet()
+        return super().recover(remedy)
+
+    def _expert_comes(self, remedy: Remedy) -> float:
+        began = self.link.time
+        for kind in self.bench.do("mend", fault=remedy.fault)["lifted"]:
+            if kind == "navigation-failed":
+                self.link.do("fail", device="navigator", state="OK")
+        self._switch_tablet()
+        if self.link.setup.stepped:
+            with suppress(DeviceError):
+                self.link.do("wait", seconds=EXPERT_SECONDS)
+            self._pass_until(lambda: remedy.fault not in self.commands.diagnosed(self.health()))
+        self.stood()  # that time is told here
+        return max(0.0, self.link.time - began)
+
+    # ------------------------------------------------------------------------ what is counted
+
+    def _check(self, what: str, place: str, seen: Any) -> None:
+        """Count something that was seen, by how it really is."""
+        if what == "face":
+            there = self.truth()["place"]
+            word = "unknown" if seen is None else "right" if seen == there else "wrong"
+            self.score.identities[word] += 1
+            return
+        truth = self.truth()
+        there = truth["people"].get(truth["place"], {"card": None, "marked": 0})
+        if seen["card"] is None or seen["state"] == self.activity.unread:
+            self.score.reads["hidden"] += 1
+            return
+        told = ~seen["hidden"]
+        same = seen["card"] == there["card"] and not (seen["marked"] ^ there["marked"]) & told
+        self.score.reads["right" if same else "wrong"] += 1
+
+    def _note_place(self) -> None:
+        """Note how far off the robot believes to be after a drive, wherever that has ended."""
+        if not self.link.setup.stepped or self.link.silent:
+            return
+        x, y, _ = self.truth()["pose"]
+        pose = self.link.beat().pose
+        self.score.off.append(hypot(pose.x - x, pose.y - y))

@@ -1,0 +1,123 @@
+"""Switching a robot on beside what is shown meanwhile, and calling that off."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, suppress
+from types import FrameType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from tangy_hw.cancellation import Cancellation
+from tangy_tui.app.robot_opening import Opening
+
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+
+ENDING = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
+"""By which a person or a system ends a program."""
+SIGNALLED = 128
+"""The exit status of a program that a signal has ended is this and the signal's number."""
+
+
+class SwitchingOn:
+    """One robot: `open` it on a thread, `cancel` that from another, and `close` it in the end."""
+
+    def __init__(self, opening: Opening, *, stepped: bool = False) -> None:
+        """Prepare it.
+
+        Args:
+            opening: opens the robot, or its bench.
+            stepped: in a hurry, where that can be.
+        """
+        self._opening = opening
+        self._stepped = stepped
+        self._cancellation = Cancellation()
+        self._opened = ExitStack()
+
+    def open(self) -> LiveWorld:
+        """Switch it on, which takes seconds.
+
+        Raises:
+            Cancelled: it was called off; nothing is on.
+            TangyError: it cannot be switched on.
+        """
+        self._cancellation.check()
+        with ExitStack() as opened:
+            world = opened.enter_context(self._opening(self._stepped, self._cancellation))
+            self._cancellation.complete()
+            self._opened = opened.pop_all()
+        return world
+
+    def cancel(self) -> None:
+        """Call it off, from any thread and without waiting; where it is on it stays on."""
+        self._cancellation.cancel()
+
+    def close(self) -> None:
+        """Switch it off, if it is on; what is done with it waits for nothing any more."""
+        self._opened.close()
+
+
+@contextmanager
+def switched_on(opening: Opening, *, stepped: bool) -> Iterator[LiveWorld]:
+    """Switch a robot on for a program without a screen, and off again however that ends.
+
+    Raises:
+        TangyError: it cannot be switched on.
+        SystemExit: the program was hung up, or told to end.
+        KeyboardInterrupt: ctrl+c was pressed.
+    """
+    robot = SwitchingOn(opening, stepped=stepped)
+    with _Signals(robot.cancel) as signals:
+        try:
+            with ThreadPoolExecutor(1, "opening") as thread:  # which is waited for
+                opened = thread.submit(robot.open)
+            signals.raise_from_now_on()
+            yield opened.result()
+        finally:
+            robot.close()
+
+
+class _Signals:
+    """What ends a program, heard in order: nothing that was started is left behind.
+
+    At first a signal calls the opening off, and breaks off nothing: a process may just be starting.
+    Later it ends what goes on, at once.
+    """
+
+    def __init__(self, call_off: Callable[[], None]) -> None:
+        self._call_off = call_off
+        self._raises = False
+        self._first = 0  # the number of the first that came
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> _Signals:
+        for number in ENDING:
+            with suppress(ValueError):  # only a program's main thread hears of signals
+                if signal.getsignal(number) != signal.SIG_IGN:  # as `nohup` has it
+                    self._before[number] = signal.signal(number, self._hear)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def raise_from_now_on(self) -> None:
+        """Let the next signal end what goes on; one that has come does so now."""
+        self._raises = True
+        if self._first:
+            self._raise()
+
+    def _hear(self, number: int, _: FrameType | None) -> None:
+        if self._first:
+            return  # once is enough
+        self._first = number
+        if self._raises:
+            self._raise()
+        self._call_off()
+
+    def _raise(self) -> NoReturn:
+        if self._first == signal.SIGINT:
+            raise KeyboardInterrupt
+        raise SystemExit(SIGNALLED + self._first)

@@ -1,0 +1,373 @@
+"""The house put together: profiles, the store and a simulated world, for screens and lines."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
+from tangy_profiles.reading import plain
+from tangy_profiles.robot import Robot, load_robot
+from tangy_profiles.room import Room, load_room
+from tangy_profiles.state import FRONT
+from tangy_profiles.store import Store
+from tangy_profiles.voice import VoicePreference
+
+# The engine is imported when it is first asked for: the first screen needs none of it.
+if TYPE_CHECKING:
+    from tangy_profiles.demonstration import Demonstration
+    from tangy_profiles.game_world import GameWorld
+    from tangy_profiles.health import Health
+    from tangy_tui.interaction.facilitation import Facilitation
+    from tangy_tui.interaction.forgetting import Forgotten
+    from tangy_tui.interaction.memory import Memory
+    from tangy_tui.interaction.persuasion import Persuasion
+    from tangy_tui.interaction.record import Record
+    from tangy_tui.learning.policy import Policy
+    from tangy_tui.learning.teaching_events import Again
+    from tangy_tui.learning.teaching_session import Teaching
+    from tangy_tui.monitoring.supervision import Supervision
+    from tangy_tui.world import World
+
+
+def data_folder(chosen: Path | None) -> Path:
+    """Return the data folder: the chosen one, or the platform's folder for a person's data."""
+    if chosen is not None:
+        return chosen
+    from platformdirs import user_data_path
+
+    return user_data_path("tangy", appauthor=False)
+
+
+def teacher_name(given: str | None = None) -> str:
+    """Return who teaches: the name that was given, or else the login name.
+
+    Raises:
+        TangyError: the given name is none that may be kept (see `read_name`).
+    """
+    if given is not None:
+        return read_name(given, "A teacher's name")
+    login = os.environ.get("USER") or os.environ.get("USERNAME") or ""
+    return plain(login).strip()[:LONGEST_NAME].strip() or "teacher"
+
+
+class House:
+    """One activity with its robot, room and people, and the data folder they are kept in."""
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        activity: str = "bingo",
+        users: int = 4,
+        write: bool = True,
+        robot: str = "tangy",
+        now: Callable[[], datetime] | None = None,
+    ) -> None:
+        """Read the profiles and open the store, whose clock is `now` (default: the machine's).
+
+        Raises:
+            ProfileError: a profile has a mistake, or there is no such activity.
+            StoreError: the data folder cannot be used, or another Tangy writes to it.
+        """
+        self.profile = activity
+        """The activity as it was asked for: a name, or the path of a file."""
+        self.activity: Activity = load_activity(activity)
+        self.robot: Robot = load_robot(robot)
+        self.robot.check(self.activity)
+        self.room: Room = load_room()
+        self._sample = load_people(users)
+        self.store = Store.open(folder, write=write, now=now)
+        self.people: tuple[Person, ...] = ()
+        self.read_people()
+
+    def close(self) -> None:
+        """Close the store."""
+        self.store.close()
+
+    def read_people(self) -> None:
+        """Read anew what is known of the people: names, how they are said, voices, seats."""
+        names, said = self.store.names(), self.store.pronunciations()
+        voices = self.store.voices()
+        self.people = self.room.placed(
+            [
+                Person(
+                    p.id,
+                    names.get(p.id, p.name),
+                    said.get(p.id, p.pronunciation),
+                    voices.get(p.id, p.voice),
+                )
+                for p in self._sample
+            ]
+        )
+
+    def name(self, person: str) -> str:
+        """Return a person's name."""
+        return next((p.name for p in self.people if p.id == person), person)
+
+    def find_person(self, wanted: str) -> Person:
+        """Return the person of an id or a name.
+
+        Raises:
+            TangyError: nobody, or more than one, is called that.
+        """
+        by_id = [p for p in self.people if p.id == wanted]
+        found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise TangyError(plain(f"More than one person is called {wanted!r}: use the id."))
+        there = ", ".join(f"{p.id} is {p.name}" for p in self.people)  # never guess at a person
+        raise TangyError(plain(f"There is nobody called {wanted!r}: {there}."))
+
+    def rename(self, person: Person, name: str) -> None:
+        """Give a person another name, one that nobody else answers to.
+
+        Lines that were spoken with the old one are forgotten.
+
+        Raises:
+            TangyError: the name is somebody else's name or id, or a place, or means something
+                else where it is said.
+        """
+        wanted = folded(name)
+        taken = {FRONT: "is a place"}
+        for other in self.people:
+            if other.id != person.id:
+                taken |= dict.fromkeys(
+                    (folded(other.id), folded(other.name)), f"is what {other.id} is called"
+                )
+        if wanted in taken:
+            raise TangyError(plain(f"{name!r} {taken[wanted]}: choose another name."))
+        from tangy_tui.speech.name_conflicts import check_new_name
+
+        check_new_name(self.activity, self.people, replace(person, name=name.strip()))
+        old = self.name(person.id)
+        self.store.rename(person.id, name)
+        self.read_people()
+        if self.name(person.id) != old:
+            _forget_spoken()
+
+    def pronounce(self, person: Person, phones: str | None) -> None:
+        """Note how a person's name is pronounced (ARPAbet, a comma between words); None: no more.
+
+        Raises:
+            TangyError: a phone is none, there are not as many words as in the name, or it sounds
+                like somebody else's, or like a phrase.
+        """
+        self.store.pronounce(person.id, phones and self.check_said(person, phones))
+        self.read_people()
+
+    def check_said(self, person: Person, phones: str) -> str:
+        """Return the phones of a person's name as they are written down.
+
+        Raises:
+            TangyError: as for `pronounce`.
+        """
+        from tangy_tui.language.pronunciation import check_name
+        from tangy_tui.speech.name_conflicts import check_said
+
+        checked = check_name(phones, person.name)
+        check_said(self.activity, self.people, person, checked)
+        return checked
+
+    def prefer_voice(self, person: Person, preference: VoicePreference) -> None:
+        """Note how a person likes to be spoken to."""
+        self.store.prefer_voice(person.id, preference)
+        self.read_people()
+
+    def forget(self, person: Person, also: Sequence[str] = ()) -> Forgotten:
+        """Forget who a person is: name, how it is said, voice, face, and that they agreed to that.
+
+        The name goes from words that were typed or said as well, in the log and in the files of
+        the data folder. What they did stays in the log, under an id that says nobody's name.
+
+        Args:
+            person: who.
+            also: other names that they were called by, which are to go, too.
+
+        Raises:
+            TangyError: some of it cannot be deleted.
+        """
+        from tangy_tui.interaction.forgetting import forget_person
+
+        forgotten = forget_person(self.store, self.activity, self.people, person, also)
+        self.read_people()
+        _forget_spoken()
+        return forgotten
+
+    @property
+    def names(self) -> dict[str, str]:
+        """The names of those who take part, by id."""
+        return {person.id: person.name for person in self.people}
+
+    def teaching(
+        self,
+        teacher: str,
+        seed: int | None,
+        *,
+        guided: bool = False,
+        again: Again | None = None,
+    ) -> Teaching:
+        """Make a teaching session; `begin` it to take up what was unfinished.
+
+        Without a seed the games count on from the demonstrations there are, so that no two are
+        alike and each can be had again. A guided game brings about every situation. `again`
+        names a demonstration that is to be shown again from some step on.
+        """
+        from tangy_tui.learning import library
+        from tangy_tui.learning.teaching_session import Teaching
+
+        if seed is None:
+            entries = library.read_library(self.store, self.activity.name).entries.values()
+            seed = 1 + max((entry.demonstration.seed for entry in entries), default=0)
+        return Teaching(
+            self.activity,
+            self.people,
+            self.store,
+            self.teaching_world,
+            teacher=teacher,
+            seed=seed,
+            guided=guided,
+            again=again,
+        )
+
+    def teaching_world(self, shown: Demonstration) -> World:
+        """Make the simulated world of a demonstration, in which people ask more often."""
+        from tangy_sim.worlds.guidance import GuidedWorld
+        from tangy_sim.worlds.users import load_users
+        from tangy_sim.worlds.world import SimulatedWorld
+
+        kind = GuidedWorld if shown.guided else SimulatedWorld
+        return kind(self.activity, shown.people, seed=shown.seed, users=load_users().teaching())
+
+    def supervision(
+        self,
+        policy: Policy,
+        seed: int | None,
+        *,
+        asks: bool = False,
+        injections: Sequence[str] = (),
+        live: Callable[[], Health] | None = None,
+        world: World | None = None,
+    ) -> Supervision:
+        """Make a run of games under execution monitoring; they are simulated ones.
+
+        Args:
+            asks: somebody is there to say what to do where Tangy is not sure.
+            injections: faults that are to come, as in `--inject`.
+            live: what real devices report, in place of the simulated ones.
+            world: where they are played instead, and where `injections` are its own business.
+
+        Raises:
+            TangyError: one of the injections is none, or the fault rules have a mistake.
+        """
+        from tangy_profiles.fault_file import load_faults
+        from tangy_sim.worlds.faulty_world import FaultyWorld
+        from tangy_sim.worlds.injection import read_injection
+        from tangy_tui.monitoring.accepted import expected_effects
+        from tangy_tui.monitoring.supervision import Supervision
+
+        to_come = [read_injection(text) for text in injections]
+        seed = self.game_seed(seed)
+        people = list(self.names)
+        if world is not None:
+            pass
+        elif live is None:
+            world = FaultyWorld(self.activity, people, seed=seed, injections=to_come)
+        else:
+            from tangy_tui.app.partly_live_world import PartlyLiveWorld
+
+            world = PartlyLiveWorld(self.activity, people, seed=seed, injections=to_come, live=live)
+        return Supervision(
+            self._facilitation(world, policy, seed, asks),
+            load_faults(self.robot),
+            self.robot,
+            self.store,
+            lambda learnt: expected_effects(self.store, self.activity, learnt),
+            self.name,
+            [str(one) for one in to_come],
+        )
+
+    def facilitation(self, policy: Policy, seed: int | None, *, asks: bool = False) -> Facilitation:
+        """Make a run of simulated games with a policy and with what is believed of the people.
+
+        Args:
+            asks: somebody is there to say what to do where Tangy is not sure.
+        """
+        from tangy_sim.worlds.world import SimulatedWorld
+
+        seed = self.game_seed(seed)
+        world = SimulatedWorld(self.activity, list(self.names), seed=seed)
+        return self._facilitation(world, policy, seed, asks)
+
+    def game_seed(self, seed: int | None) -> int:
+        """Return a seed: the given one, or one that no game has had."""
+        from tangy_tui.interaction import facilitation
+
+        if seed is not None:
+            return seed
+        games = self.store.events(facilitation.BEGUN)
+        return 1 + max((int(game.body.get("seed", 0)) for game in games), default=0)
+
+    def _facilitation(self, world: World, policy: Policy, seed: int, asks: bool) -> Facilitation:
+        from tangy_tui.interaction.facilitation import Facilitation
+        from tangy_tui.learning.online_learning import Answers
+
+        return Facilitation(
+            world,
+            policy,
+            self.persuasion(Random(f"{seed}/persuasion"), world.played_in),
+            self.store,
+            names=self.names,
+            people=self.people,
+            seed=seed,
+            answers=Answers(self.store, self.activity) if asks else None,
+        )
+
+    def persuasion(self, rng: Random, world: GameWorld | None = None) -> Persuasion:
+        """Make the persuasion of everybody present from the responses in a world's games."""
+        from tangy_tui.interaction.persuasion import Persuasion
+
+        memory = self.memory(world)
+        return Persuasion(
+            [person.id for person in self.people],
+            tuple(self.activity.strategies),
+            rng,
+            counts=memory.responses(),
+            memory=memory,
+        )
+
+    def memory(self, world: GameWorld | None = None) -> Memory:
+        """Make what recalls people from the log, with the activity's choice of method.
+
+        Args:
+            world: whose games count (default: the world of the last game).
+        """
+        from tangy_tui.interaction.memory import Memory
+
+        strategies = tuple(self.activity.strategies)
+        return Memory(self.store, strategies, self.activity.persuasion, world=world)
+
+    def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
+        """Read what is to be told of people (of everybody, if none is named)."""
+        from tangy_tui.interaction.record import read_records
+
+        return read_records(self.store, self.memory(world), people or self.people)
+
+
+def _forget_spoken() -> None:
+    """Empty the cache of spoken lines, if there is one; a name is not kept back by it."""
+    from tangy_hw.audio.synthesis import Synthesiser, VoiceError, cache_folder
+
+    folder = cache_folder()
+    with suppress(OSError, VoiceError):
+        if folder.is_dir():
+            Synthesiser(folder).clear()

@@ -1,0 +1,78 @@
+"""The whole story in a minute: a scripted teacher demonstrates, Tangy learns, and plays a game."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from tangy_tui.app.workspace import House
+from tangy_tui.console.games import belief_lines, game_lines
+from tangy_tui.interaction.tally import Tally
+from tangy_tui.learning.effects import learn_effects
+from tangy_tui.learning.library import read_library
+from tangy_tui.learning.policies import keep_policy, unused_name
+from tangy_tui.learning.policy import Policy, learn_policy
+from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
+from tangy_tui.learning.teaching_events import Begun, Executed, Next
+
+DEMONSTRATIONS = 3
+"""What the paper found to be enough when situations come about by chance."""
+
+
+def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any]:
+    """Tell the story line by line; return what the game added up to."""
+    activity = house.activity
+    write(f"1. A teacher demonstrates {activity.title} {DEMONSTRATIONS} times.")
+    teaching = house.teaching(SCRIPTED, seed)
+    teacher = ScriptedTeacher(teaching)
+    events = teaching.begin()
+    seen = set()
+    for number in range(DEMONSTRATIONS):
+        events = [*(teaching.apply(Next()) if number else events), *teacher.demonstrate()]
+        for event in events:
+            match event:
+                case Begun(demonstration):
+                    write(f"   Game {demonstration.seed}:")
+                case Executed(_, step, _, _, speech, _) if step.state.situation not in seen:
+                    seen.add(step.state.situation)
+                    write(f"   new: {activity.in_words(step.state.situation)}")
+                    write(f"        teacher: {step.behaviour}. Tangy: {speech}")
+        steps = len(teaching.demonstration.steps)
+        write(f"   {steps} steps; {len(seen)} of {len(activity.situations)} situations shown.")
+    policy = learn(house)
+    shown = read_library(house.store, activity.name).demonstrations
+    effects = learn_effects(activity, shown)
+    write("2. A random forest learns what to do, and what follows from it.")
+    for situation in activity.situations:
+        decision = policy.decide(situation)
+        write(
+            f"   {activity.in_words(situation)} -> {decision.behaviour} "
+            f"({decision.share:.0%} of the votes, {decision.seen} times shown)"
+        )
+    write(f"   Effects of {len(effects.values)} behaviours are known.")
+    write("3. Tangy facilitates a game by itself.")
+    supervision = house.supervision(policy, seed)
+    tally = Tally()
+    events_of_game = supervision.begin()
+    while True:
+        tally.add(events_of_game)
+        for game_event in events_of_game:
+            for line in game_lines(game_event, supervision, house.name):
+                write(f"   {line}")
+        if supervision.over:
+            break
+        events_of_game = supervision.step()
+    write("4. What Tangy now believes about which strategy works with whom:")
+    for line in belief_lines(supervision, house.name):
+        write(f"   {line}")
+    write("Teach it yourself: tangy teach. All you can do: tangy --help.")
+    return tally.to_json(activity.situations, supervision.persuasion.beliefs)
+
+
+def learn(house: House) -> Policy:
+    """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
+    library = read_library(house.store, house.activity.name)
+    policy = learn_policy(house.activity, library.finished, resolutions=library.resolutions)
+    policy = unused_name(house.store, policy)
+    keep_policy(house.store, policy)
+    return policy

@@ -1,0 +1,333 @@
+"""The program line by line: for a pipe, a script, a screen reader or a simple terminal.
+
+It drives the same sessions as the screens. One thing is said per line, and nothing is drawn.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import shlex
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from threading import Thread
+from typing import Any
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.learning.coverage import NOT_SHOWN
+from tangy_tui.learning.teaching_events import (
+    Again,
+    Begun,
+    Executed,
+    Finished,
+    Next,
+    Redo,
+    StepUndone,
+    TeacherCommand,
+    TeachingEvent,
+    Undo,
+)
+from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.verification import (
+    ANSWER_HELP,
+    ANSWERS,
+    NO_QUESTION,
+    WHICH,
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Stop,
+    answer_help,
+)
+from tangy_tui.speech.input import Ears, Heard
+from tangy_tui.text.situations import counted, state_words, step_words, verification_lines
+
+Read = Callable[[], str | None]
+"""Returns the next line, or None when there are no more."""
+Write = Callable[[str], None]
+
+HELP = (
+    "Commands: a behaviour in words, or one of: undo, redo, again N, where, seen, why, help, next, "
+    "quit."
+)
+MEANINGS = (
+    ("undo", "take the last step back"),
+    ("redo", "do the step again that was taken back"),
+    ("again N", "go back before step N, to show it and what follows again"),
+    ("where", "say what Tangy sees"),
+    ("seen", "say which situations nobody has shown yet"),
+    ("why", "say what Tangy would do here by what it has learnt, and why"),
+    ("next", "begin another demonstration"),
+    ("quit", "leave; what you confirmed is kept"),
+)
+STOPPED = "STOP: the simulated robot stands still until the next command is carried out."
+LONGEST_NUMBER = 5  # characters
+_AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
+_AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
+
+
+def command_line(verb: str, **options: str | None) -> str:
+    """Write a command as it is to be typed, with those of its options that have a value."""
+    given = [f"--{name} {shlex.quote(value)}" for name, value in options.items() if value]
+    return plain(" ".join(["tangy", verb, *given]))
+
+
+class TeachingLines:
+    """A teaching session by lines. `run` returns when the teacher leaves or the input ends."""
+
+    def __init__(
+        self,
+        teaching: Teaching,
+        read: Read,
+        write: Write,
+        ears: Ears | None = None,
+        *,
+        scripted: bool = False,
+        seen: Callable[[], list[str]] = list,
+        why: Callable[[], list[str]] = list,
+        resume: str = "tangy teach",
+        learn: str = "tangy learn",
+    ) -> None:
+        """Make the session.
+
+        Args:
+            seen: counts in a sentence what was demonstrated so far; then what was not, a line each.
+            why: says what Tangy would do now.
+            resume, learn: the commands to go on with this demonstration, and to learn from it.
+            ears: spoken commands, if there are any; their questions are answered from `read`.
+            scripted: the lines are all there already, so what is spoken goes before them.
+        """
+        self._together = ears is not None and ears.live and not scripted
+        self._teaching = teaching
+        self._read = read
+        self._write = write
+        self._ears = ears
+        self._seen = seen
+        self._why = why
+        self._resume = resume
+        self._learn = learn
+        self._kept = False  # something of the present demonstration is in the log
+        self._complete = False  # a demonstration was completed in this session
+        self._spoken: asyncio.Future[Heard | None] | None = None
+        self._typed: asyncio.Future[str | None] | None = None
+        if ears is not None:
+            ears.tell = write
+
+    async def run(self, *, resume: bool = True) -> None:
+        """Teach until `quit` or the end of the input. What was verified is kept."""
+        ears = self._ears
+        try:
+            await self._teach(resume=resume)
+        finally:
+            if ears is not None:
+                await ears.close()
+            if self._spoken is not None:
+                await asyncio.gather(self._spoken, return_exceptions=True)
+        self._leave()
+
+    async def _teach(self, *, resume: bool) -> None:
+        teaching, write = self._teaching, self._write
+        write(f"Teaching {teaching.activity.title}. {HELP}")
+        self._tell(teaching.begin(resume=resume))
+        self._where()
+        while (line := await self._next_line()) is not None:
+            command = self._command(line) if isinstance(line, str) else line
+            if command == "quit":
+                break
+            asked = teaching.question
+            if isinstance(command, Stop):
+                if asked is not None:
+                    self._tell(teaching.apply(Reply(yes=False)))
+                write(STOPPED)
+            elif not isinstance(command, str):
+                self._tell(teaching.apply(command))
+            if self._ears is not None:
+                if asked is not None and teaching.question is not asked:  # it answers no other
+                    self._ears.asking(False)
+                self._ears.asking(teaching.question is not None)
+
+    def _leave(self) -> None:
+        """Say what becomes of what was shown, and what to do next."""
+        shown = self._teaching.demonstration
+        if shown.finished or (self._complete and not shown.steps):
+            self._write(f"Let Tangy learn from it: `{self._learn}`.")
+        elif shown.steps and self._kept:
+            self._write(
+                f"Left after {counted(len(shown.steps), 'step')}. What you confirmed is kept: "
+                f"`{self._resume}` goes on from here."
+            )
+        elif shown.steps:
+            self._write("You confirmed nothing, so nothing was changed.")
+
+    async def _next_line(self) -> str | Heard | None:
+        """Return what comes next: the spoken command if one is due, otherwise a line.
+
+        A recording goes before the lines, so that a script can answer it; somebody who is
+        speaking now may as well type. While a question is open, what is spoken waits until it is
+        answered, unless it answers it or stops the robot.
+        """
+        asks = self._teaching.question is not None
+        if self._ears is None or (asks and not (self._together or self._answers)):
+            return await self._line()
+        spoken = self._spoken = self._spoken or asyncio.ensure_future(anext(self._ears, None))
+        if asks and _is_command(spoken):
+            return await self._line()
+        typed = self._typed = self._typed or (self._reading() if self._together else None)
+        waiting: list[asyncio.Future[Any]] = [spoken] if typed is None else [spoken, typed]
+        done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+        if typed in done or (asks and _is_command(spoken)):
+            return await self._line()
+        self._spoken = None
+        try:
+            said = await spoken
+        except TangyError as error:
+            if not self._together:
+                raise
+            self._write(str(error))
+            said = None
+        if said is None:
+            self._ears = None
+            return await self._line()
+        return said
+
+    def _reading(self) -> asyncio.Future[str | None]:
+        """Read a line beside the program, in a thread that does not hold up its end."""
+        loop = asyncio.get_running_loop()
+        line: asyncio.Future[str | None] = loop.create_future()
+
+        def give(read: str | None) -> None:
+            if not line.done():
+                line.set_result(read)
+
+        def wait() -> None:
+            read = self._read()
+            with suppress(RuntimeError):  # the program has ended meanwhile
+                loop.call_soon_threadsafe(give, read)
+
+        Thread(target=wait, daemon=True).start()
+        return line
+
+    async def _line(self) -> str | None:
+        line, self._typed = self._typed or self._reading(), None
+        return await line
+
+    @property
+    def _answers(self) -> bool:
+        return self._ears is not None and self._ears.answers
+
+    def _command(self, line: str) -> TeacherCommand | Stop | str:
+        text = line.strip()
+        lower = text.lower()
+        if not text or text.startswith("#"):
+            return "nothing"
+        if stops(text, self._teaching.phrasebook.game):
+            return Stop(text)
+        if self._teaching.question is not None and lower != "quit":
+            if lower in ANSWERS:
+                return Reply(yes=ANSWERS[lower])
+            if lower.isdecimal() and len(lower) < LONGEST_NUMBER:
+                return Reply(yes=False, alternative=int(lower))
+            asks_help = lower in ("help", "?")
+            question = self._teaching.question
+            short = WHICH if isinstance(question, Offered) else ANSWER_HELP
+            self._write_all(answer_help(question) if asks_help else [short])
+            return "nothing"
+        match lower:
+            case "quit" | "exit" | "leave":
+                return "quit"
+            case "undo":
+                return Undo()
+            case "redo":
+                return Redo()
+            case _ if (again := _AGAIN.fullmatch(lower)) is not None:
+                return Again(self._teaching.demonstration.id, int(again[1]) - 1)
+            case _ if _AGAIN_FROM_WHERE.fullmatch(lower):
+                self._write("Say which step: again 5 goes back before step 5.")
+            case _ if lower in ANSWERS:
+                self._write(NO_QUESTION)
+            case "seen":
+                count, *missing = self._seen() or [""]
+                self._write(count)
+                if missing:
+                    self._write_all([NOT_SHOWN, *missing])
+            case "why":
+                self._write_all(self._why())
+            case "next":
+                return Next()
+            case "where":
+                self._where()
+            case "help" | "?":
+                self._write(HELP)
+                for behaviour in self._teaching.activity.behaviours.values():
+                    self._write(f"  {behaviour.question}: say {behaviour.phrases[0]!r}")
+                for word, meaning in MEANINGS:
+                    self._write(f"  {word}: {meaning}")
+            case _:
+                return Say(text)
+        return "nothing"
+
+    def _write_all(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            self._write(line)
+
+    def _where(self) -> None:
+        teaching = self._teaching
+        state = teaching.world.observe()
+        self._write(
+            f"Now: {teaching.activity.in_words(state.situation)}. "
+            + state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
+        )
+
+    def _tell(self, events: Sequence[TeachingEvent]) -> None:
+        if self._ears is not None:
+            self._ears.follow(events)
+        for event in events:
+            match event:
+                case Begun():
+                    self._kept = event.resumed
+                case Executed() | StepUndone():
+                    self._kept = True
+                case Finished():
+                    self._complete = True
+            self._write_all(teaching_lines(event, self._teaching))
+            if isinstance(event, Finished):
+                self._write_all(self._seen()[:1])
+                self._write(f"Type next for another demonstration, or quit and `{self._learn}`.")
+            if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
+                self._where()
+
+
+def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
+    """Say whether what was spoken is there, and is a new command."""
+    if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
+        return False
+    return isinstance(spoken.result(), Say)
+
+
+def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
+    """Put one event of a teaching session into lines."""
+    match event:
+        case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
+            return verification_lines(event)
+        case Executed(number, step, _, _, speech, _):
+            return [
+                f"{number}. {step_words(teaching.activity, step, teaching.name)}",
+                f"   Tangy says: {speech}",
+            ]
+        case StepUndone(number, step):
+            return [f"Step {number} is undone: {step.behaviour}."]
+        case Begun(demonstration, resumed):
+            if resumed:
+                return [
+                    f"Going on with {teaching.teacher}'s demonstration of "
+                    f"{len(demonstration.steps)} steps (game {demonstration.seed})."
+                ]
+            return [f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."]
+        case Finished(demonstration):
+            return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]

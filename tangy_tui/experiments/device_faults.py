@@ -1,0 +1,111 @@
+"""Scenario 3 on the bench: games in which planned faults come about in devices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tangy_profiles.behaviour import Action
+from tangy_profiles.fault_file import load_faults
+from tangy_profiles.faults import Remedy
+from tangy_profiles.state import ActivityState, Outcome
+from tangy_sim.worlds.injection import KINDS, WAITING
+from tangy_tui.app.robot_opening import open_bench
+from tangy_tui.app.simulated_devices_world import BenchedWorld
+from tangy_tui.app.workspace import House
+from tangy_tui.experiments.classroom import GUIDED, Course
+from tangy_tui.experiments.induced import Inducer, Planned
+from tangy_tui.experiments.recovering import plan_of, play_games
+from tangy_tui.experiments.supervised import keep, lessons
+from tangy_tui.experiments.sweep import Case, Settings
+
+GAMES_A_PIECE = 5
+"""Games on one bench, with the same people: so each core has something to do."""
+
+
+class InducingBench(BenchedWorld):
+    """A world on the bench in which planned faults come."""
+
+    def plan(self, plan: Sequence[Sequence[Planned]]) -> InducingBench:
+        """Name what is to come in each game."""
+        self.inducer = Inducer(plan)
+        return self
+
+    def begin(self) -> ActivityState:
+        """Begin the next game of the plan."""
+        self.inducer.begin()
+        self.link.release()  # nobody is there to say that all is well
+        return super().begin()
+
+    def execute(self, action: Action) -> Outcome:
+        """Let a planned fault come that can show now, and carry out the action."""
+        if not self.over:
+            self._note_lifted()
+            step = self.tracker.step + 1
+            there = [KINDS[name] for name in self.present]
+            name = self.inducer.choose(
+                step, action, there, lambda kind: self.can_show(kind, action)
+            )
+            if name:
+                self.inducer.came(name, step, self.link.time)
+                self.inject(name)
+        outcome = super().execute(action)
+        if self.over:
+            self._note_hidden()
+        return outcome
+
+    def _note_hidden(self) -> None:
+        """Note, at a game's end, of which faults nothing could be seen any more.
+
+        A chair that found no room before the robot stands nowhere; and that somebody asks no more
+        is seen with the next behaviour.
+        """
+        self._note_lifted()
+        placed = {fault["kind"]: fault["shown"] for fault in self.truth()["faults"]}
+        for fault in self.inducer.induced:
+            nowhere = placed.get(fault.kind.name) is False and fault.kind.name == "path-detour"
+            late = fault.lifted is not None and fault.lifted > self.tracker.step
+            fault.hidden = nowhere or (late and fault.kind.shows == WAITING)
+
+    def recover(self, remedy: Remedy) -> float:
+        """Note that something is done about a fault, and do it."""
+        self.inducer.treated(remedy.fault)
+        seconds = super().recover(remedy)
+        self._note_lifted()
+        return seconds
+
+    def _note_lifted(self) -> None:
+        there, step = self.present, self.tracker.step
+        for fault in self.inducer.induced:
+            if fault.kind.name not in there:
+                late = fault.kind.shows == WAITING  # who asks no more is missed a moment later
+                self.inducer.lifted(fault.kind.name, step + late)
+
+
+def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
+    """Play games on a bench: a case is (seed, first game, games, games in all).
+
+    Returns:
+        As `experiments.recovering.play`, and the `score` of what was read and found.
+    """
+    seed, first, some, games = case
+    plan = plan_of(games, seed, GAMES_A_PIECE)[first : first + some]
+    number = seed * 1_000_000 + first
+    activity, users = settings["activity"], settings["users"]
+    shown, policy = lessons(Course(activity, users, GUIDED, 1))
+    with TemporaryDirectory(prefix="tangy-bench-") as scratch:
+        house = House(Path(scratch), activity=activity, users=users)
+        try:
+            for one in shown:  # from which the effects of behaviours are learnt as well
+                keep(house.store, one)
+            with open_bench(
+                house, seed=number, stepped=True, book=load_faults(house.robot), kind=InducingBench
+            ) as world:
+                world.plan(plan)
+                game = house.supervision(policy, number, asks=True, world=world)
+                played = play_games(game, world.inducer, first, some)
+                return {**played, "score": world.score.to_json()}
+        finally:
+            house.close()

@@ -1,0 +1,331 @@
+"""What a teacher may say or type, and which behaviour is meant by it (III-A-1).
+
+The identified words are matched to the phrases and keywords that the activity lists for each
+behaviour. Typed and spoken words come through this one door, so both are understood alike.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.person import Person
+from tangy_tui.language.phrasebook import Phrase, Phrases
+from tangy_tui.language.words import (
+    FILLERS,
+    Words,
+    bare,
+    clean,
+    in_order,
+    likeness,
+    run_together,
+    stem,
+    words_of,
+)
+
+MOST_ALTERNATIVES = 3
+
+KEYWORDS_AT_BEST = 0.95  # confidence of keywords in a text that is almost a phrase of theirs
+KEYWORDS_AT_LEAST = 0.55  # and in one that is quite unlike
+NEAREST_AT_BEST = 0.79  # confidence of a phrase that is nearly the one that was said
+NEAREST_AT_LEAST = 0.45  # what is less like any phrase is not understood
+MENDED = 0.9  # what is left of the confidence when words were mended, besides their likeness
+CLEAR_LEAD = 0.2  # a lead over the next behaviour that takes nothing off the confidence
+ALTERNATIVE_AT_LEAST = 0.25
+UNKNOWN_WORD = 0.5  # weight of a word that no phrase has; those of the phrases weigh up to 1
+SAME_WORD = 0.7  # likeness from which a word is taken for a slip of another
+
+LINKS = frozenset(("of", "to"))
+LINK_ENDS = frozenset((link,) for link in LINKS)
+REFUSALS = frozenset(("don't", "dont", "never", "no", "nobody", "not", "without"))
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A behaviour as it was asked for, to be verified before it is executed.
+
+    `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
+    1; `heard` is the text it was understood from; `alternatives` are up to three other
+    behaviours, likeliest first.
+    """
+
+    behaviour: str
+    arguments: Mapping[str, str]
+    confidence: float
+    heard: str
+    alternatives: tuple[str, ...]
+
+
+class Phrasebook:
+    """What is meant by a text, out of every phrase and keyword of an activity (see `phrases`).
+
+    `phrases` has the behaviour of each phrase, with numbers as digits and in words; `people` are
+    the ids of those who can be gone to; `table` has each phrase with all that is known of it;
+    `game` are the words that the activity is called by.
+    """
+
+    phrases: Mapping[str, str]
+    people: tuple[str, ...]
+    table: Phrases
+    game: frozenset[str]
+
+    def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
+        """Make the phrasebook of an activity for the people who take part in it."""
+        self._to_people = {b.name for b in activity.behaviours.values() if b.effect == "go to user"}
+        self.people = tuple(person.id for person in people)
+        self.game = frozenset(words_of(activity.title))
+        self.nouns = {
+            name: (*words_of(name), *words_of(" ".join(activity.behaviours[name].phrases[:1])))[-1]
+            for name in self._to_people
+        }
+        self.table = Phrases(activity, people)
+        self._phrases, self._keywords = self.table.by_words, self.table.keywords
+        self.phrases = MappingProxyType(
+            {
+                form: phrase.behaviour
+                for phrase in self.table.all()
+                for form in (phrase.shown, phrase.said)
+            }
+        )
+        self._bare = _of_one_meaning(self._phrases.values(), lambda p: " ".join(p.bare))
+        self._joined = _of_one_meaning(self._phrases.values(), lambda p: run_together(p.bare))
+        self._weights = self.table.word_weights()
+
+    def understand(self, text: str) -> Command | None:
+        """Find the behaviour that a text asks for.
+
+        An exact phrase counts 1. Keywords that point to one behaviour count less, by how unlike
+        its phrases the rest of the text is; then comes the nearest phrase, if it is near enough.
+        Words that look like typing slips of known ones are mended, which costs confidence too.
+        """
+        heard = clean(text)
+        words = words_of(heard)
+        if words not in self._phrases and self._breaks_off(words):
+            return None
+        if (exact := self._exact(words)) is not None:
+            return self._command(exact, 1.0, heard, words)
+        if self._refuses(words) or self._stranger(words) is not None:
+            return None
+        mended, trust = self._mend(words)
+        found, confidence = self._find(words, mended)
+        confidence *= trust
+        if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(mended, found):
+            return None
+        return self._command(found, confidence, heard, mended)
+
+    def choices(self, text: str) -> tuple[Command, ...]:
+        """Return up to three commands that a text may mean, the likeliest first."""
+        command = self.understand(text)
+        if command is None:
+            return ()
+        words, _ = self._mend(words_of(clean(text)))
+        others = [
+            self._command(phrase, command.confidence * likeness, command.heard, words)
+            for likeness, phrase in self._ranking(words)
+            if phrase.behaviour != command.behaviour and likeness >= ALTERNATIVE_AT_LEAST
+        ]
+        return (command, *others)[:MOST_ALTERNATIVES]
+
+    def known(self, text: str) -> int:
+        """Count the words of a text that are words of the phrases, and mean something."""
+        told = (word for word in bare(words_of(clean(text))) if word not in LINKS)
+        return sum(word in self._weights for word in told)
+
+    def stranger(self, text: str) -> str | None:
+        """Return whom a text goes to if that is nobody here: "user 7", or a name alone."""
+        words = words_of(clean(text))
+        if self._exact(words) is not None or self._refuses(words):
+            return None
+        return self._stranger(words)
+
+    def suggestions(self, text: str) -> tuple[str, ...]:
+        """Return up to three phrases that a text comes nearest to, of different behaviours."""
+        words, _ = self._mend(words_of(clean(text)))
+        near = [phrase.shown for likeness, phrase in self._ranking(words) if likeness > 0]
+        return tuple(near[:MOST_ALTERNATIVES])
+
+    def complete(self, prefix: str) -> tuple[str, ...]:
+        """Return the phrases that begin with what has been typed, the most usual ones first.
+
+        Case and spaces are of no account. Numbers are completed as digits, unless the prefix
+        already has a part of a number in words.
+        """
+        begun = re.sub(r"\s+", " ", clean(prefix, strip=False).lstrip()).casefold()
+        return self.table.complete(begun)
+
+    def spoken(self) -> tuple[str, ...]:
+        """Return the phrases as they are said, numbers in words: what a recogniser listens for.
+
+        The plain name of a behaviour is not among them unless the activity lists it as a phrase.
+        """
+        return tuple(dict.fromkeys(phrase.said for phrase in self.table.all() if phrase.heard))
+
+    def pronunciations(self) -> dict[str, tuple[str, ...]]:
+        """Return how words are said (ARPAbet) in place of what a dictionary says of them.
+
+        They are those of the activity and of the names of people. A name that is a word of the
+        phrases as well keeps beside its own what the activity or the dictionary says of it.
+        """
+        return dict(self.table.pronunciations)
+
+    def _exact(self, words: Words) -> Phrase | None:
+        return self._phrases.get(words) or self._bare.get(" ".join(bare(words)))
+
+    def _refuses(self, words: Words) -> bool:
+        return any(word in REFUSALS and word not in self._weights for word in words)
+
+    def _breaks_off(self, words: Words) -> bool:
+        """Whether a person's number stood here, misheard: "go to seat you", "go to user to"."""
+        said = bare(words)
+        if said[-1:] == words[-1:] and said[-1:] not in LINK_ENDS:
+            return False
+        seat = any(said[-len(noun) :] == noun for noun in self.table.seat_nouns)
+        named = self._bare.get(" ".join(said))
+        if seat and (named is None or named.user is None):
+            return True
+        phrase = self._bare.get(" ".join(said[:-1]))
+        goes = phrase is not None and phrase.behaviour in self._to_people
+        return goes and said[-1:] in LINK_ENDS
+
+    def _stranger(self, words: Words) -> str | None:
+        """Find a number that is nobody's, or one unknown word in the place of a person."""
+        if not self.people:
+            return None
+        mended, _ = self._mend(words)
+        numbers = [word for word in words if word.isdigit()]
+        if numbers:
+            found, confidence = self._find(words, mended)
+            seat = self._seat_in(mended)
+            if (
+                found is None
+                or found.behaviour not in self._to_people
+                or confidence < ALTERNATIVE_AT_LEAST
+                or any(
+                    (*seat, n) in self.table.seats if seat else n in self.table.numbers
+                    for n in numbers
+                )
+            ):
+                return None
+            return f"{' '.join(seat) or self.nouns[found.behaviour]} {numbers[0]}"
+        said = bare(mended)
+        if not said or said[-1] in self._weights or said[-1] not in words:
+            return None
+        *way, name = said
+        for phrase in self._phrases.values():
+            if phrase.behaviour in self._to_people and phrase.user is None:
+                if tuple(way) == phrase.bare:
+                    return f"{phrase.bare[-1]} {name}"
+                if len(way) > 1 and tuple(way) == phrase.bare[:-1]:
+                    return name
+        return None
+
+    def _weight(self, word: str) -> float:
+        return self._weights.get(word, UNKNOWN_WORD)
+
+    def _mend(self, words: Words) -> tuple[Words, float]:
+        """Put the known word for each typing slip; return the words and how far to trust them."""
+        mended: list[str] = []
+        trust = 1.0
+        for word in words:
+            if word not in self._weights and word not in FILLERS:
+                like, known = max((likeness(word, known), known) for known in self._weights)
+                if like >= SAME_WORD:
+                    trust = min(trust, MENDED * like)
+                    word = known
+            mended.append(word)
+        return tuple(mended), trust
+
+    def _find(self, words: Words, mended: Words) -> tuple[Phrase | None, float]:
+        """Return what words mean that are no phrase as they stand, and how sure that is."""
+        mistyped = self._exact(mended) or self._joined.get(run_together(bare(words)))
+        if mistyped is not None:
+            return mistyped, 1.0 if mended != words else MENDED
+        ranked = self._ranking(mended)
+        pointed = self._point(mended)
+        if pointed is not None:
+            like = max(
+                (share for share, p in ranked if p.behaviour == pointed.behaviour), default=0.0
+            )
+            return pointed, KEYWORDS_AT_LEAST + (KEYWORDS_AT_BEST - KEYWORDS_AT_LEAST) * like
+        if not ranked:
+            return None, 0.0
+        likeness, best = ranked[0]
+        lead = likeness - (ranked[1][0] if len(ranked) > 1 else 0.0)
+        return best, NEAREST_AT_BEST * likeness * (0.7 + 0.3 * min(1.0, lead / CLEAR_LEAD))
+
+    def _point(self, words: Words) -> Phrase | None:
+        """Return the keywords that were heard, if they all mean the same."""
+        found = [entry for entry in self._keywords if in_order(entry.words, words)]
+        kept = [
+            entry
+            for entry in found
+            if not any(o.words != entry.words and in_order(entry.words, o.words) for o in found)
+        ]
+        return kept[0] if len({(e.behaviour, e.user) for e in kept}) == 1 else None
+
+    def _numbers_fit(self, words: Words, found: Phrase) -> bool:
+        """Refuse to go to anybody when a number was said that is not that person's."""
+        if found.behaviour not in self._to_people:
+            return True
+        table = self.table
+        own = {word for name, id in table.names.items() if id == found.user for word in name}
+        if self._seat_in(words):
+            own |= {word for seat, id in table.seats.items() if id == found.user for word in seat}
+        else:
+            own |= {number for number, id in table.numbers.items() if id == found.user}
+        return own.issuperset(word for word in words if word.isdigit())
+
+    def _seat_in(self, words: Words) -> Words:
+        """Return what a seat is called, where words name one; its number is then no person's."""
+        return next((noun for noun in self.table.seat_nouns if in_order(noun, words)), ())
+
+    def _command(self, found: Phrase, confidence: float, heard: str, words: Words) -> Command:
+        others = [
+            phrase.behaviour
+            for likeness, phrase in self._ranking(words)
+            if phrase.behaviour != found.behaviour and likeness >= ALTERNATIVE_AT_LEAST
+        ]
+        arguments = MappingProxyType({} if found.user is None else {"user": found.user})
+        alternatives = tuple(others[:MOST_ALTERNATIVES])
+        return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
+
+    def _ranking(self, words: Words) -> list[tuple[float, Phrase]]:
+        """Return each behaviour's phrase that is most like the words, the likest first."""
+        said = bare(words)
+        best: dict[str, tuple[float, Phrase]] = {}
+        for phrase in self._phrases.values():
+            likeness = self._phrase_likeness(said, phrase.bare) if said else 0.0
+            if likeness > best.get(phrase.behaviour, (0.0, phrase))[0]:
+                best[phrase.behaviour] = (likeness, phrase)
+        return sorted(best.values(), key=lambda found: (-found[0], found[1].rank))
+
+    def _phrase_likeness(self, said: Words, phrase: Words) -> float:
+        """Compare by an edit distance over words, each weighed by how much it tells."""
+        told = [self._weight(word) for word in phrase]
+        spent = [self._weight(word) for word in said]
+        wanted = list(enumerate(zip([stem(word) for word in phrase], told, strict=True)))
+        row = [0.0]
+        for weight in told:
+            row.append(row[-1] + weight)
+        for word, cost in zip([stem(word) for word in said], spent, strict=True):
+            last, row = row, [row[0] + cost]
+            for place, (known, weight) in wanted:
+                swap = 0.0 if word == known else cost + weight
+                row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
+        return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
+
+
+def _of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:
+    """Return the phrases by a key, where all phrases with that key mean the same."""
+    found: dict[str, list[Phrase]] = defaultdict(list)
+    for phrase in phrases:
+        found[key(phrase)].append(phrase)
+    return {
+        form: same[0]
+        for form, same in found.items()
+        if form and len({(phrase.behaviour, phrase.user) for phrase in same}) == 1
+    }

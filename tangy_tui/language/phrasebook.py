@@ -1,0 +1,193 @@
+"""What can be said or typed: every phrase of an activity, also with people and their seats.
+
+The matcher, the completion, the recogniser and the help page are made from this one table; what
+is meant by a text that is no phrase is found in `commands`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.person import Person
+from tangy_tui.language.words import Words, bare, clean, spoken, words_of
+
+ARTICLES = frozenset(("a", "an", "the"))
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """One way to ask for a behaviour, or the keywords of one; numbers stand as digits.
+
+    `bare` are the words without fillers; `rank` orders what is equally good; `user` is the person
+    to go to, if one is meant; `heard` says whether it is listened for, or only typed.
+    """
+
+    words: Words
+    bare: Words
+    behaviour: str
+    user: str | None
+    rank: tuple[int, int]
+    heard: bool
+
+    @property
+    def shown(self) -> str:
+        """The phrase with numbers as digits."""
+        return " ".join(self.words)
+
+    @property
+    def said(self) -> str:
+        """The phrase with numbers in words."""
+        return spoken(self.words)
+
+
+class Phrases:
+    """Every phrase and the keywords of an activity, with the people who take part in it.
+
+    Behaviours that go to a person can be asked for with that person's number, name or seat ("go
+    to user 2", "go to user two", "go to rosa", "go to seat two", "go to the window seat"). The
+    number is the one their id ends with, or their place in the list where the ids have none.
+    """
+
+    def __init__(self, activity: Activity, people: Sequence[Person]) -> None:
+        """Enter the phrases, then what is made of them with people; the first keeps its meaning."""
+        self._order = tuple(activity.behaviours)
+        self.numbers = _numbers_of(people)
+        self.names = _names_of(people)
+        self.seats = _seats_of(people)
+        self.seat_nouns = tuple(dict.fromkeys(s[:-1] for s in self.seats if s[-1].isdigit()))
+        self.by_words: dict[Words, Phrase] = {}
+        self.keywords: list[Phrase] = []
+        behaviours = activity.behaviours.values()
+        for behaviour in behaviours:
+            for place, text in enumerate((*behaviour.phrases, behaviour.question)):
+                self._add(words_of(text), behaviour.name, None, place)
+        self.own_words = frozenset(word for words in self.by_words for word in words)
+        """The words of the activity's own phrases, without people."""
+        for behaviour in behaviours:
+            place = len(behaviour.phrases) + 1
+            self._add(words_of(behaviour.name), behaviour.name, None, place, heard=False)
+        for behaviour in behaviours:
+            self._add_keywords(behaviour)
+            if behaviour.effect == "go to user":
+                self._add_people(behaviour)
+        self.pronunciations = self._read_pronunciations(activity, people)
+        self.sources = dict.fromkeys(self.pronunciations, "person")
+        """Who says how a word is pronounced: "activity" or "person"."""
+        self.sources |= dict.fromkeys(activity.pronunciations, "activity")
+
+    def all(self) -> Iterable[Phrase]:
+        """The phrases in the order in which they were entered."""
+        return self.by_words.values()
+
+    def complete(self, begun: str) -> tuple[str, ...]:
+        """Return the phrases that begin so, the most usual ones first (see `Phrasebook`)."""
+        ranked = sorted(self.all(), key=lambda phrase: phrase.rank)
+        shown = dict.fromkeys(p.shown for p in ranked if p.shown.startswith(begun))
+        if not shown:
+            shown = dict.fromkeys(p.said for p in ranked if p.said.startswith(begun))
+        return tuple(shown)
+
+    def word_weights(self) -> dict[str, float]:
+        """Weigh every word of the phrasebook: the more behaviours share it, the less it tells."""
+        users: dict[str, set[str]] = defaultdict(set)
+        for phrase in (*self.all(), *self.keywords):
+            for word in phrase.words:
+                users[word].add(phrase.behaviour)
+        return {word: 1 / len(behaviours) for word, behaviours in users.items()}
+
+    def _add(
+        self, words: Words, behaviour: str, user: str | None, place: int, *, heard: bool = True
+    ) -> None:
+        if words and words not in self.by_words:
+            self.by_words[words] = self._entry(words, behaviour, user, place, heard=heard)
+
+    def _entry(
+        self, words: Words, behaviour: str, user: str | None, place: int, *, heard: bool
+    ) -> Phrase:
+        rank = (place, self._order.index(behaviour))
+        return Phrase(words, bare(words), behaviour, user, rank, heard)
+
+    def _add_people(self, behaviour: Behaviour) -> None:
+        """Put people in the place of the last word of each phrase: "go to [the] user"."""
+        for place, text in enumerate(behaviour.phrases):
+            *verb, noun = words_of(text)
+            while verb and verb[-1] in ARTICLES:
+                verb.pop()
+            for number, user in self.numbers.items():
+                self._add((*verb, noun, number), behaviour.name, user, place)
+            for name, user in self.names.items():
+                self._add((*verb, *name), behaviour.name, user, place)
+            for seat, user in self.seats.items():
+                the = () if seat[-1].isdigit() else ("the",)
+                self._add((*verb, *the, *seat), behaviour.name, user, place)
+            for seat_noun in self.seat_nouns:  # else "go to seat" were the first one
+                self._add((*verb, *seat_noun), behaviour.name, None, place, heard=False)
+
+    def _add_keywords(self, behaviour: Behaviour) -> None:
+        for place, entry in enumerate(behaviour.keywords):
+            words = words_of(" ".join(entry))
+            forms: list[tuple[Words, str | None]] = [(words, None)]
+            if behaviour.effect == "go to user":
+                forms += [((*words, number), user) for number, user in self.numbers.items()]
+                called = (self.names | self.seats).items()
+                forms += [((*words[:-1], *name), user) for name, user in called]
+                forms += [((*words[:-1], *noun), None) for noun in self.seat_nouns]
+            self.keywords += [
+                self._entry(form, behaviour.name, user, place, heard=False) for form, user in forms
+            ]
+
+    def _read_pronunciations(
+        self, activity: Activity, people: Sequence[Person]
+    ) -> dict[str, tuple[str, ...]]:
+        """Gather how words are said: by the activity, else as the names of people.
+
+        A word of the phrases that is a name as well keeps the way in which it is mostly said.
+        """
+        said: dict[str, list[str]] = defaultdict(list)
+        for person in people:
+            for word, phones in name_phones(person).items():
+                said[word].append(phones)
+        for word in said:
+            if word in self.own_words and word not in activity.pronunciations:
+                from tangy_tui.language.pronunciation import pronounce
+
+                said[word] = [*pronounce(word), *said[word]]
+        for word, listed in activity.pronunciations.items():
+            said[word] = [*listed, *said[word]]
+        return {word: tuple(dict.fromkeys(ways)) for word, ways in said.items()}
+
+
+def name_phones(person: Person) -> dict[str, str]:
+    """Return how the words of a name are said, where the person's pronunciation has them all."""
+    words = words_of(clean(person.name))
+    phones = person.pronunciation.split(", ") if person.pronunciation else []
+    if len(words) != len(phones):
+        return {}
+    return {word: said for word, said in zip(words, phones, strict=True) if not word.isdigit()}
+
+
+def _numbers_of(people: Sequence[Person]) -> dict[str, str]:
+    """Return ids by number: the number that the ids end with, else the place in the list."""
+    ends = [re.search("[0-9]{1,2}$", person.id) for person in people]
+    numbers = [str(int(end.group())) for end in ends if end]
+    if len(set(numbers)) < len(people):
+        numbers = [str(place) for place in range(1, len(people) + 1)]
+    return {number: person.id for number, person in zip(numbers, people, strict=True)}
+
+
+def _names_of(people: Sequence[Person]) -> dict[Words, str]:
+    """Return ids by name; a name that two people share, or that has no word, is left out."""
+    named: dict[Words, list[str]] = defaultdict(list)
+    for person in people:
+        named[words_of(clean(person.name))].append(person.id)
+    return {name: ids[0] for name, ids in named.items() if bare(name) and len(ids) == 1}
+
+
+def _seats_of(people: Sequence[Person]) -> dict[Words, str]:
+    """Return ids by the ways to call their seats."""
+    return {words_of(seat): person.id for person in people for seat in person.seats}

@@ -1,0 +1,132 @@
+"""Sentences with which people stop the robot or the game, told from those that mention stopping.
+
+A sentence is judged by its aim: who or what is to stop. Nothing ("stop"), the robot, what it does
+with its body, the game, or how quickly ("stop right away") stop it; what somebody does ("stop
+teasing her"), other things ("stop the music") and places ("stop at the table") do not, nor does a
+sentence that says not to ("don't stop") or only tells of it ("the rain has stopped"). Where it may
+be either it stops: a robot that stands has hurt nobody.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable
+from functools import cache
+
+from tangy_tui.language.stop_patterns import (
+    ALARM,
+    ASKS_FIRST,
+    BEFORE,
+    CRIES,
+    CRY,
+    ENDS_A_THOUGHT,
+    FORBIDS,
+    NO_CRY_AFTER,
+    NO_CRY_BEFORE,
+    OWN_WORDS,
+    SENTENCE,
+)
+from tangy_tui.language.words import LONGEST_TEXT, likeness, run_together, words_of
+
+STOPS = (
+    *("stop", "stop now", "stop tangy", "tangy stop", "stop stop", "stop stop stop", "halt"),
+    *("no stop", "oh stop", "wait stop", "please stop", "stop it", "stop that", "stop right now"),
+    *("stop right there", "stop please", "stop what you are doing", "i said stop", "stop moving"),
+    *("stop the robot", "stop that robot", "stop the robot now", "please stop the robot"),
+    *("robot stop", "make the robot stop", "emergency stop", "emergency", "stop the game"),
+    *("stop this game", "stop the game now", "make it stop", "stop right away", "stop at once"),
+    *("stop immediately", "stop this", "stop everything", "stop driving", "stop where you are"),
+    *("stop the machine", "stand still", "freeze"),
+)
+"""What is listened for in the first place: as it is said most, with the words that it takes."""
+
+TELLING = ("the", "robot", "machine", "game", "emergency", "everything", "immediately")
+"""Words that are looked for in what was typed in a hurry."""
+SAME_WORD = 0.7  # likeness from which an unknown word is taken for a slip of one of them
+_PAUSES = re.compile(r"[.!?;:,\n\u2026\u2013\u2014]+|\s-+\s")
+_CLEAR = re.compile(r"\b(?:robot|machine|game|emergency stop|stop tangy)$")
+_DRAWN_OUT = re.compile("s+t+o+p+")
+_LETTERS = sorted("stop")
+_WORDS_OF_THESE_LETTERS = frozenset(("opts", "post", "pots", "spot", "tops"))
+
+
+def stops(text: str, game: Collection[str] = ()) -> bool:
+    """Say whether a sentence, typed or spoken, stops the robot, whatever else is going on.
+
+    Args:
+        text: what was typed or heard.
+        game: the words that the game is called by, in lower case: they are no other things.
+    """
+    whole = _joined(words_of(text))
+    parts = (_joined(words_of(part)) for part in _PAUSES.split(text[:LONGEST_TEXT]))
+    clauses = dict.fromkeys((*parts, whole))
+    aimed = any(_is_aimed(_mended(clause, game)) for clause in clauses if clause)
+    return aimed or whole.replace(" ", "") in _run_together()
+
+
+def stops_whatever_follows(words: str) -> bool:
+    """Say whether what was said so far stops the robot, and no word after it can change that."""
+    return bool(_CLEAR.search(words)) and stops(words)
+
+
+def _is_aimed(clause: str) -> bool:
+    """Say whether a clause stops the robot, after any calls and askings."""
+    seen, reached = {0}, [0]
+    while reached:
+        at = reached.pop()
+        if SENTENCE.fullmatch(clause, at):
+            return True
+        ends = {found.end() for found in (p.match(clause, at) for p in BEFORE) if found}
+        reached += ends - seen
+        seen |= ends
+    return _is_two_words(clause) or _ends_in_a_cry(clause)
+
+
+def _is_two_words(clause: str) -> bool:
+    """Say whether a clause is a cry and its object, or a name that is called and a cry."""
+    first, _, last = clause.partition(" ")
+    if not last or " " in last:
+        return False
+    if first in CRIES:
+        return last not in NO_CRY_BEFORE
+    return last in CRIES and first not in NO_CRY_AFTER
+
+
+def _ends_in_a_cry(clause: str) -> bool:
+    """Say whether a clause ends in a cry to stop, of which what comes before says nothing."""
+    cry = CRY.fullmatch(clause)
+    if cry is None or ASKS_FIRST.match(clause):
+        return False
+    before = cry["before"].split(" ")
+    if cry["what"] and before[-1] in ENDS_A_THOUGHT and not FORBIDS.search(cry["before"]):
+        return True
+    named = cry["what"] not in (None, " it")
+    if before[-1] in NO_CRY_AFTER or (not named and {"a", "an"}.intersection(before[-3:])):
+        return False
+    asks = len(before) > 2 and before[-1] == "please" and before[-2] not in NO_CRY_AFTER
+    return asks or bool(cry["what"]) or ALARM.fullmatch(cry["before"]) is not None
+
+
+def _joined(words: Iterable[str]) -> str:
+    return " ".join(word.replace("'", "") for word in words)
+
+
+def _mended(clause: str, game: Collection[str]) -> str:
+    """Write words as the patterns have them: slips of a hurry, and what the game is called."""
+    return " ".join(_mend(word, game) for word in clause.split(" "))
+
+
+def _mend(word: str, game: Collection[str]) -> str:
+    if word in OWN_WORDS:
+        return word
+    if word in game:
+        return "game"
+    hurried = sorted(word) == _LETTERS and word not in _WORDS_OF_THESE_LETTERS
+    if hurried or _DRAWN_OUT.fullmatch(word):
+        return "stop"
+    return next((known for known in TELLING if likeness(word, known) >= SAME_WORD), word)
+
+
+@cache
+def _run_together() -> frozenset[str]:
+    return frozenset(run_together(words_of(phrase)) for phrase in STOPS)

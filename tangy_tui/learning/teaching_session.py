@@ -1,0 +1,368 @@
+"""Demonstrating (III-A): a teacher's commands, each verified, become a trajectory.
+
+`Teaching` is the session that screens, lines, scripts and tests all drive alike: a command goes
+in, events come out. Every verified step is in the log before its event is returned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.errors import TangyError
+from tangy_profiles.person import Person
+from tangy_profiles.store import Store
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.editing import new_id
+from tangy_tui.learning.library import BEGUN, FINISHED, REDONE, STEP, UNDONE, read_library
+from tangy_tui.learning.teaching_events import (
+    Again,
+    Begun,
+    Executed,
+    Finished,
+    Next,
+    Redo,
+    StepUndone,
+    TeacherCommand,
+    TeachingEvent,
+    Undo,
+)
+from tangy_tui.learning.verification import (
+    Asked,
+    Offered,
+    Refused,
+    Reply,
+    Say,
+    Verification,
+    Verified,
+    Verifier,
+)
+from tangy_tui.world import World
+
+NOTHING_SAID = "(nothing: there are no numbers to say)"
+
+MakeWorld: TypeAlias = Callable[[Demonstration], World]
+"""Make the world of a demonstration (its seed, people, guided), ready at its first state."""
+
+
+class NotAsBefore(Exception):
+    """A step that was done again did not come out as it did."""
+
+
+class Teaching:
+    """One teacher's session: demonstrations one after another, each in its own simulated game."""
+
+    def __init__(
+        self,
+        activity: Activity,
+        people: Sequence[Person],
+        store: Store,
+        make_world: MakeWorld,
+        *,
+        teacher: str,
+        seed: int,
+        guided: bool = False,
+        again: Again | None = None,
+    ) -> None:
+        """Prepare a session; `begin` it.
+
+        Args:
+            seed: of the first new game; the next games count on.
+            guided: new games are arranged so that one of them brings about every situation.
+            again: begin by showing a demonstration again from some step on.
+        """
+        self.activity = activity
+        self.phrasebook = Phrasebook(activity, people)
+        self.teacher = teacher
+        self.demonstration: Demonstration
+        self.world: World
+        self.guided = guided
+        self._first = again
+        self._verifier: Verifier
+        self._undone: list[Step] = []
+        self._people = {person.id: person for person in people}
+        self._names = {person.id: person.name for person in people}
+        self._store = store
+        self._make_world = make_world
+        self._seed = seed
+        self._logged = False
+
+    @property
+    def people(self) -> tuple[str, ...]:
+        """The ids of those who take part in the present demonstration."""
+        return self.demonstration.people
+
+    @property
+    def question(self) -> Asked | Offered | None:
+        """The question that is open, if one is."""
+        return self._verifier.question
+
+    @property
+    def undone(self) -> int:
+        """How many steps redo can bring back."""
+        return len(self._undone)
+
+    def name(self, person: str) -> str:
+        """Return a person's name, or the id of somebody who has none here."""
+        return self._names.get(person, person)
+
+    def begin(self, *, resume: bool = True) -> list[TeachingEvent]:
+        """Take up this teacher's unfinished demonstration, or begin a new one.
+
+        An unfinished one is replayed in a world of the same seed. If that does not lead to the
+        states that were logged (the simulator has changed since), it stays as it is in the log,
+        and a new one is begun.
+
+        Raises:
+            TangyError: the demonstration that is to be shown again cannot be.
+        """
+        if self._first is not None:
+            return self.check()
+        if resume:
+            entries = read_library(self._store, self.activity.name).entries.values()
+            for entry in reversed(entries):
+                kept = entry.demonstration
+                if self.guided and not kept.guided:
+                    continue  # a guided game was asked for
+                if kept.teacher == self.teacher and not kept.finished and not entry.hidden:
+                    world = self._replay(kept)
+                    if world is not None:
+                        self._enter(kept, world)
+                        self._undone = list(entry.undone)
+                        self._logged = True
+                        self._seed = max(self._seed, kept.seed + 1)
+                        return [Begun(kept, resumed=True)]
+                    return [
+                        Refused(
+                            "The unfinished demonstration was made with another simulator; "
+                            "it is kept, and a new one begins."
+                        ),
+                        *self._begin_new(),
+                    ]
+        return self._begin_new()
+
+    def check(self) -> list[TeachingEvent]:
+        """Try what is to be shown again, before a screen is opened for it.
+
+        Raises:
+            TangyError: it cannot be shown again; says why.
+        """
+        events = self._begin_again(self._first) if self._first is not None else []
+        if events and isinstance(events[0], Refused):
+            raise TangyError(events[0].reason)
+        return events
+
+    def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
+        """Carry out one command of the teacher and return what followed."""
+        match command:
+            case Say():
+                return self._say(command)
+            case Reply():
+                return self._told(self._verifier.reply(command))
+            case Undo():
+                return self._undo()
+            case Redo():
+                return self._redo()
+            case Next():
+                if self.demonstration.finished:
+                    return self._begin_new()
+                return [Refused("This demonstration is not finished yet.")]
+            case Again(id, kept) if id == self.demonstration.id:
+                return self._go_back(kept)
+            case Again():
+                return self._begin_again(command)
+
+    def _begin_new(self) -> list[TeachingEvent]:
+        people = tuple(self._names)
+        new = Demonstration(
+            new_id(), self.activity.name, self.teacher, self._seed, people, guided=self.guided
+        )
+        self._seed += 1
+        self._enter(new, self._make_world(new))
+        self._logged = False
+        return [Begun(new, resumed=False)]
+
+    def _go_back(self, kept: int) -> list[TeachingEvent]:
+        """Undo the last steps of the present demonstration, all of them or none."""
+        steps = len(self.demonstration.steps)
+        if not 0 <= kept < steps:
+            return [Refused(f"There is no step {kept + 1} to show again.")]
+        before, undone = (self.demonstration, self.world), self._undone
+        logged = self._logged
+        try:
+            with self._store.transaction():
+                return [event for _ in range(steps - kept) for event in self._undo()]
+        except BaseException:  # nothing of it is in the log
+            self._enter(*before)
+            self._undone, self._logged = undone, logged
+            raise
+
+    def _begin_again(self, again: Again) -> list[TeachingEvent]:
+        library = read_library(self._store, self.activity.name)
+        entry = library.find(again.demonstration)
+        source, kept = entry.demonstration, again.kept
+        if entry.hidden not in ("", "deleted"):
+            return [Refused(f"It is not in use ({entry.hidden}): show again what took its place.")]
+        if not source.replayable:
+            return [Refused("It was not shown in one game, so there is no game to go back to.")]
+        if not 0 <= kept < len(source.steps):
+            return [Refused(f"It has {len(source.steps)} steps: there is no step {kept + 1}.")]
+        new = replace(
+            source,
+            id=new_id(),
+            teacher=self.teacher,
+            steps=source.steps[:kept],
+            finished=False,
+            origin="again",
+            of=(source.id,),
+        )
+        world = self._replay(new)
+        if world is None:
+            return [Refused("It was made with another simulator: show the whole game anew.")]
+        self._enter(new, world)
+        self._logged = False
+        return [Begun(new, resumed=False)]
+
+    def _enter(self, demonstration: Demonstration, world: World) -> None:
+        """Go on with a demonstration, among those who take part, in a world that it led to."""
+        self.demonstration = demonstration
+        self.world = world
+        self._undone = []
+        present = [self._people.get(id, Person(id, id)) for id in demonstration.people]
+        self.phrasebook = Phrasebook(self.activity, present)
+        self._verifier = Verifier(
+            self.activity, self.phrasebook, lambda: self.world.observe(), self._names
+        )
+
+    def _say(self, said: Say) -> list[TeachingEvent]:
+        if self.demonstration.finished:
+            return [Refused("This game is over. Begin the next demonstration, or undo a step.")]
+        return self._told(self._verifier.say(said))
+
+    def _told(self, verification: Verification) -> list[TeachingEvent]:
+        if isinstance(verification, Verified):
+            return self._execute(verification)
+        return [verification]
+
+    def _execute(self, verified: Verified) -> list[TeachingEvent]:
+        behaviour = verified.behaviour
+        heard = {"heard": verified.heard, "confidence": verified.confidence}
+
+        def log(step: Step) -> Step:
+            id = self._store.append(
+                STEP, {"demonstration": self.demonstration.id, **step.to_json(), **heard}
+            )
+            return replace(step, id=id)
+
+        events = self._carry_out(behaviour, verified.target, log)
+        self._undone = []
+        return events
+
+    def _carry_out(
+        self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
+    ) -> list[TeachingEvent]:
+        """Execute a behaviour in the world and log the step; what is not logged did not happen."""
+        before = self.world.observe()
+        action = self.activity.action(behaviour, target, None)
+        outcome = self.world.execute(action)
+        after = self.world.observe()
+        finished = self.world.over
+        try:
+            with self._store.transaction():
+                self._log_beginning()
+                step = log(Step(behaviour.name, target, before, after, outcome.completed))
+                if finished:
+                    self._store.append(FINISHED, {"demonstration": self.demonstration.id})
+        except BaseException:
+            self.world = self._replay(self.demonstration) or self.world
+            raise
+        self._logged = True
+        self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
+        name = self.name(target) if target else ""
+        events: list[TeachingEvent] = [
+            Executed(
+                len(self.demonstration.steps),
+                step,
+                action,
+                outcome,
+                self.activity.fill(action.speech, name, outcome.numbers) or NOTHING_SAID,
+                self.activity.fill(action.image, name, outcome.numbers),
+            )
+        ]
+        if finished:
+            events.append(Finished(self.demonstration))
+        return events
+
+    def _log_beginning(self) -> None:
+        """Log the demonstration with its first step, so that looking in leaves no empty one."""
+        if not self._logged:
+            shown = self.demonstration
+            self._store.append(
+                BEGUN,
+                {
+                    "demonstration": shown.id,
+                    "activity": self.activity.name,
+                    "teacher": self.teacher,
+                    "seed": shown.seed,
+                    "people": list(shown.people),
+                    "guided": shown.guided,
+                    "origin": shown.origin,
+                    "of": list(shown.of),
+                    "kept": len(shown.steps),
+                },
+            )
+
+    def _undo(self) -> list[TeachingEvent]:
+        if not self.demonstration.steps:
+            return [Refused("There is no step to undo.")]
+        last = self.demonstration.steps[-1]
+        number = len(self.demonstration.steps)
+        shorter = self.demonstration.without_last()
+        world = self._replay(shorter)
+        if world is None:
+            return [Refused("This step cannot be undone: the simulator has changed since.")]
+        with self._store.transaction():
+            self._log_beginning()
+            self._store.append(UNDONE, {"demonstration": shorter.id, "step": number})
+        self._logged = True
+        undone = [*self._undone, last]
+        self._enter(shorter, world)
+        self._undone = undone
+        return [StepUndone(number, last)]
+
+    def _redo(self) -> list[TeachingEvent]:
+        if not self._undone:
+            return [Refused("There is no step to do again.")]
+        if self.question is not None:
+            return [Refused("Answer the question first.")]
+        step = self._undone[-1]
+        behaviour = self.activity.behaviour(step.behaviour)
+
+        def log(done: Step) -> Step:
+            if done != step:
+                raise NotAsBefore
+            self._store.append(REDONE, {"demonstration": self.demonstration.id})
+            return step
+
+        try:
+            events = self._carry_out(behaviour, step.target, log)
+        except NotAsBefore:
+            return [Refused("This step cannot be done again: the simulator has changed since.")]
+        self._undone.pop()
+        return events
+
+    def _replay(self, demonstration: Demonstration) -> World | None:
+        """Make the world that a demonstration led to; None if its states come out differently."""
+        world = self._make_world(demonstration)
+        for step in demonstration.steps:
+            behaviour = self.activity.behaviours.get(step.behaviour)
+            if behaviour is None or world.observe() != step.state:
+                return None
+            world.execute(self.activity.action(behaviour, step.target, None))
+            if world.observe() != step.after:
+                return None
+        return world

@@ -1,0 +1,266 @@
+"""The verification of commands (III-A-1): nothing happens before "Did you say ...?" is answered.
+
+The same door for whoever commands: a teacher who demonstrates, and one whom Tangy asks in a game.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.state import ActivityState
+from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
+from tangy_tui.language.stop_sentence import stops
+
+ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
+"""What is typed for an answer where lines are read."""
+ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
+LEAVE = "leave without executing it"
+WHICH = "Please say which: type its number, or N for a new command."
+ANSWER_MEANINGS = (
+    ("y", "yes, execute it"),
+    ("n", "no, do nothing; give a new command"),
+    ("quit", LEAVE),
+)
+NO_QUESTION = "There is no question open: give a command."
+
+
+@dataclass(frozen=True, slots=True)
+class Say:
+    """A command in words.
+
+    Of spoken words `commands` says what they may mean, the likeliest first, and `sure` whether the
+    first of them is to be asked about at once; typed words are yet to be understood.
+    """
+
+    text: str
+    confidence: float = 1.0
+    commands: tuple[Command, ...] | None = None
+    sure: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Somebody said that the robot is to stop: it does so at once, and nothing is asked."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The answer to the question that is open: execute it, or not; or ask about another."""
+
+    yes: bool
+    alternative: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The question that verifies a command; nothing happens before it is answered."""
+
+    behaviour: str
+    question: str
+    heard: str
+    confidence: float
+    alternatives: tuple[str, ...]
+    target: str | None
+    others: tuple[str, ...] = ()
+    """The alternatives as they are asked about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offered:
+    """What unsure words may mean: one of these, each of which is asked about, or nothing."""
+
+    heard: str
+    confidence: float
+    alternatives: tuple[str, ...]
+    questions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NotUnderstood:
+    """Words that match no behaviour, with the nearest phrases."""
+
+    heard: str
+    suggestions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """Something that cannot be done now, and why; `heard` goes back to the teacher."""
+
+    reason: str
+    heard: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Rejected:
+    """The question was answered with no; `heard` goes back to the teacher."""
+
+    heard: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verified:
+    """The teacher said yes: this behaviour is to be executed, for this person."""
+
+    behaviour: Behaviour
+    target: str | None
+    heard: str
+    confidence: float
+
+
+Verification: TypeAlias = Asked | Offered | NotUnderstood | Refused | Rejected | Verified
+
+
+class Verifier:
+    """Understands commands in the present state, asks about them, and takes the answer."""
+
+    def __init__(
+        self,
+        activity: Activity,
+        phrasebook: Phrasebook,
+        observe: Callable[[], ActivityState],
+        names: Mapping[str, str],
+    ) -> None:
+        """Make the door; `observe` gives the present state, `names` what people are called."""
+        self.question: Asked | Offered | None = None
+        self._activity = activity
+        self._phrasebook = phrasebook
+        self._observe = observe
+        self._names = names
+        self._others: tuple[Command, ...] = ()
+
+    def say(self, said: Say) -> Verification:
+        """Understand a command, and ask about it."""
+        self.question = None
+        if said.commands is None:
+            command = self._phrasebook.understand(said.text)
+            commands = () if command is None else (command, *self._alternatives(command))
+        else:
+            commands = said.commands
+        if not commands:
+            stranger = self._phrasebook.stranger(said.text)
+            if stranger is not None:
+                return Refused(self._nobody(stranger), said.text)
+            heard = said.commands is not None  # speech that asks for nothing suggests nothing
+            return NotUnderstood(
+                said.text, () if heard else self._phrasebook.suggestions(said.text)
+            )
+        if not said.sure:
+            return self._offer(said, commands)
+        return self._ask(commands[0], commands[1:])
+
+    def stops(self, text: str) -> bool:
+        """Say whether what was typed stops the robot, instead of asking for a behaviour."""
+        return stops(text, self._phrasebook.game)
+
+    def reply(self, reply: Reply) -> Verification:
+        """Take the answer to the open question."""
+        question, self.question = self.question, None
+        if question is None:
+            return Refused("There is no question to answer: give a command first.")
+        if reply.alternative is not None:
+            if not 1 <= reply.alternative <= len(question.alternatives):
+                self.question = question
+                return Refused(f"There is no choice {reply.alternative}.")
+            chosen = self._others[reply.alternative - 1]
+            rest = tuple(other for other in self._others if other != chosen)
+            if isinstance(question, Asked):
+                rest = (self._asked, *rest)
+            return self._ask(chosen, rest)
+        if not reply.yes:
+            return Rejected(question.heard)
+        if isinstance(question, Offered):
+            self.question = question
+            return Refused(WHICH)
+        behaviour = self._activity.behaviour(question.behaviour)
+        return Verified(behaviour, question.target, question.heard, question.confidence)
+
+    def _alternatives(self, command: Command) -> tuple[Command, ...]:
+        """Return the other behaviours that typed words may mean."""
+        if command.confidence >= 1:
+            return ()  # a phrase typed letter by letter leaves no doubt
+        return tuple(
+            Command(name, {}, command.confidence, command.heard, ())
+            for name in command.alternatives
+        )
+
+    def _ask(self, command: Command, others: tuple[Command, ...]) -> Verification:
+        behaviour = self._activity.behaviour(command.behaviour)
+        target = self._target(command)
+        reason = self._obstacle(behaviour, target)
+        if reason is not None:
+            return Refused(reason, command.heard)
+        self._asked, self._others = command, others[:MOST_ALTERNATIVES]
+        names = tuple(other.behaviour for other in self._others)
+        self.question = Asked(
+            command.behaviour,
+            self._words(command),
+            command.heard,
+            command.confidence,
+            names,
+            target,
+            tuple(map(self._words, self._others)),
+        )
+        return self.question
+
+    def _offer(self, said: Say, commands: tuple[Command, ...]) -> Offered:
+        self._others = commands[:MOST_ALTERNATIVES]
+        self.question = Offered(
+            said.text,
+            said.confidence,
+            tuple(command.behaviour for command in self._others),
+            tuple(map(self._words, self._others)),
+        )
+        return self.question
+
+    def _target(self, command: Command) -> str | None:
+        """Return whom a command is about."""
+        if not self._activity.behaviour(command.behaviour).attends:
+            return None
+        return command.arguments.get("user") or self._observe().attended
+
+    def _words(self, command: Command) -> str:
+        """Return how a command is asked about: the words of its behaviour, and with whom."""
+        target = self._target(command)
+        question = self._activity.behaviour(command.behaviour).question
+        return question if target is None else f"{question} ({self._name(target)})"
+
+    def _obstacle(self, behaviour: Behaviour, target: str | None) -> str | None:
+        """Return why a behaviour for one person cannot be done now, or None."""
+        if not behaviour.attends:
+            return None
+        goes = behaviour.effect == "go to user"
+        if target is None:
+            way = f" Say whom to go to, for example: {behaviour.phrases[0]} 1." if goes else ""
+            return f"That cannot be done now: nobody asks for help.{way}"
+        if not goes and self._observe().place != target:
+            return f"Tangy is not with {self._name(target)} yet: it has to go there first."
+        return None
+
+    def _nobody(self, stranger: str) -> str:
+        """Say that there is nobody of that name or number, and who there is."""
+        *others, last = [self._name(person) for person in self._phrasebook.people]
+        who = f"{', '.join(others)} and {last} take part" if others else f"{last} takes part"
+        there = "There is no" if " " in stranger else "There is nobody called"
+        return f"{there} {stranger}: {who}."
+
+    def _name(self, person: str) -> str:
+        return self._names.get(person, person)
+
+
+def answer_help(question: Asked | Offered) -> list[str]:
+    """Say what can be answered to an open question, a line each."""
+    if isinstance(question, Offered):
+        return [WHICH, "  n: none of these; give a new command", f"  quit: {LEAVE}"]
+    alternatives = len(question.alternatives)
+    lines = [ANSWER_HELP, *(f"  {word}: {meaning}" for word, meaning in ANSWER_MEANINGS)]
+    if alternatives:
+        numbers = "1" if alternatives == 1 else f"1 to {alternatives}"
+        lines.insert(3, f"  {numbers}: not that, but what stands beside the number")
+    return lines

@@ -1,0 +1,196 @@
+"""An activity looked over: what loads, and yet cannot be reached or asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from tangy_profiles.activity import Activity, StageRule
+from tangy_profiles.behaviour import Behaviour
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.person import Person
+from tangy_profiles.reading import plain
+from tangy_profiles.robot import Robot
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.phrasebook import Phrase
+from tangy_tui.language.pronunciation import can_look_up
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.language.words import words_of
+from tangy_tui.speech.lexicon import Alike, Lexicon, distinct_word
+from tangy_tui.speech.understanding import NO, YES
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A file that was looked over: its mistakes, and what is worth a second look, a line each."""
+
+    file: str
+    mistakes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> Checked:
+    """Look over an activity that could be read.
+
+    Phrases that cannot be told from others, or cannot be heard, are mistakes; the game can be
+    played without them, so it loads all the same.
+    """
+    mistakes: list[str] = []
+    try:
+        robot.check(activity)
+    except ProfileError as error:
+        mistakes.append(str(error))
+    phrasebook = Phrasebook(activity, people)
+    mistakes += [*_phrases(activity, phrasebook), *_reserved(activity, phrasebook)]
+    mistakes += _fillers(activity, phrasebook)
+    mistakes += _sounds(activity, phrasebook)
+    warnings = [*_stages(activity), *_unused(activity, phrasebook), *_near(activity, phrasebook)]
+    return Checked(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
+
+
+def _stages(activity: Activity) -> Iterator[str]:
+    """Tell of each stage none of whose rules can ever be the first that holds."""
+    reasons: dict[str, list[str | None]] = {}
+    for place, rule in enumerate(activity.stage_rules):
+        reason = _never(rule, activity.stage_rules[:place], activity)
+        reasons.setdefault(rule.stage, []).append(reason)
+    for stage, found in reasons.items():
+        if None not in found:
+            yield f"{activity.source}: stages[{stage}]: can never be reached: {found[0]}."
+
+
+def _never(rule: StageRule, earlier: Sequence[StageRule], activity: Activity) -> str | None:
+    """Say why a rule can never be the first that holds, or None."""
+    for other in earlier:
+        if other.condition == "otherwise":
+            return f"{other.stage!r} stands before it with when = 'otherwise'"
+        if other.condition == "after" and any(
+            one.condition == "before" and one.behaviour == other.behaviour for one in earlier
+        ):
+            return f"it is always before or after {other.behaviour!r}, which comes first"
+        if _covers(other, rule):
+            return f"{other.stage!r} always holds first"
+    if rule.condition == "after" and activity.behaviours[rule.behaviour].effect == "finish":
+        return f"after {rule.behaviour!r} the activity is over"
+    return None
+
+
+def _covers(other: StageRule, rule: StageRule) -> bool:
+    """Say whether an earlier rule holds whenever this one does."""
+    if (other.condition, rule.condition) == ("requested or away", "beside requester"):
+        return True
+    return (
+        (other.condition, other.behaviour, other.since)
+        == (rule.condition, rule.behaviour, rule.since)
+        and other.at_least <= rule.at_least
+    )  # fmt: skip
+
+
+def _phrases(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that are understood as another behaviour than the one they stand with."""
+    for behaviour in activity.behaviours.values():
+        heard = {phrase: _heard(phrasebook, phrase) for phrase in _ways(behaviour)}
+        lost = {phrase: as_ for phrase, as_ in heard.items() if as_ != behaviour.name}
+        where = f"{activity.source}: behaviours[{behaviour.name}].phrases"
+        if len(lost) == len(heard):
+            yield f"{where}: nobody can ask for it: " + "; ".join(map(_as, lost.items())) + "."
+        else:
+            yield from (f"{where} = {phrase!r}: {_as((phrase, as_))}; ask for it otherwise here."
+                        for phrase, as_ in lost.items())  # fmt: skip
+
+
+def _ways(behaviour: Behaviour) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*behaviour.phrases, behaviour.name)))
+
+
+def _heard(phrasebook: Phrasebook, phrase: str) -> str | None:
+    command = phrasebook.understand(phrase)
+    return None if command is None else command.behaviour
+
+
+def _as(lost: tuple[str, str | None]) -> str:
+    phrase, heard = lost
+    return f"{phrase!r} is " + ("not understood" if heard is None else f"heard as {heard!r}")
+
+
+def _reserved(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that always mean something else: they stop the robot, or answer it."""
+    for phrase in phrasebook.table.all():
+        stop, said = stops(phrase.said), phrase.said
+        if phrase.heard and (stop or said in YES or said in NO):
+            why = "always stops the robot" if stop else "is an answer to Tangy's questions"
+            word = distinct_word(phrasebook, phrase.behaviour, phrase)
+            such = f", such as {word!r}" if word else ""
+            yield (
+                f"{activity.source}: {_place(activity, phrase)}: "
+                f"it {why}; ask for it with another word{such}."
+            )
+
+
+def _fillers(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that only words which mean nothing by themselves tell apart."""
+    first: dict[str, Phrase] = {}
+    for phrase in phrasebook.table.all():
+        if phrase.user is None and phrase.heard and phrase.bare:
+            other = first.setdefault(" ".join(phrase.bare), phrase)
+            if other.behaviour != phrase.behaviour:
+                little = "only small words tell it from"
+                yield _collision(activity, phrasebook, Alike(phrase, other), little)
+
+
+def _sounds(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that sound like others, and of words without a pronunciation."""
+    if not can_look_up():
+        return
+    lexicon = Lexicon(phrasebook)
+    for alike in lexicon.alike:
+        if alike.phrase.bare != alike.other.bare:
+            yield _collision(activity, phrasebook, alike, "it sounds like")
+    for said in lexicon.unknown:
+        if said.word in phrasebook.table.own_words:
+            phones = said.phones[0] if said.phones else "..."
+            hear = f" (hear it: tangy activity hear {phones!r})" if said.phones else ""
+            yield (
+                f"{activity.source}: pronunciations: {said.word!r} has no pronunciation; "
+                f'add: {said.word} = "{phones}"{hear}'
+            )
+
+
+def _near(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of phrases that are easily taken for others, because just one phone is different."""
+    if can_look_up():
+        for alike in Lexicon(phrasebook).nearly_alike():
+            if alike.phrase.bare != alike.other.bare:
+                yield _collision(activity, phrasebook, alike, "one sound alone tells it from")
+
+
+def _collision(activity: Activity, phrasebook: Phrasebook, alike: Alike, how: str) -> str:
+    """Say which two phrases collide, as they are written and where, and what would help."""
+    phrase, other = alike.phrase, alike.other
+    word = distinct_word(phrasebook, phrase.behaviour, phrase)
+    such = f", such as {word!r}" if word else ""
+    return (
+        f"{activity.source}: {_place(activity, phrase)}: {how} {_place(activity, other)}; "
+        f"put another word into one of them{such}."
+    )
+
+
+def _place(activity: Activity, phrase: Phrase) -> str:
+    """Return where a phrase stands in the file, and how it is written there."""
+    behaviour = activity.behaviours[phrase.behaviour]
+    where = f"behaviours[{behaviour.name}]"
+    for text in behaviour.phrases:
+        if words_of(text) == phrase.words:
+            return f"{where}.phrases = {text!r}"
+    if words_of(behaviour.question) == phrase.words:
+        return f"{where}.question = {behaviour.question!r}"
+    return f"{where}.phrases, with a person = {phrase.said!r}"
+
+
+def _unused(activity: Activity, phrasebook: Phrasebook) -> Iterator[str]:
+    """Tell of pronunciations of words that nobody says."""
+    table = phrasebook.table
+    known = {word for phrase in (*table.all(), *table.keywords) for word in phrase.words}
+    for word in activity.pronunciations:
+        if word not in known:
+            yield f"{activity.source}: pronunciations.{word}: the word is in no phrase."

@@ -1,0 +1,303 @@
+"""The decoders (III-A-1): an HMM acoustic model labels phonemes and matches them to words.
+
+In the usual mode each utterance is decoded twice: by an n-gram model of the phrases in which
+everyday words can stand anywhere, which says what the words were, and by a grammar of the phrases
+with a branch for any phones, which says how well anything at all can explain the sound. The
+difference of the two scores tells words that were said from words that merely fit best. In the
+paper's mode there is just the n-gram model of the phrases.
+
+pocketsphinx holds the interpreter's lock, so this runs in a process of its own: see `worker`.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+from tangy_tui.speech.bandwidth import widened
+from tangy_tui.speech.evidence import RATE, Evidence, Expecting, Wanted
+from tangy_tui.speech.forked_worker import Beside
+from tangy_tui.speech.language import (
+    EVERYDAY,
+    dictionary,
+    grammar,
+    open_model,
+    phrase_model,
+    words_of,
+)
+from tangy_tui.speech.noise_reduction import cleaned, surrounded
+
+SHORTEST = 0.1  # s; less cannot hold a word, and an empty buffer raises IndexError
+SHIFT = 1024  # pocketsphinx keeps scores shifted right by ten bits
+FRAMES_A_SECOND = 100
+NOISES = ("<", "[", "+", "(")  # how silences and noises begin among the words of a path
+MODEL = "en-us/"
+NO_PATH = -1e9  # the score where no path comes to an end
+UNKNOWN_MARGIN = -0.5  # that of most speech which is no command
+
+# How sure the paper's n-gram model is: a logistic over two figures of the best path, its score a
+# frame and the mean weighted log P(word | words before). Fitted by tests/bench/speech.py.
+SCORE_MIDDLE, SCORE_WEIGHT = -2.79, 4.77
+WORDS_MIDDLE, WORDS_WEIGHT = -17.9, 0.157
+OFFSET = 5.23
+
+
+class Unspeakable(ValueError):
+    """None of the phrases can be pronounced."""
+
+
+class Decoder(Protocol):
+    """What turns the sound of one utterance into words."""
+
+    left_out: tuple[str, ...]
+    """Words that cannot be heard, because nobody says how they are pronounced."""
+
+    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+        """Decode a whole utterance (16 kHz mono s16le)."""
+
+    def begin(self, expecting: Expecting) -> None:
+        """Begin an utterance that comes in pieces, for `partial`."""
+
+    def partial(self, pcm: bytes) -> str:
+        """Take the next piece and return the words so far."""
+
+    def close(self) -> None:
+        """End what it has started."""
+
+
+def make_decoder(wanted: Wanted) -> Decoder:
+    """Build the decoder for what is to be heard.
+
+    Raises:
+        Unspeakable: there is no phrase that can be heard.
+    """
+    return PaperDecoder(wanted) if wanted.settings.mode == "paper" else TwoDecoders(wanted)
+
+
+class TwoDecoders:
+    """The usual mode: words by an open n-gram model, and a grammar with a garbage branch."""
+
+    def __init__(self, wanted: Wanted) -> None:
+        everyday = everyday_words(EVERYDAY)
+        known = _pronunciations(
+            {*words_of(wanted.phrases), *words_of(wanted.answers), *everyday},
+            wanted.pronunciations,
+        )
+        self.left_out, phrases = _heard(wanted.phrases, known)
+        _, answers = _heard(wanted.answers, known)
+        weight = wanted.settings.garbage
+        own = {w: known[w] for w in (*words_of(phrases), *words_of(answers))}
+        open_words = {word: p for word, p in everyday.items() if word in known}
+        share = weight / (1 + weight)
+        self._words = _decoder(
+            dictionary({**{w: known[w] for w in open_words}, **own}), bestpath=True, active=1500
+        )
+        self._grammar = _decoder(dictionary(own, phones=True), bestpath=False, active=1000)
+        for name, said in (("commands", phrases), ("answers", answers)):
+            if said:
+                _add_model(self._words, name, open_model(said, open_words, share))
+                self._grammar.add_jsgf_string(name, grammar(said, weight))
+        self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
+        self._open = False
+        self._beside = Beside(self._by_grammar)
+
+    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+        """Decode a whole utterance."""
+        self._end()
+        seconds = len(pcm) / 2 / RATE
+        if seconds < SHORTEST or not self._said[expecting]:
+            return Evidence(seconds=seconds)
+        whole = surrounded(pcm)
+        pcm = cleaned(whole)
+        if pcm == whole:  # in noise nobody can tell what is missing
+            pcm = widened(pcm)
+        self._beside.ask((pcm, expecting))
+        words, score, _ = _best_path(self._words, pcm, expecting)
+        phrase, garbage = self._beside.answer()
+        margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
+        if phrase not in self._said[expecting]:
+            phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
+        return Evidence(words, phrase, margin, 1.0, seconds)
+
+    def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
+        phrase, score, _ = _best_path(self._grammar, *asked)
+        return phrase, score
+
+    def begin(self, expecting: Expecting) -> None:
+        """Begin an utterance that comes in pieces."""
+        self._end()
+        self._open = bool(self._said[expecting])
+        if self._open:
+            self._words.activate_search(expecting)
+            self._words.start_utt()
+
+    def partial(self, pcm: bytes) -> str:
+        """Take the next piece and return the words so far."""
+        return _so_far(self._words, pcm) if self._open else ""
+
+    def close(self) -> None:
+        """End the process beside this one."""
+        self._beside.close()
+
+    def _end(self) -> None:
+        if self._open:
+            self._words.end_utt()
+            self._open = False
+
+
+class PaperDecoder:
+    """The paper's mode: an n-gram model of the phrases alone determines the sequence of words."""
+
+    def __init__(self, wanted: Wanted) -> None:
+        known = _pronunciations(
+            {*words_of(wanted.phrases), *words_of(wanted.answers)}, wanted.pronunciations
+        )
+        self.left_out, phrases = _heard(wanted.phrases, known)
+        _, answers = _heard(wanted.answers, known)
+        self._decoder = _decoder(dictionary(known), bestpath=True)
+        for name, said in (("commands", phrases), ("answers", answers)):
+            if said:
+                _add_model(self._decoder, name, phrase_model(said))
+        self._searches = {"commands": bool(phrases), "answers": bool(answers)}
+        self._open = False
+
+    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+        """Decode a whole utterance."""
+        self._end()
+        seconds = len(pcm) / 2 / RATE
+        if seconds < SHORTEST or not self._searches[expecting]:
+            return Evidence(seconds=seconds)
+        text, score, words = _best_path(self._decoder, pcm, expecting)
+        sure = (
+            OFFSET + SCORE_WEIGHT * (score - SCORE_MIDDLE) + WORDS_WEIGHT * (words - WORDS_MIDDLE)
+        )
+        confidence = 1 / (1 + math.exp(-max(-50.0, min(50.0, sure)))) if text else 0.0
+        return Evidence(text, "", 0.0, confidence, seconds)
+
+    def begin(self, expecting: Expecting) -> None:
+        """Begin an utterance that comes in pieces."""
+        self._end()
+        self._open = self._searches[expecting]
+        if self._open:
+            self._decoder.activate_search(expecting)
+            self._decoder.start_utt()
+
+    def partial(self, pcm: bytes) -> str:
+        """Take the next piece and return the words so far."""
+        return _so_far(self._decoder, pcm) if self._open else ""
+
+    def close(self) -> None:
+        """Nothing was started."""
+
+    def _end(self) -> None:
+        if self._open:
+            self._decoder.end_utt()
+            self._open = False
+
+
+def everyday_words(count: int) -> dict[str, float]:
+    """Return the commonest words of the general model that comes with the decoder.
+
+    Each with its probability; only those that the dictionary has.
+    """
+    import pocketsphinx
+
+    path = pocketsphinx.get_model_path(f"{MODEL}en-us.lm.bin")
+    logs = pocketsphinx.LogMath()
+    model = pocketsphinx.NGramModel(pocketsphinx.Config(lm=path), logs, path)
+    words = (w for w in dict.fromkeys(w for w, _ in _dictionary_lines()) if w[0].isalpha())
+    scored = sorted(((model.prob([word]), word) for word in words), reverse=True)
+    return {word: logs.exp(score) for score, word in scored[:count]}
+
+
+def _dictionary_lines() -> Iterable[tuple[str, str]]:
+    import pocketsphinx
+
+    path = Path(pocketsphinx.get_model_path(f"{MODEL}cmudict-en-us.dict"))
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        for line in lines:
+            word, _, phones = line.strip().partition(" ")
+            yield word.partition("(")[0], phones
+
+
+def _pronunciations(
+    wanted: set[str], own: Mapping[str, Sequence[str]]
+) -> dict[str, tuple[str, ...]]:
+    """Return how words are said: as the activity and people have it, else as the dictionary."""
+    found: dict[str, list[str]] = {}
+    for word, phones in _dictionary_lines():
+        if word in wanted and word not in own:
+            found.setdefault(word, []).append(phones)
+    return {
+        **{word: tuple(ways) for word, ways in found.items()},
+        **{word: tuple(ways) for word, ways in own.items() if word in wanted},
+    }
+
+
+def _heard(
+    phrases: Sequence[str], known: Mapping[str, Sequence[str]]
+) -> tuple[tuple[str, ...], list[str]]:
+    """Return the words that cannot be heard, and the phrases that can."""
+    unknown = words_of(phrases) - set(known)
+    heard = [p for p in dict.fromkeys(phrases) if p and not unknown.intersection(p.split())]
+    if phrases and not heard:
+        raise Unspeakable("None of the phrases can be pronounced with the English dictionary.")
+    return tuple(sorted(unknown)), heard
+
+
+def _decoder(words: str, *, bestpath: bool, active: int = 30_000) -> Any:
+    """Make a decoder without any search in it yet.
+
+    Args:
+        words: its dictionary.
+        bestpath: search the lattice once more in the end.
+        active: how many models are followed at most; fewer are faster, and at some point wrong.
+    """
+    import pocketsphinx
+
+    with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
+        path = Path(folder) / "dict"
+        path.write_text(words, encoding="utf-8")
+        return pocketsphinx.Decoder(
+            lm=None, dict=str(path), cmn="batch", loglevel="ERROR", bestpath=bestpath,
+            maxhmmpf=active,
+        )  # fmt: skip
+
+
+def _add_model(decoder: Any, name: str, arpa: str) -> None:
+    with tempfile.TemporaryDirectory(prefix="tangy-speech-") as folder:
+        path = Path(folder) / "lm"
+        path.write_text(arpa, encoding="utf-8")
+        decoder.add_lm_file(name, str(path))
+
+
+def _best_path(decoder: Any, pcm: bytes, search: str) -> tuple[str, float, float]:
+    """Return the words of the likeliest path, and the two figures that grade it.
+
+    They are log P(sound, words) a frame and the mean weighted log P(word | words before).
+    """
+    decoder.activate_search(search)
+    decoder.reinit_feat()  # else what was heard before, and the words so far, change the scores
+    decoder.start_utt()
+    decoder.process_raw(pcm, full_utt=True)
+    decoder.end_utt()
+    best = decoder.hyp()
+    if best is None:
+        return "", NO_PATH, 0.0
+    words = [_log(s.lscore) for s in decoder.seg() if not s.word.startswith(NOISES)]
+    frames = len(pcm) / 2 / RATE * FRAMES_A_SECOND
+    return str(best.hypstr), _log(best.score) / frames, sum(words) / max(1, len(words))
+
+
+def _so_far(decoder: Any, pcm: bytes) -> str:
+    if pcm:
+        decoder.process_raw(pcm)
+    best = decoder.hyp()
+    return str(best.hypstr) if best is not None else ""
+
+
+def _log(score: float) -> float:
+    return math.log(max(score, 1e-300)) * SHIFT

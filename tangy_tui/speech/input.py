@@ -1,0 +1,399 @@
+"""Ears: a source of sound and the decoder behind it, giving commands as a teacher types them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.sources import open_source
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.teaching_events import TeachingEvent
+from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, Evidence, Settings
+from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
+from tangy_tui.speech.recordings import Recorder
+from tangy_tui.speech.understanding import answer, understand, wanted
+from tangy_tui.speech.utterance import LONGEST_TALK, Utterance
+
+MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
+RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
+FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
+
+Heard: TypeAlias = Say | Stop | Reply
+WAITS = {"starting": "The decoder is getting ready.", "thinking": "Still thinking."}
+
+State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
+"""off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
+
+
+class Ears:
+    """A source of spoken commands: `async for heard in ears`. Opening it checks the source.
+
+    A live microphone listens while it is pushed to talk, or (hands-free) all the time; a recording
+    gives one command after the other. While the robot speaks it is `shut`; while a question is
+    open (`asking`) it hears answers, if that is switched on, and otherwise only what stops.
+    """
+
+    def __init__(
+        self,
+        source: str,
+        phrasebook: Phrasebook,
+        *,
+        settings: Settings = USUAL,
+        hands_free: bool = False,
+        answers: bool = False,
+        recorder: Recorder | None = None,
+        stdin: int = 0,
+        folder: Path | None = None,
+    ) -> None:
+        """Open the source.
+
+        Args:
+            source: its name, as `tangy_hw.audio.sources` has them.
+            phrasebook: what can be said.
+            settings: how it is listened with this microphone.
+            hands_free: listen all the time, and find out where an utterance begins and ends.
+            answers: also hear yes and no while a question is open.
+            recorder: keeps what is heard, with the teacher's consent.
+            stdin: the file descriptor that `-` stands for.
+            folder: the data folder, for the socket and the messages of the decoder.
+
+        Raises:
+            SoundError: the source cannot be used.
+        """
+        self._source = open_source(source, stdin=stdin, folder=folder)
+        self.live = self._source.live
+        """Whether somebody is speaking right now, rather than on a recording."""
+        self.hands_free = hands_free
+        self.answers = answers
+        self.meter = Meter()
+        self.words = ""
+        """The words so far of what is being said."""
+        self.sound = b""
+        """The last utterance that was heard, 16 kHz mono s16le."""
+        self.tell: Callable[[str], None] = lambda sentence: None
+        """Is called with a sentence when something must be said about hearing."""
+        self.changed: Callable[[], None] = lambda: None
+        """Is called when `state` or `words` have changed."""
+        self._state: State = "starting"
+        self._phrasebook = phrasebook
+        self._settings = settings
+        self._recorder = recorder
+        self._log = folder / "speech.log" if folder is not None and folder.is_dir() else None
+        self._heard: AsyncGenerator[Heard, None] | None = None
+        self._recogniser: Recogniser | None = None
+        self._utterance: Utterance | None = None  # the one that is listened for
+        self._talks = asyncio.Event()  # it has begun, or none will
+        self._free = asyncio.Event()
+        self._free.set()
+        self._shuts = 0  # those who have shut it, and not opened it again
+        self._asking = False
+        self._renew = False  # there are other phrases to listen for
+        self._noticed: set[str] = set()
+        if recorder is not None:
+            recorder.tell = self._told
+        self._ended = False  # the source has no more
+        self._closed = False
+        self._over = asyncio.Event()  # all that was started has ended
+        self._deaf = 0  # bytes that are not heard: the room still rings
+
+    @property
+    def state(self) -> State:
+        """What it is doing."""
+        return "shut" if not self._free.is_set() and self._state != "over" else self._state
+
+    @property
+    def records(self) -> bool:
+        """Whether what is said is kept, once it is verified."""
+        return self._recorder is not None
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong with the sound, in a sentence; "" if nothing is."""
+        listens = self.state in ("listening", "speaking")
+        spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
+        return self.meter.words(speaking=spoken) if self.live and listens else ""
+
+    def talk(self) -> None:
+        """Push to talk: begin to listen, or end what is being said."""
+        if not self.live or self.hands_free or not self._free.is_set():
+            return
+        if self._utterance is not None and not self._utterance.over:
+            self._end()
+        elif self._state in WAITS:
+            self._told(f"{WAITS[self._state]} Push again in a moment.")
+        elif self._state == "off":
+            self.meter.begin()
+            self._utterance = Utterance(found=False)
+            asyncio.get_running_loop().call_later(MOST_TALK, self._late, self._utterance)
+            self._talks.set()
+            self._now("listening")
+
+    def shut(self) -> None:
+        """Hear nothing for a while: the robot speaks. A recording has no robot in it."""
+        if not self.live:
+            return
+        self._shuts += 1
+        if self._free.is_set():
+            self._free.clear()
+            self._end(dropped=True)
+            self.changed()
+
+    def open(self) -> None:
+        """Hear again, a moment from now: the room still rings."""
+        self._shuts = max(0, self._shuts - 1)
+        if not self._shuts and not self._free.is_set():
+            self._deaf = round(RINGING * RATE) * 2
+            self._free.set()
+            self.changed()
+
+    def asking(self, asks: bool) -> None:
+        """Take note that a question is open, or no longer."""
+        if self._asking != asks:
+            self._asking = asks
+            if self.live:
+                self._end(dropped=True)
+
+    def understand_by(self, phrasebook: Phrasebook) -> None:
+        """Listen for these phrases, and match what is heard to them, from the next utterance on."""
+        before, self._phrasebook = self._phrasebook, phrasebook
+        if _sounds_of(before) != _sounds_of(phrasebook):
+            self._renew = True
+            self._talks.set()
+
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed from commands, so that recordings get their names."""
+        if self._recorder is not None:
+            self._recorder.follow(events)
+
+    def __aiter__(self) -> AsyncIterator[Heard]:
+        return self
+
+    async def __anext__(self) -> Heard:
+        if self._heard is None:
+            if self._closed:
+                raise StopAsyncIteration
+            self._heard = self._hear()
+        return await anext(self._heard)
+
+    async def close(self) -> None:
+        """Stop listening for good, and end the decoder, whatever it is doing."""
+        self._closed = True
+        await self._source.close()
+        if self._recogniser is not None:
+            await self._recogniser.close()
+        if self._heard is not None:
+            try:
+                await self._heard.aclose()
+            except RuntimeError:  # somebody waits for it, and gets the end
+                await self._over.wait()
+
+    async def _hear(self) -> AsyncGenerator[Heard, None]:
+        recogniser = self._recogniser = Recogniser(log=self._log, notify=self._told)
+        recogniser.partial = self._partial
+        recogniser.speaking = self._spoke
+        self._source.tell = self._told
+        pump: asyncio.Task[None] | None = None
+        try:
+            await self._listen_for(recogniser)
+            if self._closed:
+                return
+            if self._recorder is not None:
+                self._told("What you say, and say yes to, is recorded.")
+            if self.live:
+                pump = asyncio.create_task(self._pump())
+                spoken = self._live(recogniser)
+            else:
+                spoken = self._recorded(recogniser)
+            async with contextlib.aclosing(spoken):
+                async for evidence in spoken:
+                    heard = self._understand(evidence)
+                    if heard is not None and self._recorder is not None:
+                        self._recorder.heard(self.sound, heard)
+                    if heard is not None and not self._closed:
+                        yield heard
+            if pump is not None:
+                await pump
+            if self._closed:
+                return
+            self._told("The microphone has closed." if self.live else "The recording is over.")
+        except SpeechUnavailable:
+            if not self._closed:
+                raise
+        finally:
+            try:
+                if pump is not None:
+                    pump.cancel()
+                    await asyncio.wait({pump})
+                await recogniser.close()
+                await self._source.close()
+            finally:
+                self._over.set()
+                self._now("over")
+
+    async def _listen_for(self, recogniser: Recogniser) -> None:
+        """Have the decoder listen for the phrases as they are now."""
+        self._renew = False
+        phrasebook = self._phrasebook
+        lexicon = await asyncio.to_thread(Lexicon, phrasebook, suggest=lambda word: "")
+        if self._closed:
+            return
+        await recogniser.start(wanted(phrasebook, self._settings, lexicon.heard()))
+        for sentence in lexicon.notices():
+            if sentence not in self._noticed:
+                self._noticed.add(sentence)
+                self._told(sentence)
+
+    async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
+        pcm = b"".join([chunk async for chunk in self._source])
+        for piece in await recogniser.pieces(pcm):
+            self._now("thinking")
+            self.sound = piece
+            if len(piece) > 2 * RATE * LONGEST:
+                self._told(f"Of {len(piece) / 2 / RATE:.0f} s without a pause I hear {LONGEST} s.")
+            try:
+                if self._renew:
+                    await self._listen_for(recogniser)
+                evidence = await recogniser.decode(
+                    piece, "answers" if self._asking and self.answers else "commands"
+                )
+            except SpeechUnavailable as error:
+                if self._closed:
+                    raise
+                self._told(str(error))
+                continue
+            self._now("listening")
+            yield evidence
+
+    async def _live(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
+        failures = 0
+        while (utterance := await self._next(recogniser)) is not None:
+            try:
+                evidence = await recogniser.hear(
+                    utterance.chunks,
+                    "answers" if self._asking else "commands",
+                    endpoint=self.hands_free,
+                )
+                failures, left = 0, recogniser.left
+            except SpeechUnavailable as error:
+                failures += 1
+                if self._closed or (self.hands_free and failures >= FAILURES):
+                    raise
+                self._told(f"{error} Please say that again.")
+                evidence, left = None, b""
+            finally:
+                self._utterance = None
+                self._talks.clear()
+                self._partial("")
+            if self.hands_free and not utterance.dropped:
+                self._go_on(left + utterance.rest())
+            if evidence is None:
+                continue
+            self.sound = recogniser.said
+            if not utterance.dropped or self._stops(evidence):  # that counts, whatever came between
+                yield evidence
+            elif evidence.words and self._asking:
+                self._told(f"I heard {evidence.words!r}, but a question came between.")
+
+    async def _next(self, recogniser: Recogniser) -> Utterance | None:
+        """Wait for the next utterance to listen to; None if the source is over."""
+        while True:
+            if self.hands_free and (self._utterance is None or self._utterance.dropped):
+                self._utterance = None if self._ended else Utterance(found=True)
+            if self._renew:
+                if self.hands_free or self._utterance is None:
+                    self._now("starting")
+                await self._listen_for(recogniser)
+                continue
+            if self.hands_free:
+                if self._utterance is not None:
+                    self._now("listening")
+                return self._utterance
+            if self._utterance is not None or self._ended:
+                return self._utterance
+            self._now("off")
+            await self._talks.wait()
+            if self._utterance is None:
+                self._talks.clear()
+
+    def _go_on(self, begun: bytes) -> None:
+        """Listen on to a stream from where an utterance ended: somebody may have spoken on."""
+        if begun or not self._ended:
+            self._utterance = Utterance(found=True, begun=begun)
+            if self._ended:
+                self._utterance.end()
+
+    async def _pump(self) -> None:
+        """Take the sound as it comes, and keep what is to be heard."""
+        try:
+            async for chunk in self._source:
+                self.meter.feed(chunk)
+                if not self._free.is_set():
+                    continue
+                dropped = min(self._deaf, len(chunk))
+                self._deaf -= dropped
+                if self._utterance is not None:
+                    self._utterance.add(chunk[dropped:])
+                    self._thinks()
+        finally:
+            self._ended = True
+            self._end()
+            self._talks.set()
+
+    def _late(self, utterance: Utterance) -> None:
+        """End what was begun and has no end, for no more sound comes."""
+        if self._utterance is utterance:
+            self._end()
+
+    def _end(self, *, dropped: bool = False) -> None:
+        """Let the present utterance end; if it is dropped, it counts for nothing."""
+        if self._utterance is not None:
+            self._utterance.end(dropped=dropped)
+            self._thinks()
+
+    def _thinks(self) -> None:
+        if self._utterance is not None and self._utterance.over:
+            self._now("thinking")
+
+    def _stops(self, evidence: Evidence) -> bool:
+        return isinstance(understand(evidence, self._phrasebook, self._settings), Stop)
+
+    def _understand(self, evidence: Evidence) -> Heard | None:
+        if self._asking:
+            said = answer(evidence, self._settings)
+            if self.answers and said is None and evidence.seconds:
+                self._told("I heard something, but no yes, no or stop.")
+            return said if self.answers or isinstance(said, Stop) else None
+        if not evidence.words:
+            if self.live and evidence.seconds:
+                self._told("I heard something, but no words that I know.")
+            return None
+        return understand(evidence, self._phrasebook, self._settings)
+
+    def _partial(self, words: str) -> None:
+        if words != self.words:
+            self.words = words
+            self.changed()
+
+    def _spoke(self) -> None:
+        if self._utterance is not None and not self._utterance.over:
+            self._now("speaking")
+
+    def _now(self, state: State) -> None:
+        if state != self._state:
+            self._state = state
+            self.changed()
+
+    def _told(self, sentence: str) -> None:
+        if sentence:
+            self.tell(sentence)
+
+
+def _sounds_of(phrasebook: Phrasebook) -> tuple[object, object]:
+    """What is to be heard of a phrasebook; two that have the same are listened for alike."""
+    return phrasebook.spoken(), phrasebook.pronunciations()

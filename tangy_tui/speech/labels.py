@@ -1,0 +1,202 @@
+"""What was said in a recording, by the name of its file or folder: an intent, or no command."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_sentence import STOPS
+from tangy_tui.language.words import Words, words_of
+
+STOP = "stop"
+"""The intent of the words that stop the robot."""
+NO_COMMAND = frozenset(
+    (
+        *("none", "other", "others", "noise", "noises", "far", "near", "garbage", "silence"),
+        *("speech", "babble", "background", "nothing"),
+    )
+)
+"""Names of recordings, or of folders of them, in which there is no command."""
+SUFFIXES = (".wav", ".wave")
+
+TAKE = "#"  # stands for a number that counts recordings: with a zero before it, or of many digits
+_TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """What was said: a behaviour (or STOP), and the person it names; None: no command.
+
+    `named` is False if nobody can tell from the name; such a recording proves nothing.
+    """
+
+    behaviour: str | None
+    user: str | None = None
+    named: bool = True
+
+    @property
+    def words(self) -> str:
+        """What it is called in a report."""
+        return " ".join(filter(None, (self.behaviour, self.user))) or "no command"
+
+
+NOBODY_KNOWS = Label(None, named=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The recordings below a folder, each with what was said, and what was left out, and why.
+
+    `unnamed` are those whose names do not tell what was said: they are left out as well.
+    """
+
+    folder: Path
+    recordings: tuple[tuple[Path, Label], ...]
+    left_out: tuple[tuple[Path, str], ...]
+    unnamed: tuple[Path, ...] = ()
+
+
+class Labels:
+    """Reads the names of recordings by the behaviours, phrases and people of a phrasebook.
+
+    Case, underscores, hyphens and dots are of no account. The longest intent that a name begins
+    with counts; what follows (a number, a voice, a date) is cut off.
+    """
+
+    def __init__(self, phrasebook: Phrasebook) -> None:
+        """Know what can be said."""
+        phrases = phrasebook.table.by_words
+        self._intents = {words: Label(p.behaviour, p.user) for words, p in phrases.items()}
+        self._intents |= {(*words_of(p.behaviour),): Label(p.behaviour) for p in phrases.values()}
+        self._intents |= {words_of(phrase): Label(STOP) for phrase in STOPS}
+        self._longest = max(map(len, self._intents))
+        self._to_people = frozenset(phrasebook.nouns)
+        self._ids = {words_of(id): id for id in phrasebook.people}
+        self._numbers = phrasebook.table.numbers
+
+    def of(self, file: Path, folder: Path) -> Label:
+        """Return what was said in a recording that lies somewhere below a folder.
+
+        The folder it lies in counts first, then its own name, then the folders further up.
+        """
+        stem = _words(file.stem)
+        above = [file.parent, *file.parent.parents]
+        above = above[: above.index(folder) + 1]
+        label = self._of_folder(above[0], below=above[0] != folder)
+        label = label or self._intent(stem) or _no_command(stem[:1])
+        for one in above[1:] if label is None else ():
+            label = label or self._of_folder(one, below=one != folder)
+        if label is None:
+            return NOBODY_KNOWS
+        if label.behaviour in self._to_people and label.user is None:
+            return Label(label.behaviour, self._id_in(stem))
+        return label
+
+    def find(self, folder: Path) -> Found:
+        """Find the recordings below a folder, without following symbolic links.
+
+        Raises:
+            TangyError: it is not a folder, or there are no recordings in it that are named.
+        """
+        shown = plain(str(folder))
+        if not folder.is_dir():
+            is_file = folder.exists()
+            raise TangyError(
+                f"{shown}: is a file; give the folder in which it lies." if is_file
+                else f"{shown}: there is no such folder."
+            )  # fmt: skip
+        top = folder.absolute()
+        found: list[tuple[Path, Label]] = []
+        left_out: list[tuple[Path, str]] = []
+        unnamed: list[Path] = []
+        for file, why in _files(top):
+            label = NOBODY_KNOWS if why else self.of(file, top)
+            if why:
+                left_out.append((file.relative_to(top), why))
+            elif not label.named:
+                unnamed.append(file.relative_to(top))
+            else:
+                found.append((file.relative_to(top), label))
+        if unnamed and not found:
+            which = f"none of its {len(unnamed)} recordings ({unnamed[0]}, ...) is"
+            if len(unnamed) == 1:
+                which = f"its one recording, {unnamed[0]}, is not"
+            raise TangyError(
+                plain(f"{shown}: {which} named by what is said in it, ")
+                + "as call_number-1.wav is, and call number/1.wav (none/1.wav: no command)."
+            )
+        if not found:
+            why = f" ({left_out[0][0]} {left_out[0][1]})" if left_out else ""
+            raise TangyError(
+                plain(f"{shown}: there are no WAV files in it{why}; name each by what is said, ")
+                + "as in call_number-1.wav, or put it into a folder of that name."
+            )
+        return Found(top, tuple(found), tuple(left_out), tuple(unnamed))
+
+    def _of_folder(self, folder: Path, *, below: bool) -> Label | None:
+        """Return what a folder's name says; of the first one just an intent, not "speech"."""
+        words = _words(folder.name)
+        return self._intent(words) or (_no_command(words) if below else None)
+
+    def _intent(self, words: Words) -> Label | None:
+        for length in range(min(len(words), self._longest), 0, -1):
+            label = self._intents.get(words[:length])
+            if label is not None:
+                if label.behaviour in self._to_people and label.user is None:
+                    rest = words[length:]
+                    user = self._numbers.get(rest[0]) if rest else None
+                    return Label(label.behaviour, user or self._id_in(rest))
+                return label
+        return None
+
+    def _id_in(self, words: Words) -> str | None:
+        """Return the person whose id is among the words."""
+        for id, person in self._ids.items():
+            places = range(len(words) - len(id) + 1)
+            if any(words[place : place + len(id)] == id for place in places):
+                return person
+        return None
+
+
+def _words(name: str) -> Words:
+    """Split a name into words; a number that only counts recordings is no person's."""
+    first, *rest = _TAKE.split(name)
+    words = list(words_of(first))
+    for part in rest:
+        words += (TAKE, *words_of(part))
+    return tuple(words)
+
+
+def _no_command(words: Words) -> Label | None:
+    said = [word for word in words if word != TAKE and not word.isdigit()]
+    return Label(None) if said and NO_COMMAND.issuperset(said) else None
+
+
+def _files(top: Path) -> Iterator[tuple[Path, str]]:
+    """Yield every file below a folder in order, with the reason if it is not to be heard."""
+    unread: list[tuple[Path, str]] = []
+
+    def cannot(error: OSError) -> None:
+        unread.append((Path(error.filename), f"cannot be read ({error.strerror})"))
+
+    for place, folders, names in os.walk(top, onerror=cannot):
+        here = Path(place)
+        yield from unread
+        unread.clear()
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        yield from ((here / n, "is a symbolic link") for n in folders if (here / n).is_symlink())
+        for name in sorted(name for name in names if not name.startswith(".")):
+            file = here / name
+            if file.is_symlink():
+                yield file, "is a symbolic link"
+            elif file.suffix.casefold() not in SUFFIXES:
+                yield file, "is not a WAV file"
+            else:
+                yield file, ""
+    yield from unread

@@ -1,0 +1,203 @@
+"""How each word of a phrasebook is said, and which of its phrases can be told by their sound."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice, product
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.phones import PHONES, read_name_phones
+from tangy_profiles.reading import plain
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.phrasebook import Phrase
+from tangy_tui.language.pronunciation import pronounce, suggest
+from tangy_tui.language.words import Words, clean, spoken, words_of
+
+MOST_WAYS = 64  # to say one phrase; those of most words count first
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """How a word is said: its pronunciations, and where they come from.
+
+    `source` is "activity", "person", "dictionary", "suggested" (guessed: it cannot be heard), or
+    "" where nothing can be guessed.
+    """
+
+    word: str
+    phones: tuple[str, ...]
+    source: str
+
+    @property
+    def heard(self) -> bool:
+        """Whether the recogniser can hear it."""
+        return self.source not in ("suggested", "")
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """A phrase that sounds (nearly) like another of another meaning, which came first."""
+
+    phrase: Phrase
+    other: Phrase
+
+
+class Lexicon:
+    """The words of a phrasebook by their sound.
+
+    It reads the pronouncing dictionary: some 30 ms for the words of an activity.
+    """
+
+    words: Mapping[str, Said]
+    """Of every word that can be said or typed, how it is said."""
+    alike: tuple[Alike, ...]
+    """Phrases that cannot be told from others by their sound; the others can be heard."""
+    phrases: tuple[Phrase, ...]
+    """Those that are listened for, if they can be heard."""
+
+    def __init__(
+        self,
+        phrasebook: Phrasebook,
+        *,
+        pronounce: Callable[[str], tuple[str, ...]] = pronounce,
+        suggest: Callable[[str], str] = suggest,
+    ) -> None:
+        """Look up every word; `suggest` is asked about those that nobody has a pronunciation of."""
+        self.phrases = tuple(p for p in phrasebook.table.all() if p.heard)
+        self._pronounce, self._suggest = pronounce, suggest
+        self._table = phrasebook.table
+        spoken = (word for p in phrasebook.table.all() for word in p.said.split())
+        self.words = {word: self._look_up(word) for word in dict.fromkeys(spoken)}
+        self.alike = tuple(self._find_alike())
+
+    @property
+    def unknown(self) -> tuple[Said, ...]:
+        """The words of phrases that have no pronunciation, with what is suggested."""
+        words = dict.fromkeys(word for phrase in self.phrases for word in phrase.said.split())
+        return tuple(self.words[word] for word in words if not self.words[word].heard)
+
+    def heard(self) -> tuple[str, ...]:
+        """Return the phrases that can be heard, as they are said."""
+        out = {one.phrase.said for one in self.alike}
+        return tuple(
+            dict.fromkeys(p.said for p in self.phrases if self._known(p) and p.said not in out)
+        )
+
+    def nearly_alike(self) -> tuple[Alike, ...]:
+        """Return the phrases of one behaviour that one phone tells from those of another.
+
+        They can be heard, and are easily mistaken; it looks at every way to say each.
+        """
+        out = {one.phrase.said for one in self.alike}
+        first: dict[Words, list[Phrase]] = defaultdict(list)
+        found: dict[tuple[str, str], Alike] = {}
+        for phrase in self.phrases:
+            if phrase.said in out or not self._known(phrase):
+                continue
+            forms = {form for way in self._ways(phrase) for form in _one_less(way.split())}
+            for other in (other for form in forms for other in first[form]):
+                if other.behaviour != phrase.behaviour:
+                    found.setdefault((phrase.said, other.said), Alike(phrase, other))
+            for form in forms:
+                first[form].append(phrase)
+        return tuple(found.values())
+
+    def left_out(self) -> dict[str, str]:
+        """Return the phrases that cannot be heard, only typed, each with the reason in words."""
+        reasons = {one.phrase.said: f"sounds like {one.other.said!r}" for one in self.alike}
+        for phrase in self.phrases:
+            lacks = [word for word in phrase.said.split() if not self.words[word].heard]
+            if lacks:
+                reasons[phrase.said] = f"no pronunciation of {', '.join(map(repr, lacks))}"
+        return reasons
+
+    def notices(self) -> tuple[str, ...]:
+        """Return a sentence for each word and phrase that cannot be heard, with what helps."""
+        whose = {word: id for words, id in self._table.names.items() for word in words}
+        lines = [
+            f"{said.word!r} can be typed, but not heard: "
+            + (
+                f"say how it is pronounced (tangy people pronounce {whose[said.word]})."
+                if said.word in whose
+                else "the activity does not say how it is pronounced (tangy activity check)."
+            )
+            for said in self.unknown
+        ]
+        lines += [
+            f"{one.phrase.said!r} can be typed, but not heard: it sounds like {one.other.said!r}."
+            for one in self.alike
+        ]
+        return tuple(lines)
+
+    def _look_up(self, word: str) -> Said:
+        if word in self._table.pronunciations:
+            return Said(word, self._table.pronunciations[word], self._table.sources[word])
+        known = self._pronounce(word)
+        if known:
+            return Said(word, known, "dictionary")
+        guessed = self._suggest(word)
+        return Said(word, (guessed,), "suggested") if guessed else Said(word, (), "")
+
+    def _known(self, phrase: Phrase) -> bool:
+        return all(self.words[word].heard for word in phrase.said.split())
+
+    def _find_alike(self) -> Iterator[Alike]:
+        """Find phrases of different meanings that have the same phones, whatever their words."""
+        first: dict[str, Phrase] = {}
+        for phrase in filter(self._known, self.phrases):
+            ways = set(self._ways(phrase))
+            other = next((first[way] for way in ways if _differ(first.get(way), phrase)), None)
+            if other is not None:
+                yield Alike(phrase, other)
+            else:
+                for way in ways:
+                    first.setdefault(way, phrase)
+
+    def _ways(self, phrase: Phrase) -> Iterator[str]:
+        """Yield the ways to say a phrase, as phones without a gap between words."""
+        choices = [self.words[word].phones for word in phrase.said.split()]
+        return (" ".join(way) for way in islice(product(*choices), MOST_WAYS))
+
+
+def _one_less(phones: Sequence[str]) -> Iterator[Words]:
+    """Yield what two phrases share that one phone more, or another one, tells apart."""
+    for place in range(len(phones)):
+        yield (*phones[:place], "", *phones[place + 1 :])  # any phone stands here
+    for place in range(len(phones) + 1):
+        yield (*phones[:place], "", *phones[place:])  # or none
+
+
+def _differ(other: Phrase | None, phrase: Phrase) -> bool:
+    return other is not None and (other.behaviour, other.user) != (phrase.behaviour, phrase.user)
+
+
+def distinct_word(phrasebook: Phrasebook, behaviour: str, phrase: Phrase) -> str:
+    """Return a word that only one behaviour is asked for with, and a phrase lacks; "" if none."""
+    users: dict[str, set[str]] = defaultdict(set)
+    for entry in (*phrasebook.table.all(), *phrasebook.table.keywords):
+        for word in entry.bare:
+            users[word].add(entry.behaviour)
+    own = (word for entry in phrasebook.table.all() for word in entry.bare
+           if entry.behaviour == behaviour and entry.user is None)  # fmt: skip
+    return next((w for w in own if users[w] == {behaviour} and w not in phrase.words), "")
+
+
+def phones_of(text: str, activity: Activity) -> str:
+    """Return the phones to say: as they were given in capitals, or those of words.
+
+    Raises:
+        ProfileError: one of several phones is none, or a word has no pronunciation at all.
+    """
+    if text.isupper() and (" " in text.strip() or text.strip() in PHONES):
+        return read_name_phones(text)
+    words = spoken(words_of(clean(text))).split()
+    found = [
+        [*activity.pronunciations.get(word, ()), *pronounce(word)] or [suggest(word)]
+        for word in words
+    ]
+    if not words or not all(ways[0] for ways in found):
+        raise ProfileError(plain(f"Nobody knows how {clean(text)!r} is said: give the phones."))
+    return ", ".join(ways[0] for ways in found)

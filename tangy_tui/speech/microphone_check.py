@@ -1,0 +1,376 @@
+"""A microphone checked in a minute: the quiet room, a few commands, a few other sentences.
+
+Nothing of what is recorded here is kept; what comes of it are figures and settings.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Protocol
+
+from tangy_hw.audio.meter import NO_SOUND_SECONDS, Meter
+from tangy_hw.audio.source import Source
+from tangy_hw.audio.utterances import split
+from tangy_hw.audio.wav import SoundError
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.language.stop_sentence import stops
+from tangy_tui.speech.calibration import (
+    WEIGHTS,
+    Asked,
+    Chosen,
+    Score,
+    choose,
+    score,
+    spare,
+)
+from tangy_tui.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
+from tangy_tui.speech.labels import Label
+from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.speech.loudness import LOUD, SILENT, advice, loudness
+from tangy_tui.speech.understanding import wanted
+
+COMMANDS = 6
+SENTENCES = (  # of everyday speech; one that means something in the activity is not used
+    "I would like a cup of tea and a biscuit.",
+    "My sister came to see me yesterday afternoon.",
+    "It is rather warm in here, could you open the window?",
+    "There was a lot of rain over the weekend.",
+    "What are we having for dinner this evening?",
+    "He has lived in that house for a very long time.",
+)
+OTHERS = 3
+QUIET_SECONDS = 3.0  # of the room alone
+WAIT_SECONDS = 6.0  # for a phrase to begin
+LONGEST_SECONDS = 6.0  # of a phrase
+PATIENCE = 30.0  # s without any sound, after which a check is given up
+LOOK_SECONDS = 0.5  # between two looks at the meter
+TIMES = 2  # that a phrase is asked for, or the quiet of the room
+
+Tell = Callable[[str], None]
+
+
+class Hearing(Protocol):
+    """The part of a recogniser that a check needs."""
+
+    said: bytes
+    speaking: Callable[[], None]
+
+    async def start(self, wanted: Wanted) -> None:
+        """Listen for something."""
+
+    async def hear(
+        self, sound: asyncio.Queue[bytes], expecting: Expecting = ..., *, endpoint: bool = ...
+    ) -> Evidence:
+        """Hear one utterance as it is spoken."""
+
+    async def decode(self, pcm: bytes, expecting: Expecting = ...) -> Evidence:
+        """Decode one utterance."""
+
+    async def pieces(self, pcm: bytes) -> list[bytes]:
+        """Cut a recording at its pauses."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What came of a check; loudness in dB below full scale (negative).
+
+    `heard` has for each text that was asked for the words that were heard with the settings that
+    were chosen, None where nothing was said. `advice` is what to change, a sentence each.
+    """
+
+    room: float
+    voice: float
+    heard: tuple[tuple[Asked, str | None], ...]
+    chosen: Chosen
+    parted: bool
+    advice: tuple[str, ...]
+
+    @property
+    def room_heard(self) -> bool:
+        """Whether there was any sound of the room, above which a voice can be measured."""
+        return self.room > SILENT
+
+    @property
+    def reason(self) -> str:
+        """Say in one sentence why it is not good enough to be kept; "" if it is."""
+        figures = self.chosen.figures
+        known = figures.understood + figures.offered
+        if self.parted:
+            return ""
+        if not figures.kept:
+            few = f"only {known}" if known else "none"
+            were = "was" if known == 1 else "were"
+            why = f"{few} of {figures.commands} commands {were} understood"
+        elif not figures.others:
+            why = "none of the other sentences was heard"
+        else:
+            were = "was" if figures.taken == 1 else "were"
+            why = f"{figures.taken} of {figures.others} other sentences {were} taken for a command"
+        return f"Nothing was stored: {why}."
+
+    def document(self) -> dict[str, Any]:
+        """Return it as one JSON document."""
+        return {
+            "room_db": round(self.room, 1) if self.room_heard else None,
+            "voice_db": round(self.voice, 1),
+            "heard": [
+                {"asked": a.text, "command": a.meant is not None, "heard": words}
+                for a, words in self.heard
+            ],
+            "settings": asdict(self.chosen.settings),
+            "figures": asdict(self.chosen.figures),
+            "usual": asdict(self.chosen.usual),
+            "parted": self.parted,
+            "reason": self.reason or None,
+            "advice": list(self.advice),
+        }
+
+
+def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[Asked]:
+    """Return what is to be said: commands of different behaviours, then other sentences.
+
+    The commands have many different words, and none has just one, because that proves little.
+    """
+    heard = set(lexicon.heard())
+    phrases = [p for p in phrasebook.table.all() if p.heard and p.said in heard and len(p.bare) > 1]
+    chosen: list[Asked] = []
+    known: set[str] = set()
+    behaviours: set[str] = set()
+    while len(chosen) < COMMANDS:
+        rest = [p for p in phrases if p.behaviour not in behaviours] or [
+            p for p in phrases if p.said not in {a.text for a in chosen}
+        ]
+        if not rest:
+            break
+        best = max(rest, key=lambda p: (len({*p.bare} - known), -p.rank[0], -p.rank[1]))
+        known.update(best.bare)
+        behaviours.add(best.behaviour)
+        chosen.append(Asked(best.said, Label(best.behaviour, best.user)))
+    others = [s for s in SENTENCES if phrasebook.understand(s) is None and not stops(s)]
+    return [*chosen, *(Asked(text, None) for text in others[:OTHERS])]
+
+
+def numbered(asked: Sequence[Asked]) -> list[str]:
+    """Return what is to be said, a line each."""
+    return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
+
+
+class MicrophoneCheck:
+    """One check of one source. A recording is taken for the answers, one after the other."""
+
+    def __init__(
+        self,
+        source: Source,
+        phrasebook: Phrasebook,
+        recogniser: Hearing,
+        asked: Sequence[Asked],
+        tell: Tell,
+        phrases: Sequence[str] | None = None,
+        patience: float = PATIENCE,
+    ) -> None:
+        """Make a check.
+
+        Args:
+            source: is closed when it is over.
+            phrasebook: what can be said.
+            recogniser: is started and told what to listen for.
+            asked: what is to be said, from `to_say`.
+            tell: says what to do, and what is wrong.
+            phrases: those that are listened for, if not all that can be said.
+            patience: seconds without any sound, after which it is given up.
+        """
+        self._source = source
+        self._phrasebook = phrasebook
+        self._recogniser = recogniser
+        self._asked = asked
+        self._tell = tell
+        self._meter = Meter()
+        self._phrases = phrases
+        self._sound: asyncio.Queue[bytes] | None = None
+        self._left = 0  # bytes for which it is still listened
+        self._spoke = False
+        self._ended = False
+        self._room = bytearray()
+        self._quiet = asyncio.Event()
+        self._wrong = ""
+        self._patience = patience
+        self._offered = False
+
+    async def run(self) -> Checked:
+        """Listen, and find the settings. The source is closed in the end.
+
+        Raises:
+            SoundError: the source gives nothing.
+            SpeechUnavailable: the worker cannot run here.
+        """
+        try:
+            await self._recogniser.start(wanted(self._phrasebook, USUAL, self._phrases))
+            if self._source.live:
+                room, sounds = await self._live()
+            else:
+                room, sounds = await self._recorded()
+        finally:
+            await self._source.close()
+        if not any(sounds):
+            raise SoundError(f"{self._source.name}: nobody was heard, so nothing was changed.")
+        return await self._find(room, sounds)
+
+    async def _recorded(self) -> tuple[float, list[bytes]]:
+        self._tell(f"{self._source.name} is taken to hold these, with a second of quiet between:")
+        for line in numbered(self._asked):
+            self._tell(line)
+        pcm = b"".join([chunk async for chunk in self._source])
+        found = await self._recogniser.pieces(pcm)
+        if len(found) < len(self._asked):
+            found = max(found, split(pcm), key=len)  # noise has no pauses, but is less loud
+        sounds = [*found, *([b""] * len(self._asked))][: len(self._asked)]
+        return loudness(pcm, 1 - LOUD), sounds
+
+    async def _live(self) -> tuple[float, list[bytes]]:
+        self._source.tell = self._tell
+        self._recogniser.speaking = self._began
+        pump = asyncio.create_task(self._pump())
+        watch = asyncio.create_task(self._watch())
+        try:
+            room = await self._room_alone(pump)
+            sounds: list[bytes] = []
+            if not self._ended:
+                count = len(self._asked)
+                self._tell(f"Now say each of these, as you would to Tangy ({count} in all).")
+            for number, asked in enumerate(self._asked, 1):
+                sounds.append(await self._say(number, asked))
+                await self._still_there(pump)
+            return room, sounds
+        finally:
+            for task in (pump, watch):
+                task.cancel()
+            await asyncio.wait({pump, watch})
+
+    async def _room_alone(self, pump: asyncio.Task[None]) -> float:
+        """Return how loud the room is; where nothing is heard of it, it has a second chance.
+
+        A microphone that is muted sends silence; so does one that lets only voices through.
+        """
+        for _ in range(TIMES):
+            self._tell(f"Please be quiet for {QUIET_SECONDS:g} seconds.")
+            self._room.clear()
+            self._quiet.clear()
+            await self._quiet.wait()
+            await self._still_there(pump)
+            if self._ended or not self._silent(NO_SOUND_SECONDS):
+                break
+            while not self._ended and self._silent(NO_SOUND_SECONDS):  # noqa: ASYNC110 - by the clock
+                await asyncio.sleep(LOOK_SECONDS)
+            await self._still_there(pump)
+        return loudness(bytes(self._room), LOUD)
+
+    def _silent(self, seconds: float) -> bool:
+        return self._meter.seconds_since_sound >= seconds
+
+    async def _still_there(self, pump: asyncio.Task[None]) -> None:
+        """Raise what has ended the sound, if that was no ordinary end."""
+        if pump.done():
+            await pump
+        elif self._ended:
+            raise SoundError(
+                f"{self._source.name}: nothing was heard for {self._patience:g} s, so nothing was "
+                "changed: is the microphone plugged in? It may be muted."
+            )
+
+    async def _say(self, number: int, asked: Asked) -> bytes:
+        """Ask for one text, twice if nothing is heard; return its sound."""
+        for again in range(TIMES):
+            if self._ended:
+                break
+            request = "I heard nothing. Please say it again:" if again else f"{number}."
+            self._tell(f"{request} {asked.text}")
+            self._spoke, self._sound = False, asyncio.Queue()
+            self._left = 2 * round(WAIT_SECONDS * RATE)
+            self._meter.begin()
+            await self._recogniser.hear(self._sound, endpoint=True)
+            self._sound = None
+            if self._spoke:
+                return self._recogniser.said
+        return b""
+
+    async def _pump(self) -> None:
+        """Take the sound as it comes, and keep what is to be heard."""
+        try:
+            async for chunk in self._source:
+                self._meter.feed(chunk)
+                if not self._quiet.is_set():
+                    self._room += chunk
+                    if len(self._room) >= 2 * RATE * QUIET_SECONDS:
+                        self._quiet.set()
+                elif self._sound is not None:
+                    self._sound.put_nowait(chunk)
+                    self._left -= len(chunk)
+                    if self._left <= 0:
+                        self._stop()
+        finally:
+            self._end()
+
+    def _began(self) -> None:
+        self._spoke, self._left = True, 2 * round(LONGEST_SECONDS * RATE)
+
+    def _stop(self) -> None:
+        if self._sound is not None:
+            self._sound.put_nowait(b"")
+            self._sound = None
+
+    def _end(self) -> None:
+        self._ended = True
+        self._quiet.set()
+        self._stop()
+
+    async def _watch(self) -> None:
+        """Say what is wrong with the sound, once for each thing."""
+        while True:
+            await asyncio.sleep(LOOK_SECONDS)
+            words = self._meter.words(speaking=self._spoke)
+            kind = words.partition(":")[0].rstrip("0123456789 s")
+            if words and kind != self._wrong:
+                self._tell(words)
+                if not self._offered and self._silent(NO_SOUND_SECONDS):
+                    self._offered = True
+                    self._tell("It goes on as soon as something is heard; Ctrl+C ends it.")
+            self._wrong = kind
+            if self._silent(self._patience):
+                self._end()
+
+    async def _find(self, room: float, sounds: Sequence[bytes]) -> Checked:
+        """Decode what was said, with one weight or with all of them."""
+        self._tell("Thank you. One moment.")
+        scores: dict[float, list[Score]] = {}
+        words: dict[float, list[str | None]] = {}
+        for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):
+            settings = Settings(garbage=weight)
+            if weight != USUAL.garbage:
+                await self._recogniser.start(wanted(self._phrasebook, settings, self._phrases))
+            heard = [await self._decoded(pcm) for pcm in sounds]
+            words[weight] = [
+                one.words if pcm else None for one, pcm in zip(heard, sounds, strict=True)
+            ]
+            scores[weight] = [
+                score(one, asked, self._phrasebook, settings)
+                for one, asked, pcm in zip(heard, self._asked, sounds, strict=True)
+                if pcm or asked.meant  # silence proves nothing of other sentences
+            ]
+            if spare(scores[USUAL.garbage]):
+                break
+        chosen = choose(scores)
+        voice = loudness(b"".join(sounds), LOUD)
+        figures = chosen.figures
+        return Checked(
+            room,
+            voice,
+            tuple(zip(self._asked, words[chosen.settings.garbage], strict=True)),
+            chosen,
+            figures.parted and figures.others > 0,
+            tuple(advice(room, voice, sounds, figures.perfect)),
+        )
+
+    async def _decoded(self, pcm: bytes) -> Evidence:
+        return await self._recogniser.decode(pcm) if pcm else Evidence()

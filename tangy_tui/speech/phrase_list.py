@@ -1,0 +1,160 @@
+"""The phrasebook as people read it: what can be said for what, and how each word is said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.person import Person
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.speech.lexicon import Lexicon, Said
+from tangy_tui.speech.name_pronunciation import HowSaid, how_said
+
+SOURCES = {
+    "activity": "the activity says so",
+    "person": "noted for the person",
+    "dictionary": "dictionary",
+    "suggested": "guessed, not heard yet",
+    "": "unknown, cannot be heard",
+}
+"""Where a pronunciation comes from, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """What can be said or typed for a behaviour; `to_people`: any of these with a person."""
+
+    behaviour: str
+    question: str
+    phrases: tuple[str, ...]
+    keywords: tuple[str, ...]
+    to_people: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """What a person can be called in a command, and how the name is said."""
+
+    person: Person
+    ways: tuple[str, ...]
+    said: HowSaid
+
+
+@dataclass(frozen=True)
+class PhraseList:
+    """Everything that can be said in an activity among some people."""
+
+    title: str
+    behaviours: tuple[Ways, ...]
+    people: tuple[Called, ...]
+    words: tuple[Said, ...]
+    left_out: Mapping[str, str]
+    """What cannot be heard, only typed, with the reason."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Write it for a script."""
+        return {
+            "title": self.title,
+            "behaviours": [
+                {
+                    "behaviour": ways.behaviour,
+                    "question": ways.question,
+                    "phrases": list(ways.phrases),
+                    "keywords": list(ways.keywords),
+                    "to_people": ways.to_people,
+                }
+                for ways in self.behaviours
+            ],
+            "people": [
+                {
+                    "id": called.person.id,
+                    "name": called.person.name,
+                    "ways": list(called.ways),
+                    **called.said.to_json(),
+                }
+                for called in self.people
+            ],
+            "words": [
+                {"word": said.word, "phones": list(said.phones), "source": said.source or None}
+                for said in self.words
+            ],
+            "left_out": dict(self.left_out),
+        }
+
+
+def list_phrases(activity: Activity, people: Sequence[Person]) -> PhraseList:
+    """List what can be said; it looks every word up, which takes some 50 ms."""
+    phrasebook = Phrasebook(activity, people)
+    lexicon = Lexicon(phrasebook)
+    return PhraseList(
+        activity.title,
+        tuple(_ways(phrasebook, activity)),
+        tuple(_called(phrasebook, people)),
+        tuple(sorted(lexicon.words.values(), key=lambda said: said.word)),
+        lexicon.left_out(),
+    )
+
+
+def _ways(phrasebook: Phrasebook, activity: Activity) -> Iterator[Ways]:
+    own = [p for p in phrasebook.table.all() if p.user is None and p.heard]
+    for behaviour in activity.behaviours.values():
+        yield Ways(
+            behaviour.name,
+            behaviour.question,
+            tuple(p.shown for p in own if p.behaviour == behaviour.name),
+            tuple(" ".join(words) for words in behaviour.keywords),
+            behaviour.effect == "go to user",
+        )
+
+
+def _called(phrasebook: Phrasebook, people: Sequence[Person]) -> Iterator[Called]:
+    table = phrasebook.table
+    nouns = dict.fromkeys(phrasebook.nouns.values())
+    for person in people:
+        number = next((n for n, id in table.numbers.items() if id == person.id), "")
+        name = next((" ".join(words) for words, id in table.names.items() if id == person.id), "")
+        ways = (*(f"{noun} {number}" for noun in nouns if number), name, *person.seats)
+        yield Called(person, tuple(dict.fromkeys(filter(None, ways))), how_said(person))
+
+
+class Item(NamedTuple):
+    """One entry of the page: its heading, what it is about, and what there is to say of it.
+
+    `phones` are those to hear (a comma between words; "" for none), `person` the id of whose name
+    it is, if it is one.
+    """
+
+    heading: str
+    about: str
+    texts: tuple[str, ...]
+    phones: str = ""
+    person: str | None = None
+
+    def has(self, wanted: str) -> bool:
+        """Whether all words of a search are in it."""
+        text = " ".join((self.about, *self.texts)).casefold()
+        return all(word in text for word in wanted.casefold().split())
+
+
+def items(listed: PhraseList) -> Iterator[Item]:
+    """Yield the page entry by entry."""
+    phones = {said.word: said.phones[0] for said in listed.words if said.phones}
+    for ways in listed.behaviours:
+        texts = [", ".join(ways.phrases) + ("; or with a person" if ways.to_people else "")]
+        texts += [f"keywords: {', '.join(ways.keywords)}"] if ways.keywords else []
+        first = ways.phrases[0].split() if ways.phrases else []
+        aloud = ", ".join(phones[word] for word in first) if phones.keys() >= set(first) else ""
+        yield Item("What can be said for what", ways.behaviour, tuple(texts), aloud)
+    for called in listed.people:
+        texts = [", ".join(called.ways), called.said.sentence]
+        aloud, id = called.said.phones, called.person.id
+        yield Item("People and seats", called.person.name, tuple(texts), aloud, id)
+    reasons = listed.left_out.values()
+    for reason in dict.fromkeys(reasons):
+        out = [phrase for phrase, why in listed.left_out.items() if why == reason]
+        yield Item("Cannot be heard, only typed", reason, (", ".join(out),))
+    for said in listed.words:
+        text = f"{' or '.join(said.phones) or '?'} ({SOURCES[said.source]})"
+        yield Item("How words are said", said.word, (text,), phones.get(said.word, ""))

@@ -1,0 +1,253 @@
+"""Practice: how well spoken commands are understood, counted on recordings with known words."""
+
+from __future__ import annotations
+
+import math
+import os
+import statistics
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any, Literal, Protocol
+
+from tangy_hw.audio.wav import SoundError, read_wav, seconds_cut_off
+from tangy_profiles.reading import plain
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.verification import Say, Stop
+from tangy_tui.speech.evidence import LONGEST, RATE, Evidence, Expecting, Settings, Wanted
+from tangy_tui.speech.labels import STOP, Found, Label
+from tangy_tui.speech.recogniser import SpeechUnavailable
+from tangy_tui.speech.transcription import tier_of
+from tangy_tui.speech.understanding import understand, wanted
+
+Outcome = Literal["right", "offered", "wrong", "nothing"]
+NOTHING = "nothing"
+OUTCOMES: tuple[Outcome, ...] = ("right", "offered", "wrong", "nothing")
+
+
+class Hearing(Protocol):
+    """The part of a recogniser that practice needs."""
+
+    @property
+    def pid(self) -> int | None:
+        """The process that decodes."""
+
+    async def start(self, wanted: Wanted) -> None:
+        """Listen for something."""
+
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+        """Decode one utterance."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What became of one recording.
+
+    `understood` is what was understood first, sure or not ("" is nothing); `outcome` is right
+    (sure), offered (the right one is among the choices), wrong (another one is asked about or
+    offered) or nothing; of a recording without a command, all but nothing are false accepts.
+    """
+
+    file: str
+    said: Label
+    heard: str
+    tier: str
+    understood: str
+    confidence: float
+    choices: tuple[Label, ...]
+    outcome: Outcome
+    seconds: float
+    latency: float  # s from the end of the sound to the result
+
+    def to_json(self) -> dict[str, Any]:
+        """Write it for a document."""
+        choices = [{"behaviour": c.behaviour, "user": c.user} for c in self.choices]
+        said = {"said": self.said.behaviour, "user": self.said.user}
+        return {**asdict(self), **said, "choices": choices, "latency": round(self.latency, 4)}
+
+
+@dataclass(frozen=True, slots=True)
+class Practice:
+    """All recordings of a folder, heard with the same settings; `cpu` in s, where it is known.
+
+    `cut_off` are those that end before they say they do: what there is of them was heard.
+    `unnamed` were not heard, because their names do not tell what is said in them.
+    """
+
+    settings: Settings
+    rows: tuple[Row, ...]
+    left_out: tuple[tuple[str, str], ...]
+    cpu: float | None
+    cut_off: tuple[str, ...] = ()
+    unnamed: tuple[str, ...] = ()
+
+    @property
+    def commands(self) -> list[Row]:
+        """The recordings of a command."""
+        return [row for row in self.rows if row.said.behaviour is not None]
+
+    @property
+    def others(self) -> list[Row]:
+        """The recordings of no command."""
+        return [row for row in self.rows if row.said.behaviour is None]
+
+    def intents(self) -> dict[str, Counter[Outcome]]:
+        """Count the outcomes of each intent, in the order of their names."""
+        counted: dict[str, Counter[Outcome]] = defaultdict(Counter)
+        for row in sorted(self.commands, key=lambda row: row.said.words):
+            counted[row.said.words][row.outcome] += 1
+        return dict(counted)
+
+    def share(self, *outcomes: Outcome) -> float | None:
+        """Return the share of the commands with one of these outcomes; None if there are none."""
+        commands = self.commands
+        return (
+            sum(row.outcome in outcomes for row in commands) / len(commands) if commands else None
+        )
+
+    def false_accepts(self) -> tuple[int, int]:
+        """Count the recordings of no command that were taken for one: surely, and as a choice."""
+        taken = Counter(row.tier for row in self.others)
+        return taken["sure"] + taken["stop"], taken["unsure"]
+
+    def latencies(self) -> tuple[float, float, float]:
+        """Return median, 95th percentile and worst of the times to a result, in s."""
+        times = sorted(row.latency for row in self.rows) or [0.0]
+        return (statistics.median(times), times[math.ceil(0.95 * len(times)) - 1], times[-1])
+
+    def confusion(self) -> dict[str, Counter[str]]:
+        """Count what was understood first, sure or not, for each thing that was said."""
+        counted: dict[str, Counter[str]] = defaultdict(Counter)
+        for row in sorted(self.rows, key=lambda r: (r.said.behaviour is None, r.said.words)):
+            counted[row.said.words][row.understood or NOTHING] += 1
+        return dict(counted)
+
+    def document(self) -> dict[str, Any]:
+        """Return everything as one JSON document."""
+        sure, offered = self.false_accepts()
+        median, late, worst = (round(1000 * seconds, 1) for seconds in self.latencies())
+        return {
+            "files": len(self.rows),
+            "settings": asdict(self.settings),
+            "intents": {
+                intent: {"said": counts.total(), **{name: counts[name] for name in OUTCOMES}}
+                for intent, counts in self.intents().items()
+            },
+            "accuracy": _rounded(self.share("right")),
+            "offered": _rounded(self.share("right", "offered")),
+            "wrong": _rounded(self.share("wrong")),
+            "false_accepts": {"sure": sure, "offered": offered, "of": len(self.others)},
+            "latency_ms": {"median": median, "p95": late, "worst": worst},
+            "sound_seconds": round(sum(row.seconds for row in self.rows), 2),
+            "cpu_seconds": None if self.cpu is None else round(self.cpu, 2),
+            "confusion": {said: dict(counts) for said, counts in self.confusion().items()},
+            "left_out": [{"file": file, "why": why} for file, why in self.left_out],
+            "unnamed": list(self.unnamed),
+            "cut_off": list(self.cut_off),
+            "rows": [row.to_json() for row in self.rows],
+        }
+
+
+async def practise(
+    found: Found,
+    phrasebook: Phrasebook,
+    settings: Settings,
+    recogniser: Hearing,
+    tell: Callable[[int, int], None] = lambda done, of: None,
+    *,
+    phrases: Sequence[str] | None = None,
+) -> Practice:
+    """Decode every recording as one whole utterance.
+
+    Args:
+        found: the recordings, and what was said in each.
+        phrasebook: what can be said.
+        settings: how it is listened.
+        recogniser: decodes; is started here, and left running.
+        tell: is called after each with how many are done, and of how many.
+        phrases: those that are listened for, if not all that can be said.
+
+    Raises:
+        SpeechUnavailable: the worker cannot run here.
+    """
+    await recogniser.start(wanted(phrasebook, settings, phrases))
+    began = cpu_seconds(recogniser.pid)
+    rows: list[Row] = []
+    left_out = [(os.fspath(file), why) for file, why in found.left_out]
+    cut_off: list[str] = []
+    for done, (file, label) in enumerate(found.recordings, 1):
+        try:
+            pcm = read_wav(found.folder / file)
+            start = perf_counter()
+            evidence = await recogniser.decode(pcm)
+            said = understand(evidence, phrasebook, settings)
+            latency = perf_counter() - start
+            rows.append(judged(file, label, said, len(pcm) / 2 / RATE, latency))
+            if seconds_cut_off(found.folder / file):
+                cut_off.append(os.fspath(file))
+        except SoundError as error:
+            left_out.append((os.fspath(file), _reason(error, found.folder / file)))
+        except SpeechUnavailable:
+            left_out.append((os.fspath(file), "could not be decoded"))
+        tell(done, len(found.recordings))
+    ended = cpu_seconds(recogniser.pid)
+    cpu = None if began is None or ended is None or ended < began else ended - began
+    unnamed = tuple(map(os.fspath, found.unnamed))
+    return Practice(settings, tuple(rows), tuple(left_out), cpu, tuple(cut_off), unnamed)
+
+
+def judged(file: Path, label: Label, said: Say | Stop, seconds: float, latency: float) -> Row:
+    """Compare what was understood with what was said."""
+    tier = tier_of(said)
+    commands = (said.commands or ()) if isinstance(said, Say) else ()
+    choices = tuple(Label(c.behaviour, c.arguments.get("user")) for c in commands)
+    if isinstance(said, Stop):
+        choices = (Label(STOP),)
+    meant = [_fits(label, choice) for choice in choices]
+    outcome: Outcome = "nothing"
+    if tier in ("sure", "stop"):
+        outcome = "right" if meant[0] else "wrong"
+    elif tier == "unsure":
+        outcome = "offered" if any(meant) else "wrong"
+    return Row(
+        os.fspath(file),
+        label,
+        said.text,
+        tier,
+        _called(choices[0], label) if choices else "",
+        round(said.confidence, 3) if isinstance(said, Say) else 1.0,
+        choices,
+        outcome,
+        round(min(seconds, LONGEST), 3),
+        latency,
+    )
+
+
+def cpu_seconds(pid: int | None) -> float | None:
+    """Return the CPU time that a process has used; None where the system does not tell it so."""
+    try:
+        told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
+    except (OSError, ValueError, IndexError):
+        return None
+
+
+def _fits(said: Label, understood: Label) -> bool:
+    """Say whether it is what was said; where no person was demanded, anybody is right."""
+    return said.behaviour == understood.behaviour and said.user in (None, understood.user)
+
+
+def _called(understood: Label, said: Label) -> str:
+    """Name what was understood: with the person only where a person was demanded."""
+    return understood.words if said.user is not None else understood.behaviour or ""
+
+
+def _reason(error: SoundError, file: Path) -> str:
+    """Cut from an error the file, which is named anyway, and how to do better."""
+    return str(error).removeprefix(f"{plain(str(file))}: ").partition(";")[0].rstrip(".")
+
+
+def _rounded(share: float | None) -> float | None:
+    return None if share is None else round(share, 4)

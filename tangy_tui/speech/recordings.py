@@ -1,0 +1,210 @@
+"""What was said while teaching, kept with consent: a labelled set for practice.
+
+Each utterance lies in the folder of what was verified, DATA/recordings/INTENT/TIME-N.wav, so that
+`tangy listen --bench DATA/recordings` reads it as it is. The label is what the teacher said yes to.
+Nothing else is kept: what nobody said yes to may be the talk of people who never agreed.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import wave
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+
+from tangy_hw.audio.wav import RATE
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_profiles.store import Store
+from tangy_tui.learning.teaching_events import Begun, Executed, StepUndone, TeachingEvent
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Stop,
+)
+
+FOLDER = "recordings"  # in the data folder
+CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
+"""The kinds of event. Consent has who (a teacher) and yes; forgetting takes back all consent."""
+
+_OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
+
+
+def consent_question(store: Store, options: str = "") -> str:
+    """Return what a teacher is asked before anything is recorded.
+
+    Args:
+        store: in whose folder recordings lie.
+        options: which the command that deletes them needs, with a space before them.
+    """
+    return (
+        "May Tangy keep recordings of the commands that you say, and say yes to, while you teach, "
+        f"to practise on? They stay on this machine, in {store.folder / FOLDER}; "
+        f"`tangy listen --forget-recordings{options}` deletes them all."
+    )
+
+
+def consented(store: Store, teacher: str) -> bool:
+    """Say whether a teacher has agreed to be recorded, and nothing was forgotten since."""
+    agreed = False
+    for event in store.events(CONSENT, FORGOTTEN):
+        if event.kind == FORGOTTEN:
+            agreed = False
+        elif event.body.get("who") == teacher:
+            agreed = event.body.get("yes") is True
+    return agreed
+
+
+def consent(store: Store, teacher: str, yes: bool) -> None:
+    """Note who agreed to be recorded, or did not."""
+    store.append(CONSENT, {"who": teacher, "yes": yes})
+
+
+def forget_recordings(store: Store) -> tuple[int, int]:
+    """Delete every recording, and take back all consent.
+
+    Returns:
+        How many were deleted, and how many files and links were left, being something else.
+
+    Raises:
+        StoreError: the log cannot be written.
+        OSError: a recording cannot be deleted.
+    """
+    top = store.folder / FOLDER
+    deleted = left = 0
+    store.append(FORGOTTEN, {})
+    if top.is_symlink() or not top.is_dir():
+        return 0, int(top.is_symlink() or top.exists())
+    for folder in top.iterdir():
+        if folder.is_symlink() or not folder.is_dir():
+            left += 1
+            continue
+        for file in folder.iterdir():
+            if _OURS.fullmatch(file.name.removeprefix(".")) and not file.is_symlink():
+                file.unlink()
+                deleted += 1
+            else:
+                left += 1
+        with suppress(OSError):
+            folder.rmdir()  # where something else lies in it, it stays
+    with suppress(OSError):
+        top.rmdir()
+    return deleted, left
+
+
+class Recorder:
+    """Keeps utterances that were verified, and only those. Ask for consent before.
+
+    Give it every spoken command with `heard`, then all that follows with `follow`.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        teacher: str,
+        *,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+    ) -> None:
+        """Record into a data folder.
+
+        Args:
+            folder: the data folder.
+            teacher: whose voice it is; is not written down with the recordings.
+            now: the clock that they are named by.
+
+        Raises:
+            TangyError: the folder of recordings is a symbolic link, or cannot be closed to others.
+        """
+        self.folder = folder / FOLDER
+        self.teacher = teacher
+        self.kept = 0
+        """How many recordings were kept."""
+        self.tell: Callable[[str], None] = lambda sentence: None
+        """Is called with a sentence if nothing can be kept any more."""
+        self._now = now
+        self._pcm = b""  # of the command that is not verified yet
+        self._texts: frozenset[str] = frozenset()  # what it may be called in a question
+        self._named: frozenset[tuple[str, str | None]] = frozenset()  # what it may mean, for whom
+        self._works = True
+        if self.folder.is_symlink():  # what is kept elsewhere would not be forgotten
+            raise TangyError(
+                plain(f"{self.folder}: is a symbolic link; make it a folder to record into.")
+            )
+        if self.folder.is_dir():
+            try:
+                self.folder.chmod(0o700)
+            except OSError as error:
+                why = f"others may read it, and that cannot be changed ({error.strerror})"
+                raise TangyError(plain(f"{self.folder}: {why}; move it away to record.")) from None
+
+    def heard(self, pcm: bytes, command: Say | Stop | Reply) -> None:
+        """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
+        if isinstance(command, Reply):
+            return  # the question that is answered is still about what was said before
+        self._pcm = b""
+        if isinstance(command, Say) and command.commands:
+            self._pcm = pcm
+            self._texts = frozenset((command.text, *(c.heard for c in command.commands)))
+            self._named = frozenset(
+                (c.behaviour, c.arguments.get("user")) for c in command.commands
+            )
+
+    def follow(self, events: Iterable[TeachingEvent]) -> None:
+        """Take note of what followed: what was executed was verified."""
+        for event in events:
+            match event:
+                case Executed(step=step):
+                    self.verified(step.behaviour, step.target)
+                case Rejected() | NotUnderstood() | Begun() | StepUndone():
+                    self._pcm = b""
+                case Refused(heard=text) if text:  # without: the answer was, and the question stays
+                    self._pcm = b""
+                case (Asked() | Offered()) as question if question.heard not in self._texts:
+                    self._pcm = b""  # it is about something typed meanwhile
+                case _:
+                    pass
+
+    def verified(self, behaviour: str, target: str | None) -> None:
+        """Keep the last utterance as that of a behaviour, and of the person if it named one.
+
+        Most behaviours are for somebody whom nobody named: whoever Tangy is with. One that the
+        utterance cannot mean was asked for otherwise.
+        """
+        pcm, self._pcm = self._pcm, b""
+        if not pcm or not self._works or behaviour not in {meant for meant, _ in self._named}:
+            return
+        named = target if (behaviour, target) in self._named else None
+        label = " ".join(filter(None, (behaviour, named)))
+        try:
+            self._write(pcm, self.folder / re.sub(r"\W+", "-", label))
+            self.kept += 1
+        except OSError as error:
+            self._works = False
+            self.tell(f"Nothing more is recorded: {self.folder} ({error.strerror}).")
+
+    def _write(self, pcm: bytes, folder: Path) -> None:
+        """Write a file that only its owner reads, and that is there as a whole or not at all."""
+        for place in (folder.parent, folder):
+            if place.is_symlink():
+                raise OSError(errno.ELOOP, "it is, or holds, a symbolic link")
+            place.mkdir(mode=0o700, exist_ok=True)
+            place.chmod(0o700)  # it may have been there before
+        time = self._now().astimezone(UTC).strftime("%Y%m%dT%H%M%S")
+        number = 1
+        while (file := folder / f"{time}-{number}.wav").exists():
+            number += 1
+        begun = folder / f".{file.name}"
+        descriptor = os.open(begun, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        with os.fdopen(descriptor, "wb") as raw, wave.open(raw, "wb") as written:
+            written.setparams((1, 2, RATE, 0, "NONE", ""))
+            written.writeframes(pcm)
+        begun.rename(file)

@@ -1,0 +1,110 @@
+"""Recordings that are listened to: what was said in each, and what it commands."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tangy_hw.audio.wav import HEADER, read_header, read_wav
+from tangy_profiles.reading import plain
+from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.learning.verification import Say, Stop
+from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, Settings
+from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.speech.recogniser import Recogniser
+from tangy_tui.speech.understanding import understand, wanted
+
+Row = dict[str, Any]
+
+
+def listen(
+    files: Sequence[Path],
+    phrasebook: Phrasebook,
+    settings: Settings = USUAL,
+    tell: Callable[[int, Sequence[Row]], None] = lambda done, rows: None,
+) -> list[Row]:
+    """Decode WAV files: one row for each command in them, in order.
+
+    A row has file, heard, tier (sure, unsure, nothing, stop), behaviour (only of a sure one),
+    arguments, confidence, and choices, which may be meant, the likeliest first. A file is heard as
+    one command; if it is none for sure, or too long, and has pauses, what is between them.
+
+    Args:
+        files: are looked at first, and then read one by one.
+        phrasebook: what can be said.
+        settings: how it is listened.
+        tell: is called after each file with how many are done, and the rows of this one.
+
+    Raises:
+        SoundError: a file is missing or cannot be read as sound; it is named.
+        SpeechUnavailable: the worker cannot run here.
+    """
+    for file in files:
+        _look_at(file)
+    return asyncio.run(_listen(files, phrasebook, settings, tell)) if files else []
+
+
+def _look_at(file: Path) -> None:
+    """Refuse what is no WAV file, before any other one has been listened to."""
+    if not file.is_file() or not os.access(file, os.R_OK):
+        read_wav(file)  # which says what is wrong
+    with file.open("rb") as opened:
+        read_header(opened.read(HEADER), plain(str(file)))
+
+
+async def _listen(
+    files: Sequence[Path],
+    phrasebook: Phrasebook,
+    settings: Settings,
+    tell: Callable[[int, Sequence[Row]], None],
+) -> list[Row]:
+    recogniser = Recogniser()
+    rows: list[Row] = []
+    try:
+        lexicon = Lexicon(phrasebook, suggest=lambda word: "")
+        await recogniser.start(wanted(phrasebook, settings, lexicon.heard()))
+        for done, file in enumerate(files, 1):
+            pcm = read_wav(file)
+            said = understand(await recogniser.decode(pcm), phrasebook, settings)
+            settled = tier_of(said) in ("sure", "stop") and len(pcm) <= 2 * RATE * LONGEST
+            pieces = [] if settled else await recogniser.pieces(pcm)
+            found = [_row(file, said)]
+            if len(pieces) > 1:
+                found = [
+                    _row(file, understand(await recogniser.decode(piece), phrasebook, settings))
+                    for piece in pieces
+                ]
+            rows += found
+            tell(done, found)
+    finally:
+        await recogniser.close()
+    return rows
+
+
+def tier_of(said: Say | Stop) -> str:
+    """Return in one word what follows from an utterance: sure, unsure, nothing or stop."""
+    if isinstance(said, Stop):
+        return "stop"
+    return "nothing" if not said.commands else "sure" if said.sure else "unsure"
+
+
+def _row(file: Path, said: Say | Stop) -> Row:
+    tier = tier_of(said)
+    commands = said.commands or () if isinstance(said, Say) else ()
+    first = commands[0] if tier == "sure" else None
+    return {
+        "file": os.fspath(file),
+        "heard": said.text,
+        "tier": tier,
+        "behaviour": first.behaviour if first else None,
+        "arguments": dict(first.arguments) if first else {},
+        "confidence": round(said.confidence, 3) if isinstance(said, Say) else 1.0,
+        "choices": [_choice(command) for command in commands],
+    }
+
+
+def _choice(command: Command) -> dict[str, Any]:
+    return {"behaviour": command.behaviour, "arguments": dict(command.arguments)}

@@ -1,0 +1,137 @@
+"""What spoken words mean, and how sure that is: a question, a choice of up to three, or nothing.
+
+Three tiers: *sure* words are asked about at once, *unsure* ones are offered as choices (each of
+which is asked about in its turn), and of others it is only said what was heard. Words that stop the
+robot do so in every mode. In the paper's mode there is one tier: n-gram and keywords.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from difflib import SequenceMatcher
+
+from tangy_tui.language.commands import Command, Phrasebook
+from tangy_tui.language.stop_sentence import STOPS, stops
+from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.speech.evidence import Evidence, Settings, Wanted
+
+# How likely words are to be the command they come nearest to: a logistic over the confidence of
+# the phrasebook, over how many telling words it knows, and over how much better words explain the
+# sound than the grammar or any phones do. Fitted, and the limits set, by tests/bench/speech.py on
+# voices and sentences that no figure is quoted for.
+CONFIDENCE_WEIGHT, KNOWN_WEIGHT, MARGIN_WEIGHT, OFFSET = 14.98, 0.39, 1.51, -12.98
+LEAST_MARGIN, MOST_MARGIN = -1.5, 1.0
+MOST_KNOWN = 3
+SURE = 0.6
+UNSURE = 0.35
+SMALL_MARGIN = -0.25  # below it a whole phrase explains the sound better than other words do
+SAME_SOUND = 0.75  # likeness of letters from which such words are taken for the phrase, misheard
+UNDERSTOOD = 0.35
+"""The confidence below which the paper's mode takes nothing for a command."""
+
+OWN_NAME = {"tangy": ("T AE NG IY",)}
+YES = ("yes", "yes please", "yes do it", "yes that is right")
+NO = ("no", "no thank you", "no do not", "no that is wrong")
+LEAST_ANSWER, LEAST_ALONE = -1.2, -0.6
+"""The margins from which words are an answer: where the grammar finds it too, and where not."""
+
+SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "eight"}
+
+
+def wanted(
+    phrasebook: Phrasebook, settings: Settings, phrases: Sequence[str] | None = None
+) -> Wanted:
+    """Return what is to be listened for: the phrases, what stops the robot, and answers.
+
+    Args:
+        phrasebook: has the pronunciations, and all phrases as they are said.
+        settings: how it is listened.
+        phrases: those that can be told apart by their sound, if that is known.
+    """
+    return Wanted(
+        (*(phrasebook.spoken() if phrases is None else phrases), *STOPS),
+        (*YES, *NO, *STOPS),
+        STOPS,
+        {**OWN_NAME, **phrasebook.pronunciations()},
+        settings,
+    )
+
+
+def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -> Say | Stop:
+    """Return what an utterance commands: it may be several things, or (no commands) nothing."""
+    if settings.mode == "paper":
+        if stops(evidence.words, phrasebook.game):
+            return Stop(evidence.words)
+        return _as_in_the_paper(evidence, phrasebook)
+    text, margin = best_words(evidence, phrasebook)
+    if stops(text, phrasebook.game):
+        return Stop(text)
+    found = phrasebook.choices(text)
+    if not found:
+        return Say(text, 0.0, ())
+    confidence = likelihood(found[0].confidence, phrasebook.known(text), margin, settings.shift)
+    if confidence < UNSURE:
+        return Say(text, confidence, ())
+    commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
+    return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+
+
+def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
+    """Return what was said, and the margin of these words.
+
+    Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
+    number makes a phrase of them, it was the number. Where they are no phrase, but sound like the
+    one that the grammar has found, and that explains the sound better, it was the phrase.
+    """
+    words, phrase = evidence.words, evidence.phrase
+    begun, _, last = words.rpartition(" ")
+    if (numbered := f"{begun} {SOUND_ALIKE.get(last)}") in phrasebook.phrases:
+        words = numbered
+    doubtful = phrase and words not in phrasebook.phrases and evidence.margin < SMALL_MARGIN
+    if doubtful and SequenceMatcher(None, words, phrase).ratio() >= SAME_SOUND:
+        return phrase, 0.0
+    return words, evidence.margin
+
+
+def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
+    """Return the answer to a question that an utterance gives, if it gives one.
+
+    A yes moves the robot: the grammar, in which any phones can be said instead, has to find it as
+    well, or the words to explain the sound nearly as well as any phones do. The paper's mode has
+    nothing that other speech could be, so it hears no answers.
+    """
+    said = evidence.words
+    if stops(said):
+        return Stop(said)
+    least = {said: LEAST_ANSWER, "": LEAST_ALONE}.get(evidence.phrase)
+    agreed = least is not None and evidence.margin - settings.shift >= least
+    if settings.mode != "paper" and agreed and (said in YES or said in NO):
+        return Reply(said in YES)
+    return None
+
+
+def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0) -> float:
+    """Return how likely words are to be the command they come nearest to, 0 to 1.
+
+    Args:
+        confidence: of the phrasebook, 0 to 1.
+        known: how many telling words it knows.
+        margin: see `Evidence`.
+        shift: see `Settings`.
+    """
+    told = OFFSET - shift + CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN)
+    told += MARGIN_WEIGHT * min(MOST_MARGIN, max(LEAST_MARGIN, margin))
+    return 1 / (1 + math.exp(-told))
+
+
+def _as_in_the_paper(evidence: Evidence, phrasebook: Phrasebook) -> Say:
+    """Match the n-gram model's words by phrases and keywords; there is one tier."""
+    command: Command | None = phrasebook.understand(evidence.words)
+    if command is None:
+        return Say(evidence.words, evidence.confidence, ())
+    confidence = round(command.confidence * evidence.confidence, 3)
+    if confidence < UNDERSTOOD:
+        return Say(evidence.words, confidence, ())
+    return Say(evidence.words, confidence, (replace(command, confidence=confidence),))

@@ -1,0 +1,251 @@
+"""The decoder's process: pocketsphinx holds the interpreter's lock, so it runs on its own.
+
+Run as `python -m tangy_tui.speech.worker`, spoken to by JSON, one object a line:
+
+    {"id": 1, "wanted": {...}}                   what is to be heard (`evidence.Wanted`)
+    {"id": 1, "ready": true, "left_out": []}     words that nobody can pronounce
+    {"id": 2, "begin": "commands"}               an utterance begins, or the answer to a question;
+                                                 with "endpoint": true it is found in what comes
+    {"pcm": "..."}                               base64 of 16 kHz mono s16le, in pieces of any size
+    {"id": 2, "speaking": true}                  where it is looked for: it has begun
+    {"id": 2, "partial": "go to"}                the words so far, whenever they change
+    {"id": 2, "end": true}                       it is over; where it is looked for, at the latest
+    {"id": 2, "heard": {...}, "used": 64000}     `evidence.Evidence`, and how many bytes since it
+                                                 began are part of it or came before it
+    {"id": 3, "pieces": "..."}                   base64 of a whole recording
+    {"id": 3, "found": [[0.5, 1.7]]}             where utterances are in it, in s
+    {"id": 3, "error": "One sentence."}          instead of any answer
+
+What comes between two utterances is not heard. It ends when its input closes; what the C library
+prints goes to standard error.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any, get_args
+
+from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
+from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
+from tangy_tui.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
+
+LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
+SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
+PAUSE = 0.2  # s of quiet in which what was said so far is decoded: mostly nothing follows
+STANDS = 0.5  # s for which urgent words have to stand alone where it is never quiet
+CLEAR = 0.12  # s for which they have to stand where no word after them can change what is meant
+
+
+class Refused(Exception):
+    """A request that cannot be answered; its text is the answer's error."""
+
+
+class Worker:
+    """Answers requests, one at a time; `write` takes the answers."""
+
+    def __init__(self, write: Callable[[dict[str, Any]], None]) -> None:
+        self._write = write
+        self._decoder: Any = None
+        self._id: Any = None
+        self._expecting: Expecting = "commands"
+        self._pcm = bytearray()
+        self._endpoints: Endpoints | None = None
+        self._pauses: Pauses | None = None
+        self._foreseen: Evidence | None = None  # what was said before a pause that still lasts
+        self._shown = ""
+        self._stood = 0  # bytes since the words so far have changed
+        self._urgent: frozenset[str] = frozenset()
+
+    def take(self, request: Any) -> None:
+        """Take one request; what is wrong with it becomes the answer's error."""
+        id = request.get("id") if isinstance(request, dict) else None
+        if isinstance(request, dict) and "pcm" in request:
+            id = self._id  # whoever waits for the utterance is told what is wrong with its sound
+        try:
+            self._take(id, request)
+        except Refused as reason:
+            self._fail(id, str(reason))
+        except ImportError as error:
+            self._fail(id, f"Speech needs the package {error.name or 'pocketsphinx'}.")
+        except (RuntimeError, ValueError, LookupError, OSError) as error:
+            said = " ".join(str(error).split())[:200] or type(error).__name__
+            self._fail(id, f"The speech decoder failed: {said}.")
+
+    def _fail(self, id: Any, sentence: str) -> None:
+        """Answer with an error; an utterance that it befell is over."""
+        if id is not None and id == self._id:
+            self._id = None
+        self._write({"id": id, "error": sentence})
+
+    def _take(self, id: Any, request: Any) -> None:
+        match request:
+            case {"wanted": dict(wanted)}:
+                self._write({"id": id, "ready": True, "left_out": self._build(wanted)})
+            case {"begin": str(expecting)} if expecting in get_args(Expecting):
+                self._begin(id, expecting, endpoint=bool(request.get("endpoint")))
+            case {"pcm": str(encoded)}:
+                self._hear(_sound(encoded))
+            case {"end": True}:
+                if id == self._id:
+                    if self._endpoints is not None:
+                        self._add(self._endpoints.finish(), shows=True)
+                    self._end()
+            case {"pieces": str(encoded)}:
+                found = [(round(begin, 3), round(end, 3)) for begin, end in pieces(_sound(encoded))]
+                self._write({"id": id, "found": found})
+            case _:
+                raise Refused("A request must hold wanted, begin, pcm, end or pieces.")
+
+    def _build(self, wanted: dict[str, Any]) -> list[str]:
+        from tangy_tui.speech.decoder import Unspeakable, make_decoder
+
+        try:
+            read = Wanted.from_json(wanted)
+            if self._decoder is not None:
+                self._decoder.close()
+            self._decoder = make_decoder(read)
+        except Unspeakable as reason:
+            raise Refused(str(reason)) from None
+        except (KeyError, TypeError) as error:
+            raise Refused(f"What is wanted cannot be read: {error}.") from None
+        self._urgent = frozenset(read.urgent)
+        return list(self._decoder.left_out)
+
+    def _begin(self, id: Any, expecting: Any, *, endpoint: bool) -> None:
+        if self._decoder is None:
+            raise Refused("The phrases must come before the sound.")
+        self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
+        self._pcm.clear()
+        self._endpoints = Endpoints() if endpoint else None
+        self._pauses = Pauses()
+        self._foreseen = None
+        if not endpoint:
+            self._decoder.begin(expecting)
+
+    def _hear(self, sound: bytes) -> None:
+        if self._id is None:
+            return  # nobody listens just now
+        if self._endpoints is None:
+            self._follow(sound)
+            return
+        for began, speech, over in self._endpoints.feed(sound):
+            if began:
+                self._decoder.begin(self._expecting)
+                self._write({"id": self._id, "speaking": True})
+            self._follow(speech)
+            if self._id is not None and (over or len(self._pcm) >= 2 * RATE * LONGEST):
+                self._end()
+            if self._id is None:
+                return
+
+    def _follow(self, sound: bytes) -> None:
+        """Take the next piece of an utterance; it is over where its words so far are urgent."""
+        assert self._pauses is not None  # noqa: S101 - an utterance has begun
+        shows = self._endpoints is not None or len(sound) <= 2 * RATE * LARGEST_PIECE
+        spoke = self._pauses.feed(sound)
+        self._add(sound, shows=shows)
+        if self._stands_alone(self._pauses.after_speech):
+            self._end(self._so_far())
+        elif shows:
+            self._foresee(self._pauses.after_speech, spoke=spoke)
+
+    def _add(self, sound: bytes, *, shows: bool) -> None:
+        if len(self._pcm) + len(sound) > 2 * RATE * LONGEST and self._endpoints is None:
+            sound = sound[: max(0, 2 * RATE * LONGEST - len(self._pcm))]
+        if not sound:
+            return
+        self._pcm += sound
+        if shows and self._foreseen is None:
+            words = self._decoder.partial(sound)
+            self._stood += len(sound)
+            if words != self._shown:
+                self._shown, self._stood = words, 0
+                self._write({"id": self._id, "partial": words})
+
+    def _stands_alone(self, quiet: float) -> bool:
+        """Whether the words so far are urgent, and nothing has followed them for a while."""
+        if self._stood < 2 * RATE * CLEAR or not self._is_urgent(self._shown):
+            return False
+        waits = quiet < PAUSE and not stops_whatever_follows(self._shown)
+        return not waits or self._stood >= 2 * RATE * STANDS
+
+    def _is_urgent(self, words: str) -> bool:
+        return words in self._urgent or (bool(self._urgent) and stops(words))
+
+    def _so_far(self) -> Evidence:
+        """Return the words so far as they are: what is urgent does not wait for a second look."""
+        return Evidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
+
+    def _foresee(self, quiet: float, *, spoke: bool) -> None:
+        """Decode in a pause, so that the answer is there when the utterance is said to be over."""
+        if self._foreseen is None and quiet >= PAUSE:
+            self._foreseen = self._decode(self._said())
+            if self._is_urgent(self._foreseen.words):
+                self._end()
+        elif self._foreseen is not None and spoke:
+            self._foreseen = None
+            self._decoder.begin(self._expecting)
+            self._decoder.partial(bytes(self._pcm))
+
+    def _decode(self, pcm: bytes) -> Evidence:
+        if not _sounds(pcm):
+            return Evidence(seconds=len(pcm) / 2 / RATE)
+        evidence: Evidence = self._decoder.decode(pcm, self._expecting)
+        return evidence
+
+    def _said(self) -> bytes:
+        """Return the utterance; where it was found, with what lies around it."""
+        return self._endpoints.utterance() if self._endpoints and self._pcm else bytes(self._pcm)
+
+    def _end(self, heard: Evidence | None = None) -> None:
+        id, used = self._id, len(self._pcm)
+        if self._endpoints is not None:
+            used = self._endpoints.taken
+        heard = heard or self._foreseen or self._decode(self._said())
+        self._id = None
+        self._pcm.clear()
+        self._write({"id": id, "heard": asdict(heard), "used": used})
+
+
+def _sounds(pcm: bytes) -> bool:
+    """Whether there is more in this than the silence of a microphone that is off."""
+    samples = memoryview(pcm).cast("h")
+    return len(samples) > 0 and max(samples) - min(samples) > SILENCE
+
+
+def _sound(encoded: str) -> bytes:
+    try:
+        pcm = base64.b64decode(encoded, validate=True)
+    except binascii.Error:
+        raise Refused("The sound is not base64.") from None
+    return pcm[: len(pcm) // 2 * 2]
+
+
+def main() -> None:
+    """Answer requests until standard input closes."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # the C library prints on standard output; the protocol has its own copy of it
+
+    def write(answer: dict[str, Any]) -> None:
+        try:
+            print(json.dumps(answer), file=answers, flush=True)
+        except BrokenPipeError:
+            os._exit(0)  # nobody listens any more
+
+    worker = Worker(write)
+    for line in sys.stdin.buffer:
+        try:
+            request = json.loads(line)
+        except (ValueError, RecursionError):
+            request = None
+        worker.take(request)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,238 @@
+"""The JSON documents that the command line prints: names in them are a contract."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_tui.app.workspace import House
+from tangy_tui.interaction import saying
+from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.record import Record
+from tangy_tui.learning.comparison import Row
+from tangy_tui.learning.conflicts import Conflict, Shown
+from tangy_tui.learning.coverage import coverage
+from tangy_tui.learning.explanation import Why, why_words
+from tangy_tui.learning.library import effects_of, read_library
+from tangy_tui.learning.online_learning import Lesson
+from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.learning.reachable import joint_states
+
+
+def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
+    """Describe one demonstration: who, in which game, and its trajectory."""
+    return {
+        "id": demonstration.id,
+        "teacher": demonstration.teacher,
+        "seed": demonstration.seed,
+        "finished": demonstration.finished,
+        "guided": demonstration.guided,
+        "origin": demonstration.origin,
+        "of": list(demonstration.of),
+        "steps": len(demonstration.steps),
+        "trajectory": [
+            {
+                "behaviour": step.behaviour,
+                "target": step.target,
+                "situation": list(step.state.situation),
+            }
+            for step in demonstration.steps
+        ],
+    }
+
+
+def policy_document(house: House, policy: Policy) -> dict[str, Any]:
+    """Describe a policy: its rows, its effects, and on how many joint states it is as expected."""
+    activity = house.activity
+    people = [person.id for person in house.people]
+    states = list(joint_states(activity, people))
+    right = sum(
+        policy.decide(state.situation).behaviour == activity.expected.get(state.situation)
+        for state in states
+    )
+    effects = effects_of(house.store, activity, policy)
+    return {
+        **policy.to_json(),
+        "rows": [
+            {
+                "stage": situation.stage,
+                "request": situation.request,
+                "user_state": situation.user_state,
+                "behaviour": decision.behaviour,
+                "share": decision.share,
+                "seen": decision.seen,
+                "votes": dict(decision.votes),
+                "sure": decision.sure,
+                "contested": decision.contested,
+            }
+            for situation in activity.situations
+            for decision in [policy.decide(situation)]
+        ],
+        "joint_states": {"people": len(people), "reachable": len(states), "as_expected": right},
+        "exact": policy.exact(activity),
+        "asks": [list(s) for s in activity.situations if not policy.decide(s).sure],
+        "effects": {
+            behaviour: {variable: sorted(values) for variable, values in variables.items()}
+            for behaviour, variables in effects.values.items()
+        },
+        **library_document(house),
+    }
+
+
+def library_document(house: House) -> dict[str, Any]:
+    """Describe what the finished demonstrations cover, and what they disagree about."""
+    activity = house.activity
+    library = read_library(house.store, activity.name)
+    found = coverage(activity, library.finished)
+    return {
+        "coverage": {
+            "seen": len(found.seen),
+            "situations": len(found.times),
+            "missing": [
+                {"situation": list(situation), "words": activity.not_yet(situation)}
+                for situation in found.missing
+            ],
+        },
+        "conflicts": [conflict_document(house, conflict) for conflict in library.conflicts],
+    }
+
+
+def conflict_document(house: House, conflict: Conflict) -> dict[str, Any]:
+    """Describe a conflict: the situation, and the answers with their steps."""
+    return {
+        "situation": list(conflict.situation),
+        "words": house.activity.in_words(conflict.situation),
+        "answers": [
+            {"behaviour": behaviour, "steps": [shown_document(shown) for shown in steps]}
+            for behaviour, steps in conflict.answers.items()
+        ],
+    }
+
+
+def shown_document(shown: Shown) -> dict[str, Any]:
+    """Describe where a demonstrated step stands."""
+    return {
+        "demonstration": shown.demonstration,
+        "teacher": shown.teacher,
+        "number": shown.number,
+        "behaviour": shown.step.behaviour,
+        "situation": list(shown.step.state.situation),
+    }
+
+
+def decision_document(decision: Decision) -> dict[str, Any]:
+    """Describe a decision and the votes behind it."""
+    return {
+        "behaviour": decision.behaviour,
+        "share": decision.share,
+        "votes": dict(decision.votes),
+        "seen": decision.seen,
+        "sure": decision.sure,
+        "contested": decision.contested,
+        "right": list(decision.right),
+    }
+
+
+def why_document(house: House, why: Why) -> dict[str, Any]:
+    """Describe the grounds of a decision."""
+    return {
+        "situation": list(why.situation),
+        **decision_document(why.decision),
+        "rests_on": [shown_document(shown) for shown in why.rests_on],
+        "against": [shown_document(shown) for shown in why.against],
+        "near": [shown_document(shown) for shown in why.near],
+        "sentences": why_words(house.activity, why),
+    }
+
+
+def lesson_document(house: House, lesson: Lesson) -> dict[str, Any]:
+    """Describe what was learnt from an answer in a game."""
+    made, found = lesson.demonstration, lesson.replay
+    return {
+        "demonstration": made.id,
+        "teacher": made.teacher,
+        "situation": list(made.steps[-1].state.situation),
+        "behaviour": made.steps[-1].behaviour,
+        "policy": lesson.policy.name,
+        "replayed": found.steps,
+        "changed": [[list(c.situation), c.before, c.after] for c in found.changed],
+        "overruled": found.overruled,
+        "words": found.words(),
+    }
+
+
+def comparison_document(house: House, a: Policy, b: Policy, rows: list[Row]) -> dict[str, Any]:
+    """Describe where two policies differ."""
+    return {
+        "a": {"name": a.name, "digest": a.digest, "demonstrations": list(a.demonstrations)},
+        "b": {"name": b.name, "digest": b.digest, "demonstrations": list(b.demonstrations)},
+        "same": all(row.same for row in rows),
+        "different": sum(not row.same for row in rows),
+        "rows": [
+            {
+                "situation": list(row.situation),
+                "words": house.activity.in_words(row.situation),
+                "a": decision_document(row.a),
+                "b": decision_document(row.b),
+                "same": row.same,
+            }
+            for row in rows
+        ],
+    }
+
+
+def person_document(record: Record) -> dict[str, Any]:
+    """Describe what is known of one person, strategy by strategy, and where it comes from."""
+    known = record.known
+    return {
+        "id": record.person.id,
+        "name": record.person.name,
+        "beliefs": {
+            strategy: {
+                "alpha": belief.alpha,
+                "beta": belief.beta,
+                "mean": belief.mean,
+                "p_best": record.best[strategy],
+                "interval": list(belief.interval()),
+                "complied": belief.complied,
+                "trials": belief.trials,
+                "prior": [known.prior[strategy].alpha, known.prior[strategy].beta],
+                "on": strategy not in known.off,
+            }
+            for strategy, belief in record.beliefs.items()
+        },
+        "settled": record.settled,
+        "world": record.world,
+        "method": {
+            **known.chosen.to_json(),
+            "own": known.own,
+            "words": known.method.words,
+        },
+        "prior": saying.prior_words(known.prior),
+        "sentence": saying.sentence(record),
+        "last_seen": record.seen and record.seen.isoformat(),
+        "games": [
+            {
+                "game": game.id,
+                "at": game.begun.isoformat(),
+                "responses": [entry_document(entry) for entry in game.entries],
+            }
+            for game in record.games
+        ],
+    }
+
+
+def entry_document(entry: Entry) -> dict[str, Any]:
+    """Describe one line of a person's history; its number is what `people void` takes."""
+    return {
+        "number": entry.number,
+        "at": entry.at.isoformat(),
+        "game": entry.game,
+        "strategy": entry.strategy,
+        "complied": entry.complied,
+        "late": entry.late,
+        "void": entry.void,
+        "why": entry.why,
+        "counts": entry.counts,
+        "open": entry.open,
+    }

@@ -1,0 +1,174 @@
+"""Games of the log by lines: one step by step, and a session in short."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tangy_profiles.activity import Activity
+from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.fault_table import fault_rows
+from tangy_tui.monitoring.games import TO_ITS_END, Game
+from tangy_tui.monitoring.replay import Answered, Done, Moment, Noted, Replay
+from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
+from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
+from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
+from tangy_tui.text.situations import Name, counted
+
+MOST_TOLD = 30
+"""Games that a report tells one by one; of more, only those in which something was the matter."""
+
+
+def game_words(game: Game) -> str:
+    """Name a game: its number, id, activity, world, policy and when it was."""
+    return (
+        f"Game {game.number} ({game.id}), {game.activity}, {game.world}, policy {game.policy}, "
+        f"{day_and_time(game.at)}"
+    )
+
+
+def replay_lines(replay: Replay, activity: Activity | None, name: Name) -> Iterator[str]:
+    """Tell a game step by step; each line begins with the time in the game and on the clock."""
+    game = replay.game
+    yield game_words(game)
+    yield f"With {', '.join(map(name, game.people)) or 'nobody that the log names'}."
+    if not replay.timed:
+        yield "An older Tangy kept no times within a game: what is given is the time of day alone."
+    for moment in replay.moments:
+        when = _when(moment, replay.timed)
+        first, *more = _moment_lines(moment, activity, name)
+        yield f"{when}  {first}"
+        for line in more:
+            yield f"{' ' * len(when)}  {line}"
+    yield f"{counted(game.steps, 'step')}; {game.ending}"
+
+
+def _when(moment: Moment, timed: bool) -> str:
+    at = time_of_day(moment.at)
+    return f"{clock(moment.seconds):>7} {at}" if timed else at
+
+
+def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list[str]:
+    match moment.what:
+        case Done() as done:
+            return _done_lines(done, activity, name)
+        case Answered() as answer:
+            return [f"   {name(answer.person)} {answer_words(answer)} ({answer.strategy})."]
+        case Diagnosed(fault):
+            if fault.asks_only:
+                return ["?  Tangy does not know what to do here."]
+            kind = "CRITICAL" if fault.critical else "non-critical"
+            return [
+                f"!  Fault, {kind}: {fault.name}. {fault.console}",
+                f"   Why: {fault.why}.",
+            ]
+        case Noted(what, by):
+            return [f"*  {what}{f', by {by}' if by else ''}."]
+        case Moved(fault, move):
+            said = [f"   Tangy says: {move.speech}"] if move.speech else []
+            whose = "" if fault.asks_only else f"{fault.name}: "
+            return [f"   {whose}{move_words(move)}.", *said]
+
+
+def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
+    situation = done.state.situation
+    words = activity.in_words(situation) if activity is not None else " / ".join(situation)
+    target = f" ({name(done.target)})" if done.target else ""
+    how = f", {done.strategy}" if done.strategy else ""
+    why = f", as {done.teacher} said" if done.teacher else ""
+    lines = [f"{done.number}. {words} -> {done.behaviour}{target}{how}{why}"]
+    if done.said:
+        lines.append(f"   Tangy says: {done.said}")
+    if not done.completed:
+        lines.append("   It could not be carried out.")
+    elif not done.right:
+        lines.append("   That is not what the activity expects here.")
+    return lines
+
+
+def answer_words(answer: Answered) -> str:
+    """Say what a person did about a request."""
+    if answer.complied is None:
+        return "was asked; what they did was not known yet"
+    if answer.complied:
+        return "complied"
+    return "followed, but late" if answer.followed else "did not follow"
+
+
+def session_lines(session: Session) -> Iterator[str]:
+    """Tell a session in short: which games, faults, people, and what to look after."""
+    yield from _games_lines(session.games)
+    if session.timed:
+        yield f"Time in the room: {length(session.seconds)}."
+    yield f"Took part: {', '.join(p.name for p in session.people) or 'nobody that the log names'}."
+    yield ""
+    yield counted(len(session.faults), "fault") + ("." if not session.faults else ":")
+    numbers = {game.id: game.number for game in session.games}
+    for number, fault in enumerate(session.faults, 1):
+        kind = "CRITICAL, " if fault.critical else ""
+        where = f"game {numbers[fault.game]}, " if len(numbers) > 1 else ""
+        yield (
+            f"  {number}. {where}{clock(fault.seconds)}, step {fault.step}: {fault.name} "
+            f"({kind}{STATUS_WORDS[fault.status]})"
+        )
+    for row in fault_rows(session.faults):
+        if row["instances"]:
+            yield (
+                f"  {row['criticality']}, {RECOVERY_WORDS[row['recovery']]}: "
+                f"{row['success']:.0%} of {row['instances']} recovered by that"
+            )
+    yield ""
+    for person in session.people:
+        yield _person_line(person)
+    if session.look_after:
+        yield ""
+        yield "To look after:"
+        for told in dict.fromkeys((fault.console, fault.advice) for fault in session.look_after):
+            yield f"  {told[0]}"
+            yield from (f"    - {step}" for step in told[1])
+    yield from session.notes
+
+
+def _games_lines(games: Sequence[Game]) -> Iterator[str]:
+    """Tell each game; of many only those in which something was the matter, and of all the sum."""
+    told = games
+    if len(games) > MOST_TOLD:
+        told = [game for game in games if game.critical or game.other or not game.smooth]
+        days = dict.fromkeys(day_and_time(game.at) for game in (games[0], games[-1]))
+        yield f"{len(games)} games, {' to '.join(days)}: {_sums(games)}."
+        if told:
+            yield "Those with faults, or that did not go to their end:"
+    for game in told:
+        words = f"{counted(game.steps, 'step')}; {game.ending}"
+        yield f"{game_words(game)}: {words}" + ("" if words.endswith(".") else ".")
+    if len(told) < len(games):
+        rest = counted(len(games) - len(told), "game")
+        other = "other " if told else ""
+        yield (
+            f"The {other}{rest} went to the end without a fault; `tangy log list` names them, "
+            "and `tangy log show NUMBER` tells one step by step."
+        )
+
+
+def _sums(games: Sequence[Game]) -> str:
+    stopped = sum(game.stopped is not None for game in games)
+    endless = sum(game.ended is None for game in games)
+    parts = [
+        counted(sum(game.steps for game in games), "step"),
+        f"{len(games) - stopped - endless} {TO_ITS_END}",
+    ]
+    if stopped:
+        parts.append(f"{stopped} stopped before it")
+    if endless:
+        parts.append(f"{endless} without an end in the log")
+    return ", ".join(parts)
+
+
+def _person_line(person: Progress) -> str:
+    if not person.interactions:
+        return f"{person.name}: was not asked for anything"
+    parts = []
+    for strategy, one in person.strategies.items():
+        if one.used:
+            change = f"{one.before.mean:.0%} -> {one.after.mean:.0%}"
+            parts.append(f"{strategy}: {one.in_words} ({change})")
+    return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"

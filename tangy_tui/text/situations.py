@@ -1,0 +1,163 @@
+"""How situations and steps are put in words: the same on screens, in lines and in reports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Step
+from tangy_profiles.reading import plain
+from tangy_profiles.scene import CardView, Scene
+from tangy_profiles.state import FRONT, ActivityState
+from tangy_tui.learning.conflicts import Conflict, Resolution
+from tangy_tui.learning.library import Edit, Library
+from tangy_tui.learning.online_learning import Lesson
+from tangy_tui.learning.policy import Policy
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Verification,
+)
+
+MOST_STEPS = 3
+"""Steps that are named for each answer of a conflict."""
+
+Name = Callable[[str], str]
+"""Gives a person's name for an id."""
+
+
+def agreement_words(activity: Activity, policy: Policy) -> str:
+    """Say whether a policy does all that is expected of a host of the activity.
+
+    Where it is not sure it asks instead of acting, so that it does not do what is expected either.
+    """
+    if not activity.expected:
+        return "nothing to compare it with"
+    wrong = len(policy.errors(activity))
+    asks = sum(not policy.decide(situation).sure for situation in activity.expected)
+    if wrong:
+        return f"not as expected in {counted(wrong, 'situation')}"
+    return f"asks in {counted(asks, 'situation')}" if asks else "as expected everywhere"
+
+
+def counted(number: int, noun: str) -> str:
+    """Write a number with its noun: "1 step", "2 steps"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def step_words(activity: Activity, step: Step, name: Name) -> str:
+    """Write one step of a trajectory: the situation, the behaviour, and for whom."""
+    target = f" ({name(step.target)})" if step.target else ""
+    return f"{activity.in_words(step.state.situation)} -> {step.behaviour}{target}"
+
+
+def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Name) -> str:
+    """Say what the robot knows now, in a sentence or two that a newcomer can act on."""
+    if state.place == FRONT:
+        sentences = ["Tangy is at the front."]
+    else:
+        sentences = [f"Tangy is with {name(state.place)}."]
+    if scene.requests:
+        asking = ", then ".join(name(person) for person in scene.requests)
+        sentences.append(f"Asking for help: {asking}.")
+    else:
+        sentences.append("Nobody asks for help.")
+    shown = next((s for s in activity.user_states if s.name == state.situation.user_state), None)
+    if any(r.stage == state.stage and r.condition == "after" for r in activity.stage_rules):
+        sentences.append("The game is won: only the end is left.")
+    elif shown is not None and activity.reads(state.stage):
+        sentences.append(shown.hint)
+        if scene.card is not None:
+            sentences.append(card_words(activity, scene.card))
+    return " ".join(part for part in sentences if part)
+
+
+def card_words(activity: Activity, card: CardView) -> str:
+    """Name the numbers of a card that are marked wrongly or not marked."""
+
+    def labels(mask: int) -> str:
+        numbers = (n for place, n in enumerate(card.numbers) if mask >> place & 1)
+        return ", ".join(activity.deck.label(number) for number in numbers)
+
+    wrong, missing = labels(card.marked & ~card.called), labels(card.called & ~card.marked)
+    parts = [f"Wrong: {wrong}." if wrong else "", f"Missed: {missing}." if missing else ""]
+    return " ".join(part for part in parts if part)
+
+
+def verification_lines(said: Verification) -> list[str]:
+    """Put what the verification of a command says into lines."""
+    match said:
+        case Asked(question=question, heard=heard, confidence=confidence, others=others):
+            lines = [f"Did you say: {question}? Type Y to execute it or N for a new command."]
+            if confidence < 1:
+                lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
+            return lines + [
+                f"  {number} instead: {other}" for number, other in enumerate(others, 1)
+            ]
+        case Offered(heard, _, _, questions):
+            return [
+                f"I heard {plain(heard)!r}. Did you mean one of these? Type its number, or N.",
+                *(f"  {number}  {question}" for number, question in enumerate(questions, 1)),
+            ]
+        case NotUnderstood(heard, suggestions):
+            near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
+            return [f"I do not know what {plain(heard)!r} means.{near} Type help for all commands."]
+        case Refused(reason, _):
+            return [reason]
+        case Rejected(heard):
+            return [f"Not done: {plain(heard)}. Give a new command."]
+        case _:
+            return []
+
+
+def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> list[str]:
+    """Put a conflict into lines: the situation, and each answer with where it was given."""
+    lines = [f"Demonstrations disagree: {activity.in_words(conflict.situation)}."]
+    for number, (behaviour, steps) in enumerate(conflict.answers.items(), 1):
+        lines.append(f"  {number}. {behaviour}, shown {counted(len(steps), 'time')}:")
+        lines += [
+            plain(f"       step {s.number} of {library.name(s.demonstration)}, by {s.teacher}")
+            for s in steps[:MOST_STEPS]
+        ]
+        if len(steps) > MOST_STEPS:
+            lines.append(f"       and {counted(len(steps) - MOST_STEPS, 'more step')}")
+    return lines
+
+
+def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
+    """Say what a change of the library did."""
+    names = ", ".join(library.name(id) for id in edit.ids)
+    made = " and ".join(library.name(str(id)) for id in edit.body.get("made", ()))
+    match edit.what:
+        case "delete":
+            return f"{names}: deleted, and no longer learnt from."
+        case "restore":
+            return f"{names}: in use again."
+        case "merge":
+            return f"{names}: merged into {made}."
+        case "split":
+            return f"{names}: split after step {edit.body['kept']} into {made}."
+        case _:
+            said = Resolution.from_json(edit.body)
+            are = "is" if len(said.right) == 1 else "are all"
+            return f"{activity.in_words(said.situation)}: {', '.join(said.right)} {are} right."
+
+
+def lesson_words(activity: Activity, lesson: Lesson) -> str:
+    """Say what was learnt from an answer: what is done where from now on, and from whom."""
+    made = lesson.demonstration
+    step = made.steps[-1]
+    where = activity.in_words(step.state.situation)
+    return f"Learnt from {made.teacher}: {where} -> {step.behaviour}."
+
+
+ALL_RIGHT = ("all right", "all is right", "that is all right", "all is well", "ok")
+"""What can be said of something unexpected that is all right."""
+
+
+def once_words(instead: str) -> str:
+    """Say that an answer about a fault was acted upon, but not learnt."""
+    return f"Done this once. When nothing is wrong, Tangy goes on to {instead!r} here, as shown."

@@ -1,0 +1,60 @@
+"""The cameras of the robot as the program has them: made when they are needed, ended with it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING
+
+from tangy_profiles.health import Health
+from tangy_tui.app.workspace import House
+
+if TYPE_CHECKING:
+    from tangy_hw.perception.camera_hub import Sensors
+
+FIRST_SECONDS = 5.0
+"""For which a game waits at most for the first pictures of its cameras."""
+
+
+class Eyes:
+    """A robot's cameras, and whether they count in simulated games."""
+
+    def __init__(self, house: House, sensors: Sensors | None = None, *, live: bool = False) -> None:
+        """Prepare them.
+
+        Args:
+            house: whose robot it is.
+            sensors: its cameras (default: those of the robot's profile).
+            live: what is wrong with them is a fault in a simulated game.
+        """
+        self.live = live
+        self._house = house
+        self._sensors = sensors
+
+    def sensors(self) -> Sensors:
+        """Return the cameras; they are opened by whoever uses them.
+
+        Raises:
+            TangyError: the robot's profile names a source that is none.
+        """
+        if self._sensors is None:
+            from tangy_hw.perception.camera_hub import sensors_of
+
+            house = self._house
+            self._sensors = sensors_of(house.robot, house.activity.deck, house.store.folder)
+        return self._sensors
+
+    @asynccontextmanager
+    async def watching(self) -> AsyncIterator[Callable[[], Health] | None]:
+        """Keep them open for a game; give what they report there, None where they do not count."""
+        if not self.live:
+            yield None
+            return
+        async with self.sensors() as sensors:
+            await sensors.settled(FIRST_SECONDS)
+            yield sensors.health
+
+    async def close(self) -> None:
+        """End them, whoever may still use them."""
+        if self._sensors is not None:
+            await self._sensors.close()

@@ -1,0 +1,53 @@
+"""Why this, while Tangy is being taught: what it would do by what it has been shown up to now."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual.screen import Screen
+from textual.worker import Worker, WorkerCancelled, WorkerFailed
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.errors import TangyError
+from tangy_profiles.state import Situation
+from tangy_tui.app.workspace import House
+from tangy_tui.learning.explanation import Why
+
+
+async def show_why(
+    screen: Screen[Any], house: House, present: Demonstration, situation: Situation
+) -> None:
+    """Learn beside the screen from all there is, the present game too, and explain a situation."""
+    from tangy_tui.ui.dialogs.why import WhyDialog
+
+    app: Any = screen.app
+    app.say("Tangy thinks it over ... (esc: never mind)")
+    worker: Worker[Why] = screen.run_worker(
+        lambda: _grounds(house, present, situation), thread=True, exit_on_error=False, group="why"
+    )
+    try:
+        why = await worker.wait()
+    except WorkerCancelled:
+        app.clear_notifications()
+        return  # it is not wanted any more, or the screen is being left
+    except WorkerFailed as failed:
+        if not isinstance(failed.error, TangyError):
+            raise
+        app.clear_notifications()
+        app.say(str(failed.error))
+        return
+    app.clear_notifications()
+    if app.screen is screen:
+        app.push_screen(WhyDialog(house, why))
+
+
+def _grounds(house: House, present: Demonstration, situation: Situation) -> Why:
+    from tangy_tui.learning.explanation import explain, foresee
+    from tangy_tui.learning.library import read_library
+
+    library = read_library(house.store, house.activity.name)
+    there = {d.id: d for d in library.finished}
+    if present.id not in library.entries:  # not a step of its own yet, so nothing to open
+        return explain(foresee(house.store, house.activity, None), list(there.values()), situation)
+    shown = list((there | {present.id: present}).values())
+    return explain(foresee(house.store, house.activity, present), shown, situation)

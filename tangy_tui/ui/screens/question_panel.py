@@ -1,0 +1,399 @@
+"""Asking in place: Tangy is not sure, the game waits, and the teacher answers by a command.
+
+The answer goes through the same question as a command in teaching: nothing happens before a y.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from enum import Enum
+from typing import Any, TypeVar
+
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import Static
+from textual.worker import WorkerFailed
+
+from tangy_tui.app.workspace import House
+from tangy_tui.interaction.facilitation import Unsure
+from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Reply,
+    Say,
+    Verification,
+    Verified,
+)
+from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.situations import ALL_RIGHT, counted, state_words
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.question import dialog_for
+from tangy_tui.ui.hearing import hearing_of
+from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.reasons import why_of
+from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
+from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+
+ResultT = TypeVar("ResultT")
+HELD = "Tangy was stopped: press p to go on first, then answer."
+
+KEYS = "w why   : answer   p {}   esc give the game up"
+ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
+OWN_KEYS = "w why   : answer   p {}   esc let Tangy go on by itself"
+"""The keys that count while the line does not have them."""
+TALK = "t talk   "
+"""What stands before them where a key is pushed to talk."""
+
+
+class Instead(Enum):
+    """What can come in the place of an answer."""
+
+    GIVE_UP = "give up"
+    ACCEPT = "accept"
+    WITHDRAWN = "withdrawn"
+
+
+class AnswerBar(CommandBar):
+    """The line to answer in, whose resting text goes with the game."""
+
+    def rest(self, text: str) -> None:
+        """Say other keys while the line does not have them."""
+        self._texts = (self._texts[0], text)
+        if not self._input.has_focus:
+            self.on_descendant_blur()
+
+
+def answers_words(why: Why) -> str:
+    """Say which answers demonstrations give in a situation, how often and by whom."""
+    given: dict[str, list[str]] = {}
+    for shown in (*why.rests_on, *why.against):
+        given.setdefault(shown.step.behaviour, []).append(shown.teacher)
+    parts = [
+        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
+        for behaviour, teachers in given.items()
+    ]
+    return f"Shown so far: {', '.join(parts)}." if parts else ""
+
+
+async def learn_answer(
+    screen: Screen[Any], supervision: Supervision, answer: Verified, teacher: str
+) -> list[Event]:
+    """Act on an answer and learn from it, beside the screen: the forest takes a moment.
+
+    Raises:
+        TangyError: it could not be kept, and nothing of it is.
+    """
+
+    def learn() -> list[Event]:
+        return supervision.answer(answer.behaviour, answer.target, teacher)
+
+    worker = screen.run_worker(learn, thread=True, exit_on_error=False, group="learning")
+    try:
+        return await worker.wait()
+    except WorkerFailed as failed:
+        raise failed.error or failed from None
+
+
+class AskingPanel(Vertical):
+    """What Tangy asks and why, and the line to answer in; `answer()` waits for the answer.
+
+    It listens through the ears of the program, if there are any; an answer that is spoken is
+    verified as one that is typed. While the robot is stopped it is `held`: commands are given back.
+    """
+
+    DEFAULT_CSS = """
+    AskingPanel { height: auto; border-top: heavy $warning; border-title-color: $warning; }
+    AskingPanel Static.asks { height: auto; max-height: 5; padding: 0 1; }
+    AskingPanel Static.now { height: auto; max-height: 4; padding: 0 1; color: $ink-dim; }
+    AskingPanel Static.said { height: auto; max-height: 3; padding: 0 1; display: none; }
+    AskingPanel.-says Static.said { display: block; }
+    """
+
+    class WhyWanted(Message):
+        """Why was typed: the grounds are to be shown."""
+
+    def __init__(
+        self,
+        house: House,
+        supervision: Supervision,
+        question: Unsure,
+        before: str = "",
+        *,
+        wanted: bool = False,
+    ) -> None:
+        """Make the panel for a question; `before` says what was learnt from the last answer.
+
+        Where it was `wanted` to be asked, who leaves it lets Tangy go on by itself.
+        """
+        super().__init__(id="asking")
+        self._house = house
+        self._supervision = supervision
+        self._question = question
+        self._verifier = supervision.verifier()
+        self._phrasebook = Phrasebook(house.activity, house.people)
+        self._acceptable = supervision.acceptable
+        self._answer: asyncio.Future[Verified | Instead]
+        self._answer = asyncio.get_running_loop().create_future()
+        self._dialog: Dialog[Any] | None = None
+        self._held = False
+        self._open = False  # for an answer: the line is seen, and no question waits for its own
+        self._by_voice = False  # the present command was spoken
+        self._hearing = hearing_of(self.app)
+        self._before = clean(before)
+        self._wanted = wanted
+        self.set_class(bool(before), "-says")
+        self.border_title = "Tangy asks"
+
+    def compose(self) -> ComposeResult:
+        """Lay out the question, what Tangy sees, and the line."""
+        other = f"{ALL_RIGHT[0]}, " if self._acceptable else ""
+        yield Static(self._asks(), classes="asks", markup=False)
+        yield Static(self._sees(), classes="now", markup=False)
+        yield Static(self._before, classes="said", markup=False)
+        yield AnswerBar(
+            lambda typed: self._phrasebook.complete(typed),
+            placeholder=f"what should Tangy do? (or: {other}why, help, quit)",
+            resting=self._keys.format("pause"),
+            id="command",
+        )
+
+    def on_mount(self) -> None:
+        """Take the keys, but none that was typed before the question could be seen.
+
+        Where a key is pushed to talk, the screen keeps them.
+        """
+        self.query_one(CommandInput).closed = True
+        self._take_keys()
+        self.set_timer(SETTLE_SECONDS, self._ready)
+        if self._hearing is not None:
+            self._hearing.attend(self)
+
+    def on_unmount(self) -> None:
+        """Hear no more here."""
+        if self._hearing is not None:
+            self._hearing.leave(self)
+
+    @property
+    def _by_key(self) -> bool:
+        return self._hearing is not None and self._hearing.by_key
+
+    @property
+    def _keys(self) -> str:
+        own = OWN_KEYS if self._wanted else KEYS
+        return (TALK if self._by_key else "") + (ACCEPTING_KEYS if self._acceptable else own)
+
+    def _take_keys(self) -> None:
+        if self._by_key:
+            self.screen.set_focus(None)
+        else:
+            self.query_one(CommandBar).focus_input()
+
+    async def answer(self) -> Verified | Instead:
+        """Wait for an answer that was verified, or for what came in its place."""
+        return await self._answer
+
+    def withdraw(self) -> None:
+        """Ask no more: something has come up that makes the question void."""
+        self._settle(Instead.WITHDRAWN)
+        if (dialog := self._dialog) is not None:
+            self._close(dialog)
+            self.screen.run_worker(self._take_away(dialog), group="take away")
+
+    def _close(self, dialog: Dialog[Any]) -> None:
+        dialog.on_stop(Stop("the question was withdrawn"))
+
+    async def _take_away(self, dialog: Dialog[Any]) -> None:
+        """Take a dialog of the question's away, as soon as nothing lies over it."""
+        while dialog.is_attached:
+            self._close(dialog)
+            await asyncio.sleep(0.05)
+
+    def accept(self) -> bool:
+        """Say that what happened is all right; False: that cannot be said of this question."""
+        if self._acceptable and self._held:
+            self.say(HELD)
+        elif self._acceptable:
+            self._settle(Instead.ACCEPT)
+        return self._acceptable
+
+    def ask_to_give_up(self) -> None:
+        """Give the game up, if that is meant; or let Tangy go on, if staff wanted to be asked."""
+        if self._wanted:
+            self.withdraw()
+        elif self._dialog is None:
+            self.screen.run_worker(self._confirm(), name="give up", group="give up")
+
+    async def _confirm(self) -> None:
+        dialog = ConfirmDialog(
+            "Give this game up?",
+            "It ends here without an answer, and Tangy will ask again the next time.",
+            yes="give the game up",
+            no="go on",
+        )
+        if await self._put(dialog):
+            self._settle(Instead.GIVE_UP)
+
+    async def _put(self, dialog: Dialog[ResultT]) -> ResultT:
+        """Put a question over the screen; it is taken away if what Tangy asks is withdrawn.
+
+        Its worker is the screen's: an answer must have somebody who waits for it.
+        """
+        self._dialog = dialog
+        try:
+            return await self.app.push_screen_wait(dialog)
+        finally:
+            self._dialog = None
+
+    def _settle(self, answer: Verified | Instead) -> None:
+        if not self._answer.done():
+            self._answer.set_result(answer)
+
+    def hold(self, held: bool) -> None:
+        """Take no commands while the robot is stopped; the keys go to the screen."""
+        self._held = held
+        if held:
+            self.screen.set_focus(None)
+            self.say(HELD)
+        else:
+            self.say("")
+            self._take_keys()
+
+    def on_command_bar_given(self, event: CommandBar.Given) -> None:
+        """Put a typed answer to Tangy."""
+        event.stop()
+        self._by_voice = False
+        bar = self.query_one(CommandBar)
+        match event.text.lower():
+            case "why":
+                bar.ready()
+                self.post_message(self.WhyWanted())
+            case "quit" | "exit" | "leave":
+                bar.ready()
+                self.ask_to_give_up()
+            case "help":
+                bar.ready()
+                self.app.run_worker(self.run_action("app.help"))
+            case words if self._verifier.stops(words):
+                bar.ready()
+                self.app.run_worker(self.run_action("app.stop"))
+            case "phrases" | "voice" as word:
+                bar.ready()
+                self.app.run_worker(self.run_action(f"app.{word}"))
+            case words if words.strip(" .!") in ALL_RIGHT and self._acceptable:
+                bar.ready()
+                self.accept()
+            case _ if self._held:
+                self._return(event.text, HELD)
+            case _:
+                self._tell(self._verifier.say(Say(event.text)))
+
+    def _tell(self, said: Verification) -> None:
+        match said:
+            case Asked() | Offered():
+                self._be_open(False)
+                self.screen.run_worker(self._verify(said), name="question", group="question")
+            case NotUnderstood(heard, suggestions):
+                near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
+                self._return(heard, f"I do not know what {heard!r} means.{near}")
+            case Rejected(heard):
+                self._return(heard, HELD if self._held else "Not done. Give a new command.")
+            case Refused(reason, heard):
+                self._return(heard, reason)
+            case Verified():
+                self._settle(said)
+        if not isinstance(said, Asked | Offered):
+            self._be_open(True)
+
+    async def _verify(self, asked: Asked | Offered) -> None:
+        """Put the question, and take its answer when its dialog has gone."""
+        dialog = dialog_for(asked, self._hearing.aloud if self._hearing is not None else "")
+        answer = await self._put(dialog)
+        while dialog.is_attached:  # noqa: ASYNC110 - the next one has the same id, and no event
+            await asyncio.sleep(0)
+        if self._answer.done():
+            return
+        reply = Reply(answer.yes and not self._held, answer.reply.alternative)
+        self._tell(self._verifier.reply(reply))
+
+    def _return(self, heard: str, sentence: str) -> None:
+        """Give a command back with what is to be said of it."""
+        self.say(sentence)
+        self.screen.query_one(LogView).write(sentence, "warn")
+        bar = self.query_one(CommandBar)
+        if not (self._by_voice and bar.typing):
+            bar.restore(heard, focus=not self._by_voice)
+        if self._held:
+            self.screen.set_focus(None)
+
+    # ------------------------------------------------------------------------------- hearing
+
+    @property
+    def listens(self) -> bool:
+        """Whether a spoken answer could be taken now."""
+        free = self._open and self._dialog is None and not self._answer.done()
+        return free and self.screen.is_active
+
+    @property
+    def spoken(self) -> Phrasebook:
+        """What can be said."""
+        return self._phrasebook
+
+    def hear(self, said: Say) -> None:
+        """Put a spoken answer to Tangy."""
+        self._by_voice = True
+        if self._held:
+            self._return(said.text, HELD)
+        else:
+            self._tell(self._verifier.say(said))
+
+    def told(self, sentence: str, kind: Kind) -> None:
+        """Say something about hearing, under the question and in the log."""
+        self.say(sentence)
+        self.screen.query_one(LogView).write(sentence, kind)
+
+    def _be_open(self, is_open: bool) -> None:
+        """Take note whether an answer can be taken; what was said meanwhile comes next."""
+        self._open = is_open
+        if self._hearing is not None:
+            self._hearing.look()
+
+    def say(self, sentence: str) -> None:
+        """Say a sentence under the question, in the place of the last one."""
+        self.set_class(bool(sentence), "-says", "-refuses")
+        for said in self.query(".said").results(Static):
+            said.update(clean(sentence))
+
+    def show_keys(self, *, going: bool) -> None:
+        """Say which keys count while the line does not have them."""
+        for bar in self.query(AnswerBar):
+            bar.rest(self._keys.format("pause" if going else "go on"))
+
+    def _ready(self) -> None:
+        self.query_one(CommandBar).ready()
+        self._be_open(True)
+
+    def _asks(self) -> str:
+        """Write why Tangy asks; where answers were given, which."""
+        words = self._question.reason
+        if self._acceptable:
+            return clean(f"{words} If all is well, type: {ALL_RIGHT[0]}. If not, what to do?")
+        if not self._question.fault and self._question.decision.seen:
+            situation = self._question.state.situation
+            why = why_of(self._house, self._supervision.policy, situation)
+            words = f"{words} {answers_words(why)}"
+        return clean(f"{words} What should Tangy do?")
+
+    def _sees(self) -> str:
+        world, house = self._supervision.world, self._house
+        words = state_words(house.activity, self._question.state, world.scene(), house.name)
+        return clean(f"Now: {words}")
