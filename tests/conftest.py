@@ -132,21 +132,21 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 @pytest.fixture(scope="session")
 def _taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.demo import learn
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Next
 
     folder = tmp_path_factory.mktemp("taught") / "data"
-    house = House(folder)
-    teaching = house.teaching("scripted", 1)
+    workspace = Workspace(folder)
+    teaching = workspace.teaching("scripted", 1)
     teaching.begin()
     for number in range(3):
         if number:
             teaching.apply(Next())
         list(ScriptedTeacher(teaching).demonstrate())
-    learn(house)
-    house.close()
+    learn(workspace)
+    workspace.close()
     return folder
 
 

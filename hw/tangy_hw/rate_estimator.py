@@ -8,7 +8,7 @@ WINDOW = 2.0  # s of late that count; a chest screen answers five times in them
 FIRST = 1.0  # s after the first that came, before which it cannot be told
 
 
-class Arrivals:
+class RateEstimator:
     """Counts what comes, by a time that whoever counts gives, in s."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import IO
 
 
-class Outbox:
+class WriteQueue:
     """What is to be written to one pipe; `run` writes it until `close`, or until nobody reads."""
 
     def __init__(self, pipe: IO[bytes]) -> None:

@@ -18,7 +18,7 @@ from types import MappingProxyType
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.errors import ProfileError
-from tangy_profiles.persuading import PAPER, Persuading, read_persuading
+from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
 from tangy_profiles.state import Situation
@@ -61,7 +61,7 @@ class Activity:
     behaviours: Mapping[str, Behaviour]
     expected: Mapping[Situation, str]
     source: str
-    persuasion: Persuading = PAPER
+    persuasion: PersuasionConfig = PAPER
     object: str = "card"
     """What people handle, as they call it."""
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -49,7 +49,7 @@ class Words:
 
 
 @dataclass(frozen=True)
-class Face:
+class CardLayout:
     """Where everything is on the cards of a deck."""
 
     deck: Deck

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, Face, Words, tag_ids
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, CardLayout, Words, tag_ids
 from tangy_profiles.errors import TangyError
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def white_modules(card: int) -> list[Box]:
     return white
 
 
-def draw_face(face: Face, card: int, seed: int, title: str, scale: float) -> Picture:
+def draw_face(face: CardLayout, card: int, seed: int, title: str, scale: float) -> Picture:
     """Draw a card in grey, `scale` pixels to the mm."""
     from PIL import Image, ImageDraw
 
@@ -75,7 +75,7 @@ def draw_face(face: Face, card: int, seed: int, title: str, scale: float) -> Pic
     return _array(picture.resize(size, Image.Resampling.BOX))
 
 
-def draw_number(face: Face, number: int, side: int) -> Picture:
+def draw_number(face: CardLayout, number: int, side: int) -> Picture:
     """Draw what stands in a cell, without its lines, as a square of so many pixels."""
     from PIL import Image, ImageDraw
 

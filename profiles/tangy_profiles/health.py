@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from tangy_profiles.robot import Device
+    from tangy_profiles.robot import DeviceProfile
 
 OK, WARN, ERROR, STALE = "OK", "WARN", "ERROR", "STALE"
 STATES = (OK, WARN, STALE, ERROR)
@@ -41,7 +41,7 @@ Health = tuple[Reading, ...]
 """The readings of all devices of a robot."""
 
 
-def state_of(device: Device | None, reading: Reading) -> str:
+def state_of(device: DeviceProfile | None, reading: Reading) -> str:
     """Return the state of a device: what it says of itself, or STALE if its data is too old.
 
     A measurement that is no number is an error. An age that is none, or has no end, is too old

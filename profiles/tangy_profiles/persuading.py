@@ -22,7 +22,7 @@ LEAST_KEPT = 0.5
 
 
 @dataclass(frozen=True)
-class Persuading:
+class PersuasionConfig:
     """A choice of method; the default is the paper's, exactly.
 
     `method` chooses among the beliefs, `prior` is where they begin ("people": from what worked
@@ -40,7 +40,7 @@ class Persuading:
         return asdict(self)
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> Persuading:
+    def from_json(cls, body: Mapping[str, Any]) -> PersuasionConfig:
         """Read a choice that `to_json` wrote; what is not there is as in the paper.
 
         Raises:
@@ -57,16 +57,16 @@ class Persuading:
         )
 
 
-PAPER = Persuading()
+PAPER = PersuasionConfig()
 
 
-def read_persuading(table: Table) -> Persuading:
+def read_persuading(table: Table) -> PersuasionConfig:
     """Read an activity's [persuasion]; what is left out is as in the paper.
 
     Raises:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
-    chosen = Persuading(
+    chosen = PersuasionConfig(
         cast(MethodName, table.choice("method", METHODS, PAPER.method)),
         table.choice("prior", PRIORS, PAPER.prior),
         table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
@@ -76,7 +76,7 @@ def read_persuading(table: Table) -> Persuading:
     return chosen
 
 
-def spoken_persuading(words: Iterable[str]) -> Persuading:
+def spoken_persuading(words: Iterable[str]) -> PersuasionConfig:
     """Read a choice from words in any order: "bayes-ucb people 0.98 day".
 
     Raises:

@@ -67,7 +67,7 @@ class Measure:
 
 
 @dataclass(frozen=True)
-class Device:
+class DeviceProfile:
     """A device of the robot: its data is stale after so many s; `facts` are what it measures.
 
     Of each fact the profile says in words of the staff what it is, and which values it can have.
@@ -123,7 +123,7 @@ class Robot:
     speed: float
     limbs: Mapping[str, Limb]
     postures: Mapping[str, Mapping[str, tuple[float, ...]]]
-    devices: Mapping[str, Device]
+    devices: Mapping[str, DeviceProfile]
     faces: FaceModels | None = None
     file: Path = Path()
     drivers: Mapping[str, Driver] = field(default_factory=dict)
@@ -229,14 +229,14 @@ def _face_models(top: Table, folder: Path) -> FaceModels | None:
     return models
 
 
-def _devices(top: Table) -> dict[str, Device]:
-    devices: dict[str, Device] = {}
+def _devices(top: Table) -> dict[str, DeviceProfile]:
+    devices: dict[str, DeviceProfile] = {}
     for entry in top.tables("devices"):
         name = entry.text("name")
         if name in devices:
             raise entry.wrong("name", "was used before: every device has its own.")
         facts = entry.table("facts", optional=True)
-        devices[name] = Device(
+        devices[name] = DeviceProfile(
             name,
             entry.text("label"),
             entry.number("stale_after", 0.05, 60),
@@ -249,16 +249,16 @@ def _devices(top: Table) -> dict[str, Device]:
     return _with_link(devices)
 
 
-def _with_link(devices: Mapping[str, Device]) -> dict[str, Device]:
+def _with_link(devices: Mapping[str, DeviceProfile]) -> dict[str, DeviceProfile]:
     """Return devices with the link, which every robot has, whether its file tells of it or not."""
-    link = devices.get(LINK) or Device(LINK, "link to the robot", LINK_STALE_SECONDS, {})
+    link = devices.get(LINK) or DeviceProfile(LINK, "link to the robot", LINK_STALE_SECONDS, {})
     says = "seconds for which the robot's own program stood still"
     facts = {FROZEN: Measure(says, low=0.0, high=LONGEST_SECONDS), **link.facts}
     known = {LINK: replace(link, facts=MappingProxyType(facts))}
     return {**devices, **known} if LINK in devices else {**known, **devices}
 
 
-def _drivers(top: Table, devices: Mapping[str, Device]) -> dict[str, Driver]:
+def _drivers(top: Table, devices: Mapping[str, DeviceProfile]) -> dict[str, Driver]:
     """Read what drives the devices; which kinds and settings there are, the drivers know."""
     drivers: dict[str, Driver] = {}
     table = top.table("drivers", optional=True)

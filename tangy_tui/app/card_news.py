@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt
-from tangy_hw.robot_client.card_observations import CardViews
+from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_tui.interaction.facilitation import GameBegun
 from tangy_tui.monitoring.supervision import Event
 
@@ -35,7 +35,7 @@ class CardNews:
         """Prepare to tell; `name` says what somebody is called."""
         self._name = name
 
-    def take(self, events: Iterable[Event], cards: CardViews) -> list[CardNote]:
+    def take(self, events: Iterable[Event], cards: CardObservations) -> list[CardNote]:
         """Return what is new after what happened; it is told once."""
         notes: list[CardNote] = []
         if any(isinstance(event, GameBegun) for event in events) and cards.dealt.given:

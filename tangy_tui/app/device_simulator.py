@@ -46,7 +46,7 @@ class Wires:
     faces: dict[str, int]
 
 
-class Bench:
+class DeviceSimulator:
     """A bench that runs. `do` things at it, and `close` it."""
 
     def __init__(

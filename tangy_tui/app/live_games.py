@@ -17,13 +17,13 @@ from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
 
 
 class LiveGames:
     """Games that were played live, and what they add up to."""
 
-    def __init__(self, house: House, supervision: Supervision) -> None:
+    def __init__(self, workspace: Workspace, supervision: Supervision) -> None:
         """Begin to count."""
         self.tally = Tally()
         self.faults: list[dict[str, Any]] = []
@@ -32,10 +32,10 @@ class LiveGames:
         self.seconds = 0.0
         """How long the games took in the robot's time."""
         self.took = 0.0
-        self._house = house
+        self._workspace = workspace
         self._supervision = supervision
-        self._seats = Seats(house.name)
-        self._cards = CardNews(house.name)
+        self._seats = Seats(workspace.name)
+        self._cards = CardNews(workspace.name)
         self._card_notes: list[CardNote] = []
 
     def play(
@@ -82,7 +82,7 @@ class LiveGames:
         """Say what happened, for whoever waits, and who was seen where somebody else sits."""
         world = self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        lines = (_told(self._house, event) for event in events)
+        lines = (_told(self._workspace, event) for event in events)
         cards = (note.words for note in self._card_notes)
         return [*filter(None, (*lines, *cards)), *self._seats.news(events, world.sitting)]
 
@@ -100,7 +100,7 @@ class LiveGames:
         """Return what `tangy live --json` prints."""
         world = self._supervision.world
         beliefs = self._supervision.persuasion.beliefs
-        found = self.tally.to_json(self._house.activity.situations, beliefs, self.faults)
+        found = self.tally.to_json(self._workspace.activity.situations, beliefs, self.faults)
         found["card_doubts"] = self.card_doubts
         if isinstance(world, BenchedWorld):
             found |= world.score.to_json()
@@ -111,11 +111,11 @@ class LiveGames:
         return found
 
 
-def _told(house: House, event: Event) -> str:
+def _told(workspace: Workspace, event: Event) -> str:
     """Say in one line what happened, for whoever waits; "" of what needs no line."""
     match event:
         case Acted(number=number, action=action, outcome=outcome, speech=speech):
-            whom = "" if action.target is None else f" ({house.name(action.target)})"
+            whom = "" if action.target is None else f" ({workspace.name(action.target)})"
             done = "" if outcome.completed else "  not carried out"
             return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
         case GameEnded(steps=steps, stopped=None):

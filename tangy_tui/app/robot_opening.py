@@ -17,13 +17,13 @@ from tangy_profiles.reading import plain
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds.injection import Injection
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 
 if TYPE_CHECKING:
     from tangy_profiles.faults import FaultBook
     from tangy_profiles.robot import Robot
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
 
 W = TypeVar("W", bound=LiveWorld)
 B = TypeVar("B", bound=BenchedWorld)
@@ -37,7 +37,7 @@ Opening = Callable[[bool, Cancellation], AbstractContextManager[LiveWorld]]
 
 
 def opening_of(
-    house: House,
+    workspace: Workspace,
     *,
     bench: bool,
     injections: Sequence[Injection] = (),
@@ -47,7 +47,7 @@ def opening_of(
     """Return what opens the robot, or its bench.
 
     Args:
-        house: whose robot it is.
+        workspace: whose robot it is.
         bench: its devices are simulated.
         injections: the faults that are to come on the bench.
         own: what only a robot that is there is told: its cameras, request sensor, and cards.
@@ -56,17 +56,17 @@ def opening_of(
     from tangy_profiles.fault_file import load_faults
 
     def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
-        told: dict[str, Any] = {"book": load_faults(house.robot), "cancellation": cancellation}
+        told: dict[str, Any] = {"book": load_faults(workspace.robot), "cancellation": cancellation}
         if bench:
-            return open_bench(house, stepped=stepped, injections=injections, **told, **both)
-        return open_robot(house, **told, **(own or {}), **both)
+            return open_bench(workspace, stepped=stepped, injections=injections, **told, **both)
+        return open_robot(workspace, **told, **(own or {}), **both)
 
     return opening
 
 
 @contextmanager
 def open_bench(
-    house: House,
+    workspace: Workspace,
     *,
     seed: int,
     stepped: bool,
@@ -95,23 +95,23 @@ def open_bench(
         Cancelled: it was called off.
         TangyError: the bench or the robot process does not begin.
     """
-    folder = house.store.folder
+    folder = workspace.store.folder
     cancellation = cancellation or Cancellation()
-    bench = Bench(
+    bench = DeviceSimulator(
         seed=seed,
-        people=house.names,
+        people=workspace.names,
         stepped=stepped,
-        activity=house.profile,
-        robot=str(house.robot.file),
+        activity=workspace.profile,
+        robot=str(workspace.robot.file),
         log=folder / BENCH_LOG,
         cancellation=cancellation,
     )
     try:
         at = bench.wires.rosbridge
         setup = RobotSetup(
-            robot=str(house.robot.file),
-            activity=house.profile,
-            people=tuple(house.names),
+            robot=str(workspace.robot.file),
+            activity=workspace.profile,
+            people=tuple(workspace.names),
             drivers={
                 **{name: {"kind": "rosbridge", "at": at} for name in ROSBRIDGE},
                 "laser": {"kind": "scip", "at": bench.wires.scip},
@@ -120,7 +120,7 @@ def open_bench(
             cameras={CAMERA: bench.wires.head},
             requests=f"signs:{bench.wires.infrared}",
             corners=bench.wires.corners,
-            start=None if lost else _start(house.room, tuple(house.names)),
+            start=None if lost else _start(workspace.room, tuple(workspace.names)),
             map=map_,
             stepped=stepped,
             seed=seed,
@@ -128,7 +128,7 @@ def open_bench(
             log=str(folder / LOG),
         )
         linked = _linked(
-            kind, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+            kind, setup, workspace, seed=seed, pace=pace, book=book, cancellation=cancellation
         )
         with linked as world:
             try:
@@ -146,7 +146,7 @@ ROSBRIDGE = ("base", "stop_button", "arms", "voice")
 
 @contextmanager
 def open_robot(
-    house: House,
+    workspace: Workspace,
     *,
     seed: int,
     pace: float = PACE_SECONDS,
@@ -170,9 +170,9 @@ def open_robot(
         Cancelled: it was called off.
         TangyError: the profile names none, or the robot process does not begin.
     """
-    if not house.robot.drivers:
+    if not workspace.robot.drivers:
         raise DeviceError(
-            f"{house.robot.file.name} names no drivers, so there is no robot to be reached: "
+            f"{workspace.robot.file.name} names no drivers, so there is no robot to be reached: "
             "try --bench, or name them as docs/robots.md tells."
         )
     from tangy_hw.drivers.chest_pairing import keep_pairing
@@ -181,25 +181,25 @@ def open_robot(
     from tangy_hw.perception.requests.source_names import requests_named
 
     cancellation = cancellation or Cancellation()
-    name, named = requests_named(house.robot)
+    name, named = requests_named(workspace.robot)
     requests, corners = requests or name, corners or named
-    known = read_faces(house.store, open_reader(house.robot.faces).kind)
+    known = read_faces(workspace.store, open_reader(workspace.robot.faces).kind)
     setup = RobotSetup(
-        robot=str(house.robot.file),
-        activity=house.profile,
-        people=tuple(house.names),
+        robot=str(workspace.robot.file),
+        activity=workspace.profile,
+        people=tuple(workspace.names),
         cameras=dict(named.split("=", 1) for named in cameras),
         requests=requests,
         corners=corners,
-        start=None if lost else _start(house.room, tuple(house.names)),
+        start=None if lost else _start(workspace.room, tuple(workspace.names)),
         seed=seed,
-        faces={p: rows.tolist() for p, rows in known.items() if p in house.names},
+        faces={p: rows.tolist() for p, rows in known.items() if p in workspace.names},
         map=map_,
-        log=str(house.store.folder / LOG),
-        pairing=keep_pairing(house.store.folder).to_json(),
+        log=str(workspace.store.folder / LOG),
+        pairing=keep_pairing(workspace.store.folder).to_json(),
     )
     linked = _linked(
-        LiveWorld, setup, house, seed=seed, pace=pace, book=book, cancellation=cancellation
+        LiveWorld, setup, workspace, seed=seed, pace=pace, book=book, cancellation=cancellation
     )
     with linked as world:
         world.cards.dealt.deal(cards or {})
@@ -210,30 +210,30 @@ def open_robot(
 def _linked(
     kind: type[W],
     setup: RobotSetup,
-    house: House,
+    workspace: Workspace,
     *,
     seed: int,
     pace: float,
     book: FaultBook | None,
     cancellation: Cancellation,
 ) -> Iterator[W]:
-    link = RobotLink(setup, log=house.store.folder / LOG, cancellation=cancellation)
+    link = RobotLink(setup, log=workspace.store.folder / LOG, cancellation=cancellation)
     try:
         link.start()
         link.beat()  # a game begins by what the robot says of itself
         world = kind(
-            house.activity,
-            list(house.names),
+            workspace.activity,
+            list(workspace.names),
             link,
-            house.robot,
-            house.room,
+            workspace.robot,
+            workspace.room,
             seed=seed,
-            names=house.names,
+            names=workspace.names,
             pace=pace,
             knows_faces=bool(setup.faces),
         )
         if book is not None:
-            world.commands.diagnosed = _Diagnosis(book, house.robot)
+            world.commands.diagnosed = _Diagnosis(book, workspace.robot)
         yield world
     finally:
         link.close()
@@ -255,7 +255,7 @@ class _Diagnosis:
         return {one.rule.code: one.rule.critical for one in diagnose(self._book, evidence)}
 
 
-def check_map(house: House, map_: str) -> None:
+def check_map(workspace: Workspace, map_: str) -> None:
     """Look whether a robot could play by a map, before one is switched on.
 
     Raises:
@@ -265,13 +265,13 @@ def check_map(house: House, map_: str) -> None:
     from tangy_hw.navigation.planning import PlanError, check_goal
 
     known = read_map(Path(map_))
-    people = tuple(house.names)
+    people = tuple(workspace.names)
     for place in (FRONT, *people):
-        at = house.room.stand(place, people)
+        at = workspace.room.stand(place, people)
         try:
             check_goal(known, (at.x, at.y))
         except PlanError as error:
-            where = "the front" if place == FRONT else f"{house.name(place)}'s place"
+            where = "the front" if place == FRONT else f"{workspace.name(place)}'s place"
             told = f"{map_}: {where} ({at.x:g}, {at.y:g}) cannot be driven to on it. {error}"
             raise MapFileError(plain(told)) from None
 

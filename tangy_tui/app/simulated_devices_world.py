@@ -1,7 +1,7 @@
 """A world on the bench: faults are brought about in its devices, and what is seen is checked.
 
 The bench knows how things really are; the robot does not. Only the count of what was read rightly
-(`Score`) is told, when it has been read.
+(`PerceptionScore`) is told, when it has been read.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tangy_sim.device_simulator.tablet import Tablet
 from tangy_sim.worlds import injection
 from tangy_sim.worlds.injection import KINDS, Injection, Kind
 from tangy_sim.worlds.pending_injections import ToCome
-from tangy_tui.app.device_simulator import Bench, BenchError
+from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
 
 MARKED = ("clear wrong marks", "set missing marks")
 EXPERT_SECONDS = 60.0  # that an expert takes on the bench
@@ -34,7 +34,7 @@ NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes f
 
 
 @dataclass
-class Score:
+class PerceptionScore:
     """What was read and found rightly, of how much."""
 
     reads: Counter[str] = field(default_factory=Counter)
@@ -60,14 +60,16 @@ class BenchedWorld(LiveWorld):
     """A real world whose devices a bench simulates. Between games everything is put right."""
 
     played_in: GameWorld = BENCH
-    bench: Bench
+    bench: DeviceSimulator
     injections: Sequence[Injection] = ()
 
-    def on(self, bench: Bench, injections: Sequence[Injection] = (), seed: int = 1) -> BenchedWorld:
+    def on(
+        self, bench: DeviceSimulator, injections: Sequence[Injection] = (), seed: int = 1
+    ) -> BenchedWorld:
         """Name the bench that it is on, and the faults that are to come in each game."""
         self.bench = bench
         self.injections = tuple(injections)
-        self.score = Score()
+        self.score = PerceptionScore()
         self.came: list[tuple[int, str]] = []
         self._chance = Random(f"{seed}/faults").random
         self._to_come = ToCome((), self._chance)

@@ -1,4 +1,4 @@
-"""The house put together: profiles, the store and a simulated world, for screens and lines."""
+"""The workspace: profiles, the store and a simulated world together, for screens and lines."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from tangy_profiles.health import Health
     from tangy_tui.interaction.facilitation import Facilitation
     from tangy_tui.interaction.forgetting import Forgotten
-    from tangy_tui.interaction.memory import Memory
+    from tangy_tui.interaction.memory import PersonModels
     from tangy_tui.interaction.persuasion import Persuasion
     from tangy_tui.interaction.record import Record
     from tangy_tui.learning.policy import Policy
     from tangy_tui.learning.teaching_events import Again
-    from tangy_tui.learning.teaching_session import Teaching
+    from tangy_tui.learning.teaching_session import TeachingSession
     from tangy_tui.monitoring.supervision import Supervision
     from tangy_tui.world import World
 
@@ -59,7 +59,7 @@ def teacher_name(given: str | None = None) -> str:
     return plain(login).strip()[:LONGEST_NAME].strip() or "teacher"
 
 
-class House:
+class Workspace:
     """One activity with its robot, room and people, and the data folder they are kept in."""
 
     def __init__(
@@ -215,7 +215,7 @@ class House:
         *,
         guided: bool = False,
         again: Again | None = None,
-    ) -> Teaching:
+    ) -> TeachingSession:
         """Make a teaching session; `begin` it to take up what was unfinished.
 
         Without a seed the games count on from the demonstrations there are, so that no two are
@@ -223,12 +223,12 @@ class House:
         names a demonstration that is to be shown again from some step on.
         """
         from tangy_tui.learning import library
-        from tangy_tui.learning.teaching_session import Teaching
+        from tangy_tui.learning.teaching_session import TeachingSession
 
         if seed is None:
             entries = library.read_library(self.store, self.activity.name).entries.values()
             seed = 1 + max((entry.demonstration.seed for entry in entries), default=0)
-        return Teaching(
+        return TeachingSession(
             self.activity,
             self.people,
             self.store,
@@ -319,7 +319,7 @@ class House:
 
     def _facilitation(self, world: World, policy: Policy, seed: int, asks: bool) -> Facilitation:
         from tangy_tui.interaction.facilitation import Facilitation
-        from tangy_tui.learning.online_learning import Answers
+        from tangy_tui.learning.online_learning import OnlineLearning
 
         return Facilitation(
             world,
@@ -329,7 +329,7 @@ class House:
             names=self.names,
             people=self.people,
             seed=seed,
-            answers=Answers(self.store, self.activity) if asks else None,
+            answers=OnlineLearning(self.store, self.activity) if asks else None,
         )
 
     def persuasion(self, rng: Random, world: GameWorld | None = None) -> Persuasion:
@@ -345,16 +345,16 @@ class House:
             memory=memory,
         )
 
-    def memory(self, world: GameWorld | None = None) -> Memory:
+    def memory(self, world: GameWorld | None = None) -> PersonModels:
         """Make what recalls people from the log, with the activity's choice of method.
 
         Args:
             world: whose games count (default: the world of the last game).
         """
-        from tangy_tui.interaction.memory import Memory
+        from tangy_tui.interaction.memory import PersonModels
 
         strategies = tuple(self.activity.strategies)
-        return Memory(self.store, strategies, self.activity.persuasion, world=world)
+        return PersonModels(self.store, strategies, self.activity.persuasion, world=world)
 
     def records(self, *people: Person, world: GameWorld | None = None) -> list[Record]:
         """Read what is to be told of people (of everybody, if none is named)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import learn_effects
@@ -19,11 +19,11 @@ DEMONSTRATIONS = 3
 """What the paper found to be enough when situations come about by chance."""
 
 
-def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any]:
+def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[str, Any]:
     """Tell the story line by line; return what the game added up to."""
-    activity = house.activity
+    activity = workspace.activity
     write(f"1. A teacher demonstrates {activity.title} {DEMONSTRATIONS} times.")
-    teaching = house.teaching(SCRIPTED, seed)
+    teaching = workspace.teaching(SCRIPTED, seed)
     teacher = ScriptedTeacher(teaching)
     events = teaching.begin()
     seen = set()
@@ -39,8 +39,8 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
                     write(f"        teacher: {step.behaviour}. Tangy: {speech}")
         steps = len(teaching.demonstration.steps)
         write(f"   {steps} steps; {len(seen)} of {len(activity.situations)} situations shown.")
-    policy = learn(house)
-    shown = read_library(house.store, activity.name).demonstrations
+    policy = learn(workspace)
+    shown = read_library(workspace.store, activity.name).demonstrations
     effects = learn_effects(activity, shown)
     write("2. A random forest learns what to do, and what follows from it.")
     for situation in activity.situations:
@@ -51,28 +51,28 @@ def tell(house: House, seed: int, write: Callable[[str], None]) -> dict[str, Any
         )
     write(f"   Effects of {len(effects.values)} behaviours are known.")
     write("3. Tangy facilitates a game by itself.")
-    supervision = house.supervision(policy, seed)
+    supervision = workspace.supervision(policy, seed)
     tally = Tally()
     events_of_game = supervision.begin()
     while True:
         tally.add(events_of_game)
         for game_event in events_of_game:
-            for line in game_lines(game_event, supervision, house.name):
+            for line in game_lines(game_event, supervision, workspace.name):
                 write(f"   {line}")
         if supervision.over:
             break
         events_of_game = supervision.step()
     write("4. What Tangy now believes about which strategy works with whom:")
-    for line in belief_lines(supervision, house.name):
+    for line in belief_lines(supervision, workspace.name):
         write(f"   {line}")
     write("Teach it yourself: tangy teach. All you can do: tangy --help.")
     return tally.to_json(activity.situations, supervision.persuasion.beliefs)
 
 
-def learn(house: House) -> Policy:
+def learn(workspace: Workspace) -> Policy:
     """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
-    library = read_library(house.store, house.activity.name)
-    policy = learn_policy(house.activity, library.finished, resolutions=library.resolutions)
-    policy = unused_name(house.store, policy)
-    keep_policy(house.store, policy)
+    library = read_library(workspace.store, workspace.activity.name)
+    policy = learn_policy(workspace.activity, library.finished, resolutions=library.resolutions)
+    policy = unused_name(workspace.store, policy)
+    keep_policy(workspace.store, policy)
     return policy

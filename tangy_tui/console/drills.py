@@ -12,7 +12,7 @@ from tangy_tui.language.stop_sentence import stops
 from tangy_tui.language.words import words_of
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
-from tangy_tui.monitoring.drill_sheet import Answered, Sheet
+from tangy_tui.monitoring.drill_sheet import AnsweredRound, Sheet
 from tangy_tui.text.situations import counted, state_words
 
 Read = Callable[[], str | None]
@@ -96,7 +96,7 @@ def question_words(question: Question, shown: Round) -> str:
     return question.text
 
 
-def told_lines(table: Tabletop, shown: Round, answered: Answered) -> list[Told]:
+def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
     """Tell what was right in a round, why, and what to do then."""
     fault = shown.fault
     what = "nothing was wrong" if fault is None else fault.name

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, Move
+from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, RecoveryEvent
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.monitoring.telling import move_words, whom_to_call
 from tangy_tui.monitoring.times import clock
@@ -50,7 +50,7 @@ def advice_lines(game: Supervision) -> list[str]:
     return [f"{fault.console} Why: {fault.why}.", *steps]
 
 
-def _said(move: Move) -> list[str]:
+def _said(move: RecoveryEvent) -> list[str]:
     return [f"   Tangy says: {move.speech}"] if move.speech else []
 
 

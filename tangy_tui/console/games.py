@@ -9,10 +9,10 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_tui.console.faults import advice_lines, attend, fault_lines
 from tangy_tui.interaction.facilitation import (
     Acted,
+    BeliefUpdated,
     DoneOnce,
     GameBegun,
     GameEnded,
-    Learnt,
     Taught,
     Unsure,
 )
@@ -66,7 +66,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
             ]
         case Diagnosed() | Moved():
             return fault_lines(event)
-        case Learnt(response, belief):
+        case BeliefUpdated(response, belief):
             what = "did not follow, which counts as no"
             if response.followed:
                 what = "followed, but late, which counts as no"

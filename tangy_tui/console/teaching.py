@@ -29,7 +29,7 @@ from tangy_tui.learning.teaching_events import (
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import (
     ANSWER_HELP,
     ANSWERS,
@@ -42,10 +42,10 @@ from tangy_tui.learning.verification import (
     Rejected,
     Reply,
     Say,
-    Stop,
+    StopCommand,
     answer_help,
 )
-from tangy_tui.speech.input import Ears, Heard
+from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.text.situations import counted, state_words, step_words, verification_lines
 
 Read = Callable[[], str | None]
@@ -83,10 +83,10 @@ class TeachingLines:
 
     def __init__(
         self,
-        teaching: Teaching,
+        teaching: TeachingSession,
         read: Read,
         write: Write,
-        ears: Ears | None = None,
+        ears: SpeechInput | None = None,
         *,
         scripted: bool = False,
         seen: Callable[[], list[str]] = list,
@@ -141,7 +141,7 @@ class TeachingLines:
             if command == "quit":
                 break
             asked = teaching.question
-            if isinstance(command, Stop):
+            if isinstance(command, StopCommand):
                 if asked is not None:
                     self._tell(teaching.apply(Reply(yes=False)))
                 write(STOPPED)
@@ -221,13 +221,13 @@ class TeachingLines:
     def _answers(self) -> bool:
         return self._ears is not None and self._ears.answers
 
-    def _command(self, line: str) -> TeacherCommand | Stop | str:
+    def _command(self, line: str) -> TeacherCommand | StopCommand | str:
         text = line.strip()
         lower = text.lower()
         if not text or text.startswith("#"):
             return "nothing"
         if stops(text, self._teaching.phrasebook.game):
-            return Stop(text)
+            return StopCommand(text)
         if self._teaching.question is not None and lower != "quit":
             if lower in ANSWERS:
                 return Reply(yes=ANSWERS[lower])
@@ -310,7 +310,7 @@ def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
     return isinstance(spoken.result(), Say)
 
 
-def teaching_lines(event: TeachingEvent, teaching: Teaching) -> list[str]:
+def teaching_lines(event: TeachingEvent, teaching: TeachingSession) -> list[str]:
     """Put one event of a teaching session into lines."""
     match event:
         case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():

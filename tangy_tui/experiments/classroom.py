@@ -32,7 +32,7 @@ from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.world import World
 
 GUIDED = "guided"
@@ -62,7 +62,7 @@ class Teacher(Protocol):
 class MakeTeacher(Protocol):
     """Puts a teacher into a session."""
 
-    def __call__(self, teaching: Teaching) -> Teacher:
+    def __call__(self, teaching: TeachingSession) -> Teacher:
         """Return the teacher."""
         ...
 
@@ -126,7 +126,7 @@ def taught(course: Course, make_teacher: MakeTeacher = ScriptedTeacher) -> Itera
     with TemporaryDirectory(prefix="tangy-class-") as scratch, Store.open(Path(scratch)) as store:
         people = load_people(course.users)
         first = 1000 * course.seed  # each game of a course has the next seed
-        teaching = Teaching(activity, people, store, make_world, teacher="class", seed=first)
+        teaching = TeachingSession(activity, people, store, make_world, teacher="class", seed=first)
         teacher = make_teacher(teaching)
         teaching.begin()
         while True:

@@ -36,7 +36,7 @@ SOURCES: Mapping[Source, str] = MappingProxyType(
 
 
 @dataclass(frozen=True)
-class Row:
+class ComparisonRow:
     """One line: what is compared, the paper's figure, ours, and what to say about the two.
 
     `source` says where our figure comes from (see `SOURCES`).
@@ -49,7 +49,7 @@ class Row:
     source: Source = "predicted"
 
 
-def compare(document: Document) -> list[Row]:
+def compare(document: Document) -> list[ComparisonRow]:
     """Return the rows for the document of a scenario."""
     return {1: _learning, 2: _persuasion, 3: _recovery}[document["experiment"]](document)
 
@@ -146,7 +146,7 @@ def _rising(users: Sequence[Mapping[str, Any]]) -> str:
     return f"Does not rise for {', '.join(level)}." if level else "Rises for every user, too."
 
 
-def _learning(document: Document) -> list[Row]:
+def _learning(document: Document) -> list[ComparisonRow]:
     paper, behaviours = document["paper"], document["behaviours"]
     within, guided = document["random"]["exact_within"], document["guided"]
     three = str(paper["demonstrations"])
@@ -160,7 +160,7 @@ def _learning(document: Document) -> list[Row]:
         return many(int(count), "person", "people")
 
     return [
-        Row(
+        ComparisonRow(
             "Demonstrations needed, games by chance",
             f"{three} (one teacher, one sequence of games)",
             f"exact after 1, 2, 3, 4: {', '.join(some(within[n]) for n in sorted(within))} "
@@ -169,14 +169,14 @@ def _learning(document: Document) -> list[Row]:
             f"alone is: {of_all(within['1'], seeds)}. How many it takes is a matter of luck with "
             "the games, so one sequence cannot say.",
         ),
-        Row(
+        ComparisonRow(
             "Demonstrations needed when one shows every situation",
             str(paper["demonstrations_all_shown"]),
             f"exact after 1: {percent(guided['exact_after_one'])} "
             f"({', '.join(f'{people(n)} {percent(s)}' for n, s in guided['by_users'].items())})",
             "Agrees." if guided["exact_after_one"] == 1 else "Some needed more: see the table.",
         ),
-        Row(
+        ComparisonRow(
             "Behaviours in a demonstration",
             str(paper["behaviours_per_demonstration"]),
             _mean(behaviours),
@@ -189,7 +189,7 @@ def _learning(document: Document) -> list[Row]:
             ),
             "fitted",
         ),
-        Row(
+        ComparisonRow(
             "Policies of five teachers",
             "the same",
             f"groups of {teachers['count']} in which all are the same: "
@@ -199,7 +199,7 @@ def _learning(document: Document) -> list[Row]:
             "The paper's teachers are not said to have erred; these get up to 5% of their "
             "commands wrong, and go on until every situation was shown.",
         ),
-        Row(
+        ComparisonRow(
             "Minutes to teach a game",
             str(paper["minutes_to_teach"]),
             _typed(typed),
@@ -223,14 +223,14 @@ def _typed(typed: Mapping[str, Any] | None) -> str:
     )
 
 
-def _persuasion(document: Document) -> list[Row]:
+def _persuasion(document: Document) -> list[ComparisonRow]:
     paper, before = document["paper"], document["suboptimal_before_convergence"]
     four, rate = document["four_users"], document["interactions_per_user_game"]
     last = [user["optimal_share"][-1] for user in document["users"]]
     never = f"; {before['never']} never converged" if before["never"] else ""
     asked = paper["interactions_per_user_game"]
     return [
-        Row(
+        ComparisonRow(
             "Sub-optimal strategies before convergence",
             f"{paper['suboptimal_before_convergence']} (mean of four users, one run)",
             f"{_mean(before)}, standard deviation {number(before['sd'])} between people{never}",
@@ -242,7 +242,7 @@ def _persuasion(document: Document) -> list[Row]:
             ),
             "chosen",
         ),
-        Row(
+        ComparisonRow(
             "Interactions of a user in a game",
             str(asked),
             f"{number(rate, 3)} ({many(document['games'], 'game')})",
@@ -252,7 +252,7 @@ def _persuasion(document: Document) -> list[Row]:
             "games of Table II, whose counts give 90 interactions of four people.",
             "fitted",
         ),
-        Row(
+        ComparisonRow(
             "Optimal strategies over interactions (Fig. 5)",
             "rises to all of them, for each user",
             f"{', '.join(percent(share) for share in last)} at interaction "
@@ -282,11 +282,11 @@ BENCHED = (
 )
 
 
-def _recovery(document: Document) -> list[Row]:
+def _recovery(document: Document) -> list[ComparisonRow]:
     paper, games = document["paper"], document["games"]
     scale = games / paper["games"]
     rows = [
-        Row(
+        ComparisonRow(
             RECOVERIES[here["recovery"]],
             f"{there['instances']} in {paper['games']} games, success {percent(there['success'])}",
             f"{here['instances']} in {games}, success {percent(here['success'])}",
@@ -300,13 +300,13 @@ def _recovery(document: Document) -> list[Row]:
     alarms, missed = document["false_alarms"], document["missed"]
     return [
         *rows,
-        Row(
+        ComparisonRow(
             "Faults that were missed, and false alarms",
             "not said",
             f"{missed} of {document['induced']} missed; {many(alarms, 'false alarm')}",
             SIMULATED if document["simulated"] else BENCHED,
         ),
-        Row(
+        ComparisonRow(
             "Behaviours in a game",
             number(behaviours),
             number(mean),
@@ -316,7 +316,7 @@ def _recovery(document: Document) -> list[Row]:
             "faults of this length.",
             "fitted",
         ),
-        Row(
+        ComparisonRow(
             "Games played to their end",
             f"{paper['games']} of {paper['games']}",
             of_all(document["ended"].get(TO_ITS_END, 0) / games, games),

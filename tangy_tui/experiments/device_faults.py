@@ -14,7 +14,7 @@ from tangy_profiles.state import ActivityState, Outcome
 from tangy_sim.worlds.injection import KINDS, WAITING
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.experiments.classroom import GUIDED, Course
 from tangy_tui.experiments.induced import Inducer, Planned
 from tangy_tui.experiments.recovering import plan_of, play_games
@@ -96,16 +96,20 @@ def play_on_bench(settings: Settings, case: Case) -> dict[str, Any]:
     activity, users = settings["activity"], settings["users"]
     shown, policy = lessons(Course(activity, users, GUIDED, 1))
     with TemporaryDirectory(prefix="tangy-bench-") as scratch:
-        house = House(Path(scratch), activity=activity, users=users)
+        workspace = Workspace(Path(scratch), activity=activity, users=users)
         try:
             for one in shown:  # from which the effects of behaviours are learnt as well
-                keep(house.store, one)
+                keep(workspace.store, one)
             with open_bench(
-                house, seed=number, stepped=True, book=load_faults(house.robot), kind=InducingBench
+                workspace,
+                seed=number,
+                stepped=True,
+                book=load_faults(workspace.robot),
+                kind=InducingBench,
             ) as world:
                 world.plan(plan)
-                game = house.supervision(policy, number, asks=True, world=world)
+                game = workspace.supervision(policy, number, asks=True, world=world)
                 played = play_games(game, world.inducer, first, some)
                 return {**played, "score": world.score.to_json()}
         finally:
-            house.close()
+            workspace.close()

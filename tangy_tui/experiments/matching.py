@@ -13,7 +13,7 @@ RIGHT, AGAIN, WRONG, NOTHING = "right", "again", "wrong cause", "no cause"
 
 
 @dataclass(frozen=True)
-class Match:
+class CommandMatch:
     """A diagnosis, what it is, and the induced fault that it is about."""
 
     fault: Fault
@@ -22,15 +22,15 @@ class Match:
 
 
 @dataclass
-class Matches:
+class MatchCounts:
     """All diagnoses of a game, and the induced faults that were never recognised."""
 
-    matches: list[Match] = field(default_factory=list)
+    matches: list[CommandMatch] = field(default_factory=list)
     missed: list[Induced] = field(default_factory=list)
     asked: int = 0
     """How often Tangy only asked what to do where nobody had shown it."""
 
-    def of(self, induced: Induced) -> list[Match]:
+    def of(self, induced: Induced) -> list[CommandMatch]:
         """Return the diagnoses of one induced fault."""
         return [match for match in self.matches if match.induced is induced]
 
@@ -40,13 +40,13 @@ class Matches:
         return sum(match.verdict == NOTHING for match in self.matches)
 
 
-def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> Matches:
+def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> MatchCounts:
     """Attribute each diagnosis of a game to an induced fault that was there at that step.
 
     An induced fault is there until it is lifted or the game ends, and is recognised by the code of
     its kind. Another diagnosis while one is not recognised yet is about that one, and wrong.
     """
-    found = Matches()
+    found = MatchCounts()
     known: list[Induced] = []
     for fault in faults:
         if fault.asks_only:
@@ -62,13 +62,13 @@ def match_faults(induced: Sequence[Induced], faults: Sequence[Fault]) -> Matches
         same = [one for one in there if one.kind.code == fault.code]
         if new:
             known.append(new[0])
-            found.matches.append(Match(fault, RIGHT, new[0]))
+            found.matches.append(CommandMatch(fault, RIGHT, new[0]))
         elif same:
-            found.matches.append(Match(fault, AGAIN, same[-1]))
+            found.matches.append(CommandMatch(fault, AGAIN, same[-1]))
         elif unknown:
-            found.matches.append(Match(fault, WRONG, unknown[-1]))
+            found.matches.append(CommandMatch(fault, WRONG, unknown[-1]))
         else:
-            found.matches.append(Match(fault, NOTHING, None))
+            found.matches.append(CommandMatch(fault, NOTHING, None))
     found.missed = [one for one in induced if one not in known and one.could_show]
     return found
 

@@ -84,12 +84,12 @@ class HalfHeartedWorld(InducingWorld):
         return super()._refuses()
 
 
-def complying(house: Supervised, share: float | None) -> Preferences | None:
+def complying(workspace: Supervised, share: float | None) -> Preferences | None:
     """Return people who comply with every strategy alike (None: with their own preferences)."""
     if share is None:
         return None
-    strategies = activity_of(house.activity).strategies
-    return {person: dict.fromkeys(strategies, share) for person in people_of(house)}
+    strategies = activity_of(workspace.activity).strategies
+    return {person: dict.fromkeys(strategies, share) for person in people_of(workspace)}
 
 
 # --------------------------------------------------------------------- kinds and behaviours
@@ -107,19 +107,19 @@ def matrix(settings: Settings, case: Case) -> list[dict[str, Any]]:
     """
     name, seed, seeds = case
     activity = activity_of(settings["activity"])
-    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as workspace:
         return [
-            _cell(house, settings, name, behaviour, seed, seeds)
+            _cell(workspace, settings, name, behaviour, seed, seeds)
             for behaviour in activity.behaviours
         ]
 
 
 def _cell(
-    house: Supervised, settings: Settings, name: str, behaviour: str, seed: int, seeds: int
+    workspace: Supervised, settings: Settings, name: str, behaviour: str, seed: int, seeds: int
 ) -> dict[str, Any]:
-    world, game = _aiming(house, settings, f"{name}/{behaviour}", seed)
+    world, game = _aiming(workspace, settings, f"{name}/{behaviour}", seed)
     world.kinds, world.behaviour = (name,), behaviour
-    right_class = recovery_of(KINDS[name], house.book)
+    right_class = recovery_of(KINDS[name], workspace.book)
     count = Counter[str]()
     for number in range(seeds):
         world.after, world.executed = 3 * (number % 5), 0
@@ -146,16 +146,16 @@ def _cell(
 
 
 def _aiming(
-    house: Supervised, settings: Settings, salt: str, seed: int
+    workspace: Supervised, settings: Settings, salt: str, seed: int
 ) -> tuple[AimingWorld, Supervision]:
     number = Random(f"{salt}/{seed}").randrange(1_000_000_000)
     world = AimingWorld(
-        activity_of(house.activity),
-        people_of(house),
+        activity_of(workspace.activity),
+        people_of(workspace),
         seed=number,
-        preferences=complying(house, settings.get("complies")),
+        preferences=complying(workspace, settings.get("complies")),
     )
-    return world, house.games(world, number)
+    return world, workspace.games(world, number)
 
 
 def _settled(game: Supervision, world: AimingWorld) -> bool:
@@ -185,15 +185,15 @@ def alarms(settings: Settings, case: Case) -> dict[str, Any]:
     lesson, seed, games = case
     count: Counter[str] = Counter()
     steps = asked = 0
-    with supervised(Course(settings["activity"], settings["users"], RANDOM, lesson)) as house:
+    with supervised(Course(settings["activity"], settings["users"], RANDOM, lesson)) as workspace:
         world = HalfHeartedWorld(
-            activity_of(house.activity),
-            people_of(house),
+            activity_of(workspace.activity),
+            people_of(workspace),
             seed=seed,
-            preferences=complying(house, settings.get("complies")),
+            preferences=complying(workspace, settings.get("complies")),
         )
         world.follows = settings.get("follows", 1.0)
-        game = house.games(world, seed)
+        game = workspace.games(world, seed)
         for _ in range(games):
             play(game)
             steps += game.steps
@@ -214,8 +214,8 @@ def pairs(settings: Settings, case: Case) -> dict[str, Any]:
     """
     critical, other, seed, seeds = case
     count = Counter[str]()
-    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
-        world, game = _aiming(house, settings, f"{critical}/{other}", seed)
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as workspace:
+        world, game = _aiming(workspace, settings, f"{critical}/{other}", seed)
         world.kinds = (critical, other)
         for number in range(seeds):
             world.after = 4 * (number % 5)
@@ -247,14 +247,14 @@ def crowd(settings: Settings, case: Case) -> list[dict[str, Any]]:
     """Play games in which every kind may come at every step: a case is (seed, games, chance)."""
     seed, games, chance = case
     played: list[dict[str, Any]] = []
-    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as house:
+    with supervised(Course(settings["activity"], settings["users"], GUIDED, 1)) as workspace:
         world = FaultyWorld(
-            activity_of(house.activity),
-            people_of(house),
+            activity_of(workspace.activity),
+            people_of(workspace),
             seed=seed,
             injections=[Injection(kind, chance=chance) for kind in KINDS.values()],
         )
-        game = house.games(world, seed)
+        game = workspace.games(world, seed)
         for _ in range(games):
             events = play(game)
             stopped = next(event.stopped for event in events if isinstance(event, GameEnded))

@@ -29,8 +29,8 @@ from tangy_tui.experiments.induced import (
 from tangy_tui.experiments.matching import (
     AGAIN,
     RIGHT,
-    Match,
-    Matches,
+    CommandMatch,
+    MatchCounts,
     match_faults,
     seconds_to_recover,
 )
@@ -76,9 +76,9 @@ def play(settings: Settings, case: Case) -> dict[str, Any]:
     course = Course(settings["activity"], settings["users"], GUIDED, 1)
     activity = activity_of(settings["activity"])
     number = seed * 1_000_000 + first
-    with supervised(course) as house:
-        world = InducingWorld(activity, people_of(house), seed=number, plan=plan)
-        return play_games(house.games(world, number), world.inducer, first, some)
+    with supervised(course) as workspace:
+        world = InducingWorld(activity, people_of(workspace), seed=number, plan=plan)
+        return play_games(workspace.games(world, number), world.inducer, first, some)
 
 
 def play_games(game: Supervision, inducer: Inducer, first: int, some: int) -> dict[str, Any]:
@@ -113,7 +113,7 @@ def _game(game: Supervision, inducer: Inducer, tally: Tally, number: int) -> dic
     }
 
 
-def _induced(one: Induced, game: Supervision, matches: Matches) -> dict[str, Any]:
+def _induced(one: Induced, game: Supervision, matches: MatchCounts) -> dict[str, Any]:
     told = matches.of(one)
     recovery = recovery_of(one.kind, game.book)
     return {
@@ -128,7 +128,7 @@ def _induced(one: Induced, game: Supervision, matches: Matches) -> dict[str, Any
     }
 
 
-def _diagnosed(match: Match, game: Supervision) -> dict[str, Any]:
+def _diagnosed(match: CommandMatch, game: Supervision) -> dict[str, Any]:
     fault, induced = match.fault, match.induced
     right = recovery_of(induced.kind, game.book) if induced is not None else None
     recovered = fault.succeeded and len(fault.ladder) == 1

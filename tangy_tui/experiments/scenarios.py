@@ -52,7 +52,7 @@ class Learning:
 
 
 @dataclass(frozen=True)
-class Persuading:
+class PersuasionScenario:
     """What Scenario 2 is asked for: people in a group, people in all, and the first seed."""
 
     activity: str
@@ -104,7 +104,7 @@ def learning(asked: Learning, where: Where) -> dict[str, Any]:
     }
 
 
-def persuasion(asked: Persuading, where: Where) -> dict[str, Any]:
+def persuasion(asked: PersuasionScenario, where: Where) -> dict[str, Any]:
     """Run Scenario 2 and return its document (shares run from 0 to 1)."""
     strategies = len(activity_of(asked.activity).strategies)
     groups = -(-asked.people // asked.users)

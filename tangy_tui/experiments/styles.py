@@ -11,7 +11,7 @@ from tangy_profiles.state import FRONT, ActivityState
 from tangy_tui.experiments.classroom import Steps
 from tangy_tui.learning.scripted_teacher import MOST_STEPS
 from tangy_tui.learning.teaching_events import Executed, Undo
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Reply, Say
 
 Order = Callable[[Sequence[str], Sequence[str], str, Random], str]
@@ -76,7 +76,7 @@ STYLES = (
 class StyledTeacher:
     """Demonstrates what the activity expects, in a style, mistakes and all."""
 
-    def __init__(self, style: Style, teaching: Teaching, seed: int) -> None:
+    def __init__(self, style: Style, teaching: TeachingSession, seed: int) -> None:
         self._style = style
         self._teaching = teaching
         self._rng = Random(f"{seed}/{style.name}")

@@ -1,4 +1,4 @@
-"""A house for experiments on monitoring: demonstrations, their policy, and games under supervision.
+"""A workspace for experiments on monitoring: demonstrations, a policy, supervised games.
 
 All is on a scratch folder: what teachers answer in games is learnt there as it is in the program.
 """
@@ -24,7 +24,7 @@ from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.library import BEGUN, FINISHED, STEP
-from tangy_tui.learning.online_learning import Answers
+from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import expected_effects
 from tangy_tui.monitoring.scripted_people import go_on_by_script
@@ -60,7 +60,7 @@ class Supervised:
             self.store,
             names=names,
             seed=seed,
-            answers=Answers(self.store, world.activity),
+            answers=OnlineLearning(self.store, world.activity),
         )
         return Supervision(
             game,
@@ -82,7 +82,7 @@ def lessons(course: Course) -> tuple[tuple[Demonstration, ...], Policy]:
 
 @contextmanager
 def supervised(course: Course) -> Iterator[Supervised]:
-    """Open a house in which the demonstrations of a course were given and learnt from.
+    """Open a workspace in which the demonstrations of a course were given and learnt from.
 
     Nothing in it outlives it, so all is one transaction.
     """

@@ -30,7 +30,7 @@ from tangy_tui.experiments.styles import STYLES, StyledTeacher
 from tangy_tui.experiments.sweep import Case, Settings, Sweep, Where
 from tangy_tui.learning.conflicts import Resolution, find_conflicts
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 
 FEWEST, MOST = int(SCENARIO_ONE["demonstrations"]), 8
 """Games that a teacher gives at least and at most."""
@@ -64,7 +64,7 @@ def teach(settings: Settings, case: Case) -> dict[str, Any]:
     course = Course(settings["activity"], USERS, RANDOM, number)
     made: list[StyledTeacher] = []
 
-    def make(teaching: Teaching) -> StyledTeacher:
+    def make(teaching: TeachingSession) -> StyledTeacher:
         made.append(StyledTeacher(style, teaching, seed))
         return made[0]
 

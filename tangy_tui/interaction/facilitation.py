@@ -19,10 +19,10 @@ from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.observation import Observation
-from tangy_tui.interaction.persuasion import Choice, Persuasion
+from tangy_tui.interaction.persuasion import Persuasion, StrategyChoice
 from tangy_tui.interaction.uncertainty import remedy_for, why_not
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.online_learning import Answers, Lesson
+from tangy_tui.learning.online_learning import Lesson, OnlineLearning
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
@@ -59,7 +59,7 @@ class Acted:
     number: int
     state: ActivityState
     decision: Decision
-    choice: Choice | None
+    choice: StrategyChoice | None
     action: Action
     outcome: Outcome
     after: ActivityState
@@ -69,7 +69,7 @@ class Acted:
 
 
 @dataclass(frozen=True, slots=True)
-class Learnt:
+class BeliefUpdated:
     """A person responded, and what is believed of them was updated."""
 
     response: Response
@@ -141,7 +141,7 @@ Permits: TypeAlias = Callable[[Decision, str | None], bool]
 Contradicts: TypeAlias = Callable[[Action, ActivityState, Outcome, ActivityState], bool]
 """Says whether what is seen after an action, done in a state, is not what was to be expected."""
 
-GameEvent: TypeAlias = GameBegun | Acted | Learnt | Unsure | Taught | DoneOnce | GameEnded
+GameEvent: TypeAlias = GameBegun | Acted | BeliefUpdated | Unsure | Taught | DoneOnce | GameEnded
 
 
 class Facilitation:
@@ -157,7 +157,7 @@ class Facilitation:
         names: Mapping[str, str],
         people: Sequence[Person] = (),
         seed: int,
-        answers: Answers | None = None,
+        answers: OnlineLearning | None = None,
     ) -> None:
         """Prepare to run games.
 
@@ -342,7 +342,7 @@ class Facilitation:
         events: list[GameEvent] = [acted]
         response = acted.outcome.response
         if response is not None:
-            events.append(Learnt(response, self.persuasion.update(response)))
+            events.append(BeliefUpdated(response, self.persuasion.update(response)))
         if ended is not None:
             events.append(ended)
         return events

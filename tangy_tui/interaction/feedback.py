@@ -12,7 +12,7 @@ from datetime import datetime
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import SIMULATED, GameWorld, game_world
-from tangy_profiles.persuading import Persuading
+from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.reading import plain
 from tangy_profiles.store import TAKEN_BACK, VOID, Event, Store
 
@@ -26,7 +26,7 @@ CHANGES = (FEEDBACK, VOID, SWITCHED, METHOD)
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class FeedbackEntry:
     """One line of a person's history: a response, or a request whose response is awaited.
 
     `number` counts from 1 and stays. `request` is what it answers, by uuid: late feedback names
@@ -81,7 +81,7 @@ class Feedback:
             for event in self.store.events(FEEDBACK)
         )
 
-    def history(self, person: str) -> list[Entry]:
+    def history(self, person: str) -> list[FeedbackEntry]:
         """Return everything a person was asked to do with a strategy, in the order of the log."""
         awaited = (e for e in self.store.events(AWAITED) if e.person == person)
         found = sorted([*self.store.answers(person), *awaited], key=lambda event: event.seq)
@@ -98,7 +98,9 @@ class Feedback:
             for entry in entries
         ]
 
-    def give(self, person: str, strategy: str, complied: bool, of: int | None = None) -> Entry:
+    def give(
+        self, person: str, strategy: str, complied: bool, of: int | None = None
+    ) -> FeedbackEntry:
         """Log what a person did, now that it is known.
 
         Args:
@@ -123,7 +125,7 @@ class Feedback:
         seq = self.store.append(FEEDBACK, body, person=person, strategy=strategy, complied=complied)
         return self._at(person, seq)
 
-    def void(self, person: str, seq: int, why: str = "") -> Entry:
+    def void(self, person: str, seq: int, why: str = "") -> FeedbackEntry:
         """Let a response no longer count ("that was not compliance").
 
         Raises:
@@ -185,15 +187,15 @@ class Feedback:
             raise TangyError(plain(f"{strategy} is the last one left: one must stay on."))
         self.store.append(SWITCHED, {"on": on}, person=person, strategy=strategy)
 
-    def method(self, person: str) -> Persuading | None:
+    def method(self, person: str) -> PersuasionConfig | None:
         """Return the method that was chosen for a person; None: the activity's."""
         chosen = None
         for event in self._holding(METHOD, person):
             body = event.body.get("chosen")
-            chosen = Persuading.from_json(body) if isinstance(body, dict) else None
+            chosen = PersuasionConfig.from_json(body) if isinstance(body, dict) else None
         return chosen
 
-    def choose_method(self, person: str, chosen: Persuading | None) -> None:
+    def choose_method(self, person: str, chosen: PersuasionConfig | None) -> None:
         """Choose a method for a person; None: the activity's again.
 
         Raises:
@@ -204,7 +206,7 @@ class Feedback:
         body = {"chosen": chosen and chosen.to_json()}
         self.store.append(METHOD, body, person=person)
 
-    def _at(self, person: str, seq: int) -> Entry:
+    def _at(self, person: str, seq: int) -> FeedbackEntry:
         for entry in self.history(person):
             if entry.seq == seq:
                 return entry
@@ -236,11 +238,11 @@ def _entry(
     times: dict[str, str],
     voids: dict[str, str],
     back: frozenset[str],
-) -> Entry:
+) -> FeedbackEntry:
     late = event.kind == FEEDBACK
     request = str(event.body.get("of") or event.uuid) if late else event.uuid
     game = event.body.get("game")
-    return Entry(
+    return FeedbackEntry(
         number=number,
         seq=event.seq,
         uuid=event.uuid,

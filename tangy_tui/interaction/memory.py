@@ -8,9 +8,9 @@ from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.game_world import GAME_WORLDS, SIMULATED, GameWorld
-from tangy_profiles.persuading import PAPER, Persuading
+from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import Entry, Feedback
+from tangy_tui.interaction.feedback import Feedback, FeedbackEntry
 from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.interaction.methods import Method, Thompson, method_of, others
 
@@ -21,7 +21,7 @@ Responses = Mapping[tuple[str, str], tuple[int, int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class PersonModel:
     """What is known of one person at a time, and how the next strategy is chosen for them.
 
     `prior` is where the beliefs began; `chosen` is the method in words, and `own` says that it
@@ -32,18 +32,18 @@ class Known:
     prior: Beliefs
     beliefs: Beliefs
     off: frozenset[str] = frozenset()
-    chosen: Persuading = PAPER
+    chosen: PersuasionConfig = PAPER
     own: bool = False
 
 
-class Memory:
+class PersonModels:
     """Recalls people from the log, by an activity's strategies and its choice of method."""
 
     def __init__(
         self,
         store: Store,
         strategies: Sequence[str],
-        chosen: Persuading = PAPER,
+        chosen: PersuasionConfig = PAPER,
         *,
         world: GameWorld | None = None,
     ) -> None:
@@ -77,7 +77,7 @@ class Memory:
         mine = {game for game, world in worlds.items() if world == self.world}
         return self._store.responses(mine | {self.world})
 
-    def history(self, person: str) -> list[Entry]:
+    def history(self, person: str) -> list[FeedbackEntry]:
         """Return what a person was asked to do in this world's games, in the order of the log."""
         return [
             entry
@@ -89,7 +89,7 @@ class Memory:
         """Say whether a game was played in this world."""
         return self._worlds.of(game) == self.world
 
-    def recall(self, person: str, responses: Responses | None = None) -> Known:
+    def recall(self, person: str, responses: Responses | None = None) -> PersonModel:
         """Put together what is known of a person now.
 
         Args:
@@ -104,14 +104,16 @@ class Memory:
             beliefs = replayed(method, prior, self.history(person), self.now())
         else:
             beliefs = counted(prior, person, responses)
-        return Known(method, prior, beliefs, self.feedback.off(person), chosen, own is not None)
+        return PersonModel(
+            method, prior, beliefs, self.feedback.off(person), chosen, own is not None
+        )
 
 
-def unknown(strategies: Sequence[str], method: Method | None = None) -> Known:
+def unknown(strategies: Sequence[str], method: Method | None = None) -> PersonModel:
     """Return what is known of a person of whom there is no log."""
     method = method or Thompson()
     prior = method.prior(strategies)
-    return Known(method, prior, prior)
+    return PersonModel(method, prior, prior)
 
 
 def counted(prior: Beliefs, person: str, responses: Responses) -> Beliefs:
@@ -124,7 +126,9 @@ def counted(prior: Beliefs, person: str, responses: Responses) -> Beliefs:
     return beliefs
 
 
-def replayed(method: Method, prior: Beliefs, history: Sequence[Entry], now: datetime) -> Beliefs:
+def replayed(
+    method: Method, prior: Beliefs, history: Sequence[FeedbackEntry], now: datetime
+) -> Beliefs:
     """Let a method that forgets learn from each response in the order of the requests."""
     beliefs, at = prior, None
     for entry in sorted(history, key=lambda entry: (entry.at, entry.seq)):

@@ -14,7 +14,7 @@ from random import Random
 from typing import Protocol, assert_never
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
-from tangy_profiles.persuading import MethodName, Persuading
+from tangy_profiles.persuading import MethodName, PersuasionConfig
 
 Counts = Mapping[str, tuple[int, int]]
 """One person's responses: strategy -> how often they complied, and did not."""
@@ -197,7 +197,7 @@ def _plain(name: MethodName) -> Method:
             assert_never(forgotten)
 
 
-def method_of(chosen: Persuading, earlier: Sequence[Counts] = ()) -> Method:
+def method_of(chosen: PersuasionConfig, earlier: Sequence[Counts] = ()) -> Method:
     """Make the method that was chosen in words; `earlier` are the counts of everybody else."""
     method = _plain(chosen.method)
     if chosen.prior == "people":

@@ -12,12 +12,19 @@ from random import Random
 
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.state import Response
-from tangy_tui.interaction.memory import Known, Memory, Responses, counted, days, unknown
+from tangy_tui.interaction.memory import (
+    PersonModel,
+    PersonModels,
+    Responses,
+    counted,
+    days,
+    unknown,
+)
 from tangy_tui.interaction.methods import Method
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class StrategyChoice:
     """A strategy chosen for a person, and why.
 
     `draws` is the score of every strategy that could be used (for the paper's method: the number
@@ -42,7 +49,7 @@ class Persuasion:
         *,
         counts: Responses | None = None,
         method: Method | None = None,
-        memory: Memory | None = None,
+        memory: PersonModels | None = None,
     ) -> None:
         """Begin with what is known already.
 
@@ -53,7 +60,7 @@ class Persuasion:
         """
         self._memory = memory
         self._rng = rng
-        self._known: dict[str, Known] = {}
+        self._known: dict[str, PersonModel] = {}
         self._touched: dict[str, datetime] = {}
         self.beliefs: dict[str, Beliefs] = {}
         for person in people:
@@ -63,7 +70,7 @@ class Persuasion:
             self._known[person] = start = unknown(strategies, method)
             self.beliefs[person] = counted(start.prior, person, counts or {})
 
-    def known(self, person: str) -> Known:
+    def known(self, person: str) -> PersonModel:
         """Return the method, prior and switches of a person as they were recalled last."""
         return self._known[person]
 
@@ -76,7 +83,7 @@ class Persuasion:
             self.beliefs[person] = known.beliefs
         return self.beliefs[person]
 
-    def choose(self, person: str, without: Collection[str] = ()) -> Choice:
+    def choose(self, person: str, without: Collection[str] = ()) -> StrategyChoice:
         """Choose the strategy to persuade a person with, among those that are switched on.
 
         Args:
@@ -91,7 +98,7 @@ class Persuasion:
             fitting = {s: b for s, b in beliefs.items() if s not in without} or beliefs
             usable = {s: b for s, b in fitting.items() if s not in known.off} or fitting
         draws = known.method.scores(usable, self._rng)
-        return Choice(person, self._highest(draws), draws, beliefs, known.method.words)
+        return StrategyChoice(person, self._highest(draws), draws, beliefs, known.method.words)
 
     def update(self, response: Response) -> Beta:
         """Learn from a response (Eq. 2); return the new belief in the strategy that was used."""
@@ -110,7 +117,7 @@ class Persuasion:
         best = [strategy for strategy, draw in draws.items() if draw == top]
         return best[0] if len(best) == 1 else self._rng.choice(best)
 
-    def _fade(self, person: str, known: Known) -> None:
+    def _fade(self, person: str, known: PersonModel) -> None:
         """Let the time since a person was last thought of do what it does to their beliefs."""
         if self._memory is None or not known.method.forgets:
             return

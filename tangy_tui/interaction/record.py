@@ -11,17 +11,17 @@ from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import BEGUN
-from tangy_tui.interaction.feedback import Entry
-from tangy_tui.interaction.memory import Known, Memory
+from tangy_tui.interaction.feedback import FeedbackEntry
+from tangy_tui.interaction.memory import PersonModel, PersonModels
 
 
 @dataclass(frozen=True, slots=True)
-class Game:
+class PersonGame:
     """What one person was asked to do in one game; without an id: outside of any."""
 
     id: str | None
     begun: datetime
-    entries: tuple[Entry, ...]
+    entries: tuple[FeedbackEntry, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +35,11 @@ class Record:
     """
 
     person: Person
-    known: Known
+    known: PersonModel
     best: Mapping[str, float]
     settled: str | None
-    history: tuple[Entry, ...]
-    games: tuple[Game, ...]
+    history: tuple[FeedbackEntry, ...]
+    games: tuple[PersonGame, ...]
     seen: datetime | None
     now: datetime
     world: GameWorld = SIMULATED
@@ -61,7 +61,7 @@ class Record:
         return leading(self.best) if len(self.on) > 1 else None
 
 
-def read_records(store: Store, memory: Memory, people: Iterable[Person]) -> list[Record]:
+def read_records(store: Store, memory: PersonModels, people: Iterable[Person]) -> list[Record]:
     """Read the records of some people."""
     responses = memory.responses()
     begun: dict[str, datetime] = {}
@@ -80,8 +80,8 @@ def read_records(store: Store, memory: Memory, people: Iterable[Person]) -> list
 
 def _record(
     person: Person,
-    memory: Memory,
-    known: Known,
+    memory: PersonModels,
+    known: PersonModel,
     begun: Mapping[str, datetime],
     present: Mapping[str, datetime],
 ) -> Record:
@@ -120,13 +120,15 @@ def settled_of(on: Beliefs, best: Mapping[str, float]) -> str | None:
     return found if found is not None and len(on) > 1 and on[found].complied else None
 
 
-def _games(history: Sequence[Entry], begun: Mapping[str, datetime]) -> tuple[Game, ...]:
+def _games(
+    history: Sequence[FeedbackEntry], begun: Mapping[str, datetime]
+) -> tuple[PersonGame, ...]:
     """Group a history by game, in the order in which the games began."""
-    found: dict[str | None, list[Entry]] = {}
+    found: dict[str | None, list[FeedbackEntry]] = {}
     for entry in history:
         found.setdefault(entry.game, []).append(entry)
     games = (
-        Game(id, begun.get(id or "", entries[0].at), tuple(entries))
+        PersonGame(id, begun.get(id or "", entries[0].at), tuple(entries))
         for id, entries in found.items()
     )
     return tuple(sorted(games, key=lambda game: game.begun))

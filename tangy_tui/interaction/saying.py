@@ -6,7 +6,7 @@ from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.store import VOID, Event
-from tangy_tui.interaction.feedback import FEEDBACK, METHOD, Entry
+from tangy_tui.interaction.feedback import FEEDBACK, METHOD, FeedbackEntry
 from tangy_tui.interaction.record import Record
 
 SELDOM = 0.5
@@ -79,7 +79,7 @@ def prior_words(prior: Beliefs) -> str:
     return "begins with what earlier people lend: " + ", ".join(lent)
 
 
-def entry_words(entry: Entry) -> str:
+def entry_words(entry: FeedbackEntry) -> str:
     """Say what came of one request."""
     if entry.complied is None:
         return "answered later" if entry.settled else "no response yet"

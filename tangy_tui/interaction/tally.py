@@ -9,11 +9,11 @@ from typing import Any
 
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Situation
-from tangy_tui.interaction.facilitation import Acted, GameEnded, Learnt, Taught, Unsure
+from tangy_tui.interaction.facilitation import Acted, BeliefUpdated, GameEnded, Taught, Unsure
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TallyRow:
     """A row of Table II: a situation, the behaviour executed there, how often, how successfully."""
 
     situation: Situation
@@ -51,7 +51,7 @@ class Tally:
                     self.steps += 1
                     self._done[row] += 1
                     self._right[row] += event.right
-                case Learnt():
+                case BeliefUpdated():
                     self.interactions += 1
                 case Taught():
                     self.answers += 1
@@ -84,11 +84,11 @@ class Tally:
         """How many games came to their end."""
         return self.games - len(self.stopped)
 
-    def rows(self, order: Iterable[Situation]) -> list[Row]:
+    def rows(self, order: Iterable[Situation]) -> list[TallyRow]:
         """Return the rows that came about, in the given order of situations, others last."""
         rank = {situation: place for place, situation in enumerate(order)}
         return [
-            Row(situation, behaviour, count, self._right[situation, behaviour] / count)
+            TallyRow(situation, behaviour, count, self._right[situation, behaviour] / count)
             for (situation, behaviour), count in sorted(
                 self._done.items(), key=lambda item: (rank.get(item[0][0], len(rank)), item[0])
             )

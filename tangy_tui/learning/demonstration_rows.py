@@ -9,7 +9,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
 from tangy_tui.learning.coverage import coverage
-from tangy_tui.learning.library import STEP, Entry, Library
+from tangy_tui.learning.library import STEP, Library, LibraryEntry
 from tangy_tui.learning.quality import quality_notes
 
 
@@ -54,7 +54,7 @@ IN_USE = "in use"
 UNFINISHED = "unfinished"
 
 
-def state_of(entry: Entry) -> str:
+def state_of(entry: LibraryEntry) -> str:
     """Say whether a demonstration is learnt from, or why it is not."""
     if entry.hidden:
         return entry.hidden

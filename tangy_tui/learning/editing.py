@@ -18,8 +18,8 @@ from tangy_tui.learning.library import (
     EDIT_UNDONE,
     EDITED,
     Edit,
-    Entry,
     Library,
+    LibraryEntry,
     read_library,
 )
 
@@ -133,7 +133,7 @@ class Editor:
         self._store.append(EDIT_REDONE, {"activity": self.activity.name, "edit": undone[-1].seq})
         return undone[-1]
 
-    def _choose(self, wanted: Sequence[str]) -> list[Entry]:
+    def _choose(self, wanted: Sequence[str]) -> list[LibraryEntry]:
         library = self.library
         entries = [library.find(one) for one in wanted]
         ids = [entry.demonstration.id for entry in entries]
@@ -143,7 +143,7 @@ class Editor:
             raise NotPossible("The same demonstration was named twice.")
         return entries
 
-    def _need_use(self, entries: Sequence[Entry]) -> None:
+    def _need_use(self, entries: Sequence[LibraryEntry]) -> None:
         for entry in entries:
             shown = entry.demonstration
             name = self.library.name(shown.id)
@@ -152,7 +152,7 @@ class Editor:
             if not shown.finished:
                 raise NotPossible(plain(f"{name} by {shown.teacher} is not finished yet."))
 
-    def _edit(self, what: str, entries: Sequence[Entry], **more: object) -> Edit:
+    def _edit(self, what: str, entries: Sequence[LibraryEntry], **more: object) -> Edit:
         ids = [entry.demonstration.id for entry in entries]
         body = {"activity": self.activity.name, "what": what, "ids": ids, **more}
         return self._made(self._store.append(EDITED, body))

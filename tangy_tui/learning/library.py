@@ -44,7 +44,7 @@ class NoDemonstration(TangyError):
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LibraryEntry:
     """One demonstration of the library and what became of it.
 
     `at` and `last` are the UTC times (ISO 8601) of its first and last event, `undone` the steps
@@ -85,7 +85,7 @@ class Library:
     """The demonstrations of one activity in the order in which they were begun."""
 
     activity: str
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[str, LibraryEntry] = field(default_factory=dict)
     done: list[Edit] = field(default_factory=list)
     """The edits in force; undo takes back the last."""
     undone: list[Edit] = field(default_factory=list)
@@ -117,7 +117,7 @@ class Library:
         """The same, unfinished demonstrations included."""
         return find_conflicts(self.demonstrations, self.resolutions)
 
-    def find(self, wanted: str) -> Entry:
+    def find(self, wanted: str) -> LibraryEntry:
         """Return a demonstration by its number in the list (from 1), its id, or how that begins.
 
         Raises:
@@ -138,7 +138,7 @@ class Library:
         choice = f"choose from 1 to {len(entries)}" if len(entries) > 1 else "there is only 1"
         raise NoDemonstration(plain(f"{problem} demonstration is called {wanted!r}: {choice}."))
 
-    def repeats(self, entry: Entry) -> bool:
+    def repeats(self, entry: LibraryEntry) -> bool:
         """Say whether a demonstration was shown again by one that is complete and in use."""
         return any(
             entry.demonstration.id in other.demonstration.of
@@ -238,10 +238,10 @@ def _begin(library: Library, event: Event) -> None:
         of=of,
         guided=bool(body.get("guided", False)),
     )
-    library.entries[id] = Entry(made, event.at, event.at)
+    library.entries[id] = LibraryEntry(made, event.at, event.at)
 
 
-def _stepped(entry: Entry, event: Event, aside: Collection[int]) -> Entry:
+def _stepped(entry: LibraryEntry, event: Event, aside: Collection[int]) -> LibraryEntry:
     """Return a demonstration after one more event; `aside` are the events that are left out."""
     shown = entry.demonstration
     match event.kind:
@@ -259,7 +259,7 @@ def _stepped(entry: Entry, event: Event, aside: Collection[int]) -> Entry:
             return replace(entry, demonstration=replace(shown, finished=True))
 
 
-def _step_undone(entry: Entry, event: Event, aside: Collection[int]) -> Entry:
+def _step_undone(entry: LibraryEntry, event: Event, aside: Collection[int]) -> LibraryEntry:
     """Take back the step that the event means, whose number tells where others are left out."""
     steps = entry.demonstration.steps
     number = int(event.body.get("step", len(steps)))
@@ -359,7 +359,7 @@ def _make(
         source, id=id, steps=steps, finished=True, origin=origin, of=edit.ids, guided=False
     )
     hidden = "" if in_force else "undone"
-    library.entries[id] = Entry(made, edit.at, edit.at, hidden=hidden)
+    library.entries[id] = LibraryEntry(made, edit.at, edit.at, hidden=hidden)
 
 
 _APPLY: Mapping[str, Callable[[Library, Edit, bool], None]] = {
@@ -384,7 +384,7 @@ def _replace_repeated(library: Library) -> None:
                     _hide(library, [id], "shown again")
 
 
-def _takes_place(entry: Entry) -> bool:
+def _takes_place(entry: LibraryEntry) -> bool:
     """Say whether a demonstration stands in the place of those that it shows again."""
     made = entry.demonstration
     return made.origin == "again" and made.finished and entry.hidden in STILL_USED

@@ -21,7 +21,7 @@ from tangy_tui.learning.policy import Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
-class Replay:
+class PolicyReplay:
     """All demonstrated steps gone through with two policies.
 
     `steps` were looked at, `changed` are the other situations that are answered otherwise now,
@@ -57,10 +57,10 @@ class Lesson:
 
     demonstration: Demonstration
     policy: Policy
-    replay: Replay
+    replay: PolicyReplay
 
 
-class Answers:
+class OnlineLearning:
     """Makes demonstrations and policies of the answers that teachers give in games."""
 
     def __init__(self, store: Store, activity: Activity) -> None:
@@ -155,7 +155,7 @@ def replay(
     after: Policy,
     demonstrations: Sequence[Demonstration],
     answered: Situation,
-) -> Replay:
+) -> PolicyReplay:
     """Go through demonstrations with two policies; `answered` is where they are meant to differ."""
     steps = list(shown_steps(demonstrations))
     situations = dict.fromkeys(shown.step.state.situation for shown in steps)
@@ -164,7 +164,7 @@ def replay(
         for situation in situations
         if situation != answered and does(before.decide(situation)) != does(after.decide(situation))
     )
-    return Replay(len(steps), changed)
+    return PolicyReplay(len(steps), changed)
 
 
 def _settle(

@@ -11,7 +11,7 @@ from statistics import median
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.learning.conflicts import Conflict, find_conflicts
-from tangy_tui.learning.library import Entry, Library
+from tangy_tui.learning.library import Library, LibraryEntry
 
 MUCH_LONGER = 2.0
 """Times the usual length from which on a demonstration is called long."""
@@ -21,7 +21,10 @@ ENOUGH_TO_COMPARE = 3
 
 
 def quality_notes(
-    activity: Activity, entry: Entry, library: Library, conflicts: Sequence[Conflict] | None = None
+    activity: Activity,
+    entry: LibraryEntry,
+    library: Library,
+    conflicts: Sequence[Conflict] | None = None,
 ) -> list[str]:
     """Say what is to be known of a demonstration, a few words each; nothing to say: no notes.
 
@@ -64,7 +67,7 @@ def _kept(shown: Demonstration, library: Library) -> int:
     )
 
 
-def _course(activity: Activity, entry: Entry) -> Iterator[str]:
+def _course(activity: Activity, entry: LibraryEntry) -> Iterator[str]:
     """Say how it went: whether it came to an end, and what did not go as it was meant."""
     shown = entry.demonstration
     if not shown.finished:
@@ -85,7 +88,7 @@ def _missed_end(activity: Activity, shown: Demonstration) -> str:
     return "" if not ends or reached.intersection(ends) else ends[0]
 
 
-def _answers(entry: Entry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:
+def _answers(entry: LibraryEntry, library: Library, conflicts: Sequence[Conflict]) -> Iterator[str]:
     """Say where it gives another answer than itself, than others, and than a teacher."""
     shown = entry.demonstration
     if not entry.hidden:

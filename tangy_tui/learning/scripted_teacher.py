@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.teaching_events import Next, TeachingEvent
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Reply, Say
 
 SCRIPTED = "scripted"
@@ -19,7 +19,7 @@ MOST_STEPS = 2_000
 class ScriptedTeacher:
     """Speaks the phrase of the expected behaviour, and answers the question with yes."""
 
-    def __init__(self, teaching: Teaching) -> None:
+    def __init__(self, teaching: TeachingSession) -> None:
         self._teaching = teaching
         if not teaching.activity.expected:
             raise TangyError(

@@ -1,7 +1,7 @@
 """Demonstrating (III-A): a teacher's commands, each verified, become a trajectory.
 
-`Teaching` is the session that screens, lines, scripts and tests all drive alike: a command goes
-in, events come out. Every verified step is in the log before its event is returned.
+Screens, lines, scripts and tests all drive a `TeachingSession` alike: a command goes in, events
+come out. Every verified step is in the log before its event is returned.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class NotAsBefore(Exception):
     """A step that was done again did not come out as it did."""
 
 
-class Teaching:
+class TeachingSession:
     """One teacher's session: demonstrations one after another, each in its own simulated game."""
 
     def __init__(

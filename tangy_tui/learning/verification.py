@@ -43,7 +43,7 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class StopCommand:
     """Somebody said that the robot is to stop: it does so at once, and nothing is asked."""
 
     text: str

@@ -19,7 +19,7 @@ from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.drill_policy import policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
-from tangy_tui.monitoring.drill_sheet import DRILL, Answered, Sheet, read_sheets
+from tangy_tui.monitoring.drill_sheet import DRILL, AnsweredRound, Sheet, read_sheets
 
 ROUNDS, MOST_ROUNDS = 6, 50
 
@@ -45,7 +45,7 @@ ASKED: Mapping[str, str] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class DrillOption:
     """An answer that can be given: by which key, in words, and what it stands for."""
 
     key: str
@@ -59,7 +59,7 @@ class Question:
 
     kind: str
     text: str
-    choices: tuple[Choice, ...]
+    choices: tuple[DrillOption, ...]
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -115,7 +115,7 @@ class Drill:
         self._plan = draw_rounds(tabletop.book, rounds, Random(f"{seed}/drill"))
         self._given: dict[str, str] = {}
         self._since = 0.0
-        self._answered: list[Answered] = []
+        self._answered: list[AnsweredRound] = []
         self._kept = False
 
     @classmethod
@@ -178,7 +178,7 @@ class Drill:
         if not self._given:
             self._since = self._clock()
 
-    def answer(self, key: str) -> Answered | None:
+    def answer(self, key: str) -> AnsweredRound | None:
         """Answer the question by the key of one of its choices.
 
         Returns:
@@ -220,9 +220,9 @@ class Drill:
             self._kept = True
             self._store.append(DRILL, self.sheet.to_json())
 
-    def _judge(self, shown: Round, seconds: float) -> Answered:
+    def _judge(self, shown: Round, seconds: float) -> AnsweredRound:
         rule, table = shown.rule, self.tabletop
-        answered = Answered(
+        answered = AnsweredRound(
             shown.number,
             shown.code,
             "Nothing was wrong" if rule is None else table.rule_name(rule.code),
@@ -240,15 +240,15 @@ class Drill:
     def _ask(self, kind: str) -> None:
         if kind == WHAT and self.round is not None:
             choices = [
-                Choice(str(number), self.tabletop.rule_name(code), code)
+                DrillOption(str(number), self.tabletop.rule_name(code), code)
                 for number, code in enumerate(self.round.choices, 1)
             ]
-            choices.append(Choice(NOTHING, "Nothing is wrong", ""))
+            choices.append(DrillOption(NOTHING, "Nothing is wrong", ""))
         elif kind == DO:
             choices = [
-                Choice(str(number), words, recovery)
+                DrillOption(str(number), words, recovery)
                 for number, (recovery, words) in enumerate(ACTIONS.items(), 1)
             ]
         else:
-            choices = [Choice("y", "Yes", "yes"), Choice("n", "No", "no")]
+            choices = [DrillOption("y", "Yes", "yes"), DrillOption("n", "No", "no")]
         self.question = Question(kind, ASKED[kind], tuple(choices))

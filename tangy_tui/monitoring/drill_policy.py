@@ -23,7 +23,7 @@ MOST_GAMES = 4
 PEOPLE = tuple(f"person{number}" for number in range(1, 5))
 
 
-class Learnt(NamedTuple):
+class DrillPolicy(NamedTuple):
     """A policy, the effects it expects, and a sentence on where they come from ("": learnt)."""
 
     policy: Policy
@@ -31,7 +31,7 @@ class Learnt(NamedTuple):
     note: str = ""
 
 
-def policy_for_drill(store: Store, activity: Activity) -> Learnt:
+def policy_for_drill(store: Store, activity: Activity) -> DrillPolicy:
     """Return the last policy if it knows every situation, or one that is learnt in a moment.
 
     Nothing is written: what is shown for the drill is not kept.
@@ -48,12 +48,14 @@ def policy_for_drill(store: Store, activity: Activity) -> Learnt:
         else:
             sure = all(policy.decide(situation).sure for situation in activity.situations)
             if sure and not notices:
-                return Learnt(policy, expected_effects(store, activity, policy))
+                return DrillPolicy(policy, expected_effects(store, activity, policy))
             why = f"What Tangy has learnt {'has changed' if sure else 'has gaps'}"
     if not activity.expected:
         raise TangyError(f"{why}: teach it {activity.title} first, then rehearse.")
     policy, effects = _taught_quickly(activity)
-    return Learnt(policy, effects, f"{why}: for this drill a scripted teacher has shown the game.")
+    return DrillPolicy(
+        policy, effects, f"{why}: for this drill a scripted teacher has shown the game."
+    )
 
 
 def _taught_quickly(activity: Activity) -> tuple[Policy, Effects]:

@@ -27,7 +27,7 @@ from tangy_sim.worlds.injection import KINDS
 from tangy_tui.interaction.facilitation import Acted, Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.effects import Effects
-from tangy_tui.learning.online_learning import Answers
+from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.diagnosis import narrows
@@ -225,7 +225,7 @@ class Tabletop:
                 store,
                 names=self.names,
                 seed=seed,
-                answers=Answers(store, self.activity),
+                answers=OnlineLearning(store, self.activity),
             )
             yield Supervision(
                 facilitation, self.book, self.robot, store, lambda _: self._effects, self.name

@@ -17,7 +17,7 @@ CLASSES = (*URGENCY, NOTHING_WRONG)
 
 
 @dataclass(frozen=True, slots=True)
-class Answered:
+class AnsweredRound:
     """One round with its answers.
 
     `code` is the fault ("": nothing was wrong), `recovery` what had to be done; `named` and
@@ -87,7 +87,7 @@ class Answered:
         }
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> Answered:
+    def from_json(cls, body: Mapping[str, Any]) -> AnsweredRound:
         """Read a round that `to_json` wrote."""
         return cls(
             int(body["round"]),
@@ -111,7 +111,7 @@ class Sheet:
     activity: str
     seed: int
     rounds: int
-    answered: tuple[Answered, ...]
+    answered: tuple[AnsweredRound, ...]
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
 
@@ -152,7 +152,7 @@ class Sheet:
         return found
 
     @property
-    def again(self) -> tuple[Answered, ...]:
+    def again(self) -> tuple[AnsweredRound, ...]:
         """What to rehearse again: each fault once in which something was wrong."""
         wrong = {one.code: one for one in self.answered if one.points < one.most}
         return tuple(wrong.values())
@@ -181,7 +181,7 @@ class Sheet:
             body["activity"],
             int(body["seed"]),
             int(body["rounds"]),
-            tuple(Answered.from_json(one) for one in body["answers"]),
+            tuple(AnsweredRound.from_json(one) for one in body["answers"]),
             at,
         )
 

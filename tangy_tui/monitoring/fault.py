@@ -53,7 +53,7 @@ ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "lef
 
 
 @dataclass(frozen=True, slots=True)
-class Move:
+class RecoveryEvent:
     """One step of a recovery: what, the how-manieth time, by whom, what was said, when (s)."""
 
     kind: str
@@ -70,12 +70,12 @@ class Move:
         body = {name: getattr(self, name) for name in self.__slots__}
         return {name: value for name, value in body.items() if value or name == "seconds"}
 
-    def called(self, name: str) -> Move:
+    def called(self, name: str) -> RecoveryEvent:
         """Return the move with the person's name where the log only has a slot for it."""
         return replace(self, speech=_named(self.speech, name), image=_named(self.image, name))
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> Move:
+    def from_json(cls, body: Mapping[str, Any]) -> RecoveryEvent:
         """Read a move that `to_json` wrote."""
         return cls(**{name: body[name] for name in cls.__slots__ if name in body})
 
@@ -104,13 +104,13 @@ class Fault:
     why: str
     evidence: Mapping[str, Fact]
     mismatches: tuple[Mismatch, ...]
-    moves: list[Move] = field(default_factory=list)
+    moves: list[RecoveryEvent] = field(default_factory=list)
     at: str = ""
     """When it was logged (ISO 8601, UTC)."""
     status: str = OPEN
     """Whether it is open, borne or over."""
 
-    def add(self, move: Move) -> None:
+    def add(self, move: RecoveryEvent) -> None:
         """Add what was done about it."""
         self.moves.append(move)
         if move.kind in ENDINGS:
@@ -212,7 +212,7 @@ class Moved:
     """Something was done about a fault, or happened to it."""
 
     fault: Fault
-    move: Move
+    move: RecoveryEvent
 
 
 FaultEvent: TypeAlias = Diagnosed | Moved
@@ -254,7 +254,7 @@ def fold_faults(events: Iterable[Event], names: Mapping[str, str]) -> list[Fault
             found.setdefault(id, _read_fault(event, known))
         elif id in found:
             fault = found[id]
-            fault.add(Move.from_json(event.body).called(fault.called))
+            fault.add(RecoveryEvent.from_json(event.body).called(fault.called))
     return list(found.values())
 
 

@@ -33,8 +33,8 @@ from tangy_tui.monitoring.fault import (
     Diagnosed,
     Fault,
     FaultEvent,
-    Move,
     Moved,
+    RecoveryEvent,
     rule_texts,
 )
 from tangy_tui.monitoring.telling import evidence_words
@@ -157,7 +157,7 @@ class Recovery:
         """Make one move against a fault."""
         rule = self._rules[fault.id]
         if rule.device and not rule.remedy and self.solved(fault):
-            return self.move(fault, Move("ended", self.seconds))
+            return self.move(fault, RecoveryEvent("ended", self.seconds))
         match self._rung_of(fault):
             case "user":
                 return self._ask_user(fault, rule)
@@ -172,7 +172,7 @@ class Recovery:
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         self._tried[fault.id] += 1
         attempt = self._tried[fault.id]
-        move = Move("asked", self.seconds, attempt=attempt, speech=speech, image=image)
+        move = RecoveryEvent("asked", self.seconds, attempt=attempt, speech=speech, image=image)
         told = self.move(fault, move)
         self.remedy(fault, "ask", move.called(fault.called))
         if fault.person is not None and not self.solved(fault):
@@ -183,13 +183,13 @@ class Recovery:
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
         if not rule.remedy:
             kind = "recovered" if self.solved(fault) else "went on"
-            return self.move(fault, Move(kind, self.seconds))
+            return self.move(fault, RecoveryEvent(kind, self.seconds))
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         if rule.recovery[0] != "continue":
             speech = image = ""  # they are for the rung on which a user is asked
         self._tried[fault.id] += 1
         attempt = self._tried[fault.id]
-        move = Move(
+        move = RecoveryEvent(
             "remedied",
             self.seconds,
             attempt=attempt,
@@ -204,11 +204,11 @@ class Recovery:
     def _judge(self, fault: Fault, rule: FaultRule, attempt: int) -> list[Event]:
         """See whether a try has helped; where it has not, and was the last one, go further."""
         if self.solved(fault):
-            return self.move(fault, Move("recovered", self.seconds))
+            return self.move(fault, RecoveryEvent("recovered", self.seconds))
         if attempt < rule.tries:
             return []
         if rule.bearable and self._rung_of(fault) == "continue":
-            return self.move(fault, Move("went on", self.seconds))
+            return self.move(fault, RecoveryEvent("went on", self.seconds))
         return self._escalate(fault) + self.halt_if_critical()
 
     def supersede(self, fault: Fault) -> list[Event]:
@@ -220,20 +220,20 @@ class Recovery:
             if other is fault or other.critical or fault.person is None:
                 continue
             if other.person == fault.person and mine and mine <= spoken_for:
-                told += self.move(other, Move("left", self.seconds))
+                told += self.move(other, RecoveryEvent("left", self.seconds))
         return told
 
     def _ask_teacher(self, fault: Fault) -> list[Event]:
         asked = self._game.ask(fault.console, TO_TEACH, fault.id)
         if not asked:
             return self._escalate(fault) + self.halt_if_critical()
-        return [*self.move(fault, Move("teacher asked", self.seconds)), *asked]
+        return [*self.move(fault, RecoveryEvent("teacher asked", self.seconds)), *asked]
 
     def _escalate(self, fault: Fault) -> list[Event]:
         tried, self._tried[fault.id] = self._tried[fault.id], 0
         self._rung[fault.id] += 1
         to = self._rung_of(fault)
-        return self.move(fault, Move("escalated", self.seconds, attempt=tried, to=to))
+        return self.move(fault, RecoveryEvent("escalated", self.seconds, attempt=tried, to=to))
 
     def halt_if_critical(self) -> list[Event]:
         """Stand still if what is most urgent needs an expert."""
@@ -245,7 +245,7 @@ class Recovery:
         self.halted = fault
         self.remedy(fault, "halt")
         self._game.withdraw()
-        return self.move(fault, Move("halted", self.seconds))
+        return self.move(fault, RecoveryEvent("halted", self.seconds))
 
     def solved(self, fault: Fault) -> bool:
         """Say whether a fault is gone, by what can be observed now."""
@@ -264,7 +264,7 @@ class Recovery:
 
         return self._game.observation.shows(is_gone)
 
-    def remedy(self, fault: Fault, kind: str, move: Move | None = None) -> None:
+    def remedy(self, fault: Fault, kind: str, move: RecoveryEvent | None = None) -> None:
         """Let the world do something about a fault; `move` holds what is said with it."""
         device = self._rules[fault.id].device
         said = ("", "") if move is None else (move.speech, move.image)
@@ -282,10 +282,10 @@ class Recovery:
         told: list[Event] = []
         for fault in list(self._there):
             if fault.status == OPEN and not any(m.kind == "given up" for m in fault.moves):
-                told += self.move(fault, Move("left open", self.seconds))
+                told += self.move(fault, RecoveryEvent("left open", self.seconds))
         return told
 
-    def move(self, fault: Fault, move: Move) -> list[Event]:
+    def move(self, fault: Fault, move: RecoveryEvent) -> list[Event]:
         """Log that something was done about a fault, and tell it."""
         body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
         self._store.append(RECOVERY, body, person=fault.person)

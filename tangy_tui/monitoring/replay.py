@@ -50,7 +50,7 @@ class Done:
 
 
 @dataclass(frozen=True, slots=True)
-class Answered:
+class AnsweredRequest:
     """What a person did about a request; None where that was not known in the game."""
 
     uuid: str
@@ -69,7 +69,7 @@ class Noted:
     by: str
 
 
-What: TypeAlias = Done | Answered | Diagnosed | Moved | Noted
+What: TypeAlias = Done | AnsweredRequest | Diagnosed | Moved | Noted
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Moment:
                     "said": done.said,
                     "took": done.over - done.begun,
                 }
-            case Answered() as answer:
+            case AnsweredRequest() as answer:
                 return {
                     "kind": "response",
                     "person": answer.person,
@@ -117,7 +117,7 @@ class Moment:
 
 
 @dataclass
-class Replay:
+class GameReplay:
     """One game as the log has it.
 
     `timed`: the log says how long each behaviour took. Games of older versions do not have that;
@@ -136,9 +136,9 @@ class Replay:
         return [moment.what for moment in self.moments if isinstance(moment.what, Done)]
 
     @property
-    def answers(self) -> list[tuple[Moment, Answered]]:
+    def answers(self) -> list[tuple[Moment, AnsweredRequest]]:
         """What people did about requests, and when."""
-        return [(m, m.what) for m in self.moments if isinstance(m.what, Answered)]
+        return [(m, m.what) for m in self.moments if isinstance(m.what, AnsweredRequest)]
 
     @property
     def real_faults(self) -> list[Fault]:
@@ -151,7 +151,7 @@ def read_replays(
     games: Sequence[Game],
     activities: Mapping[str, Activity],
     names: Mapping[str, str],
-) -> list[Replay]:
+) -> list[GameReplay]:
     """Read games back.
 
     Args:
@@ -179,9 +179,9 @@ def _events(store: Store, games: Sequence[Game]) -> Iterator[Event]:
 
 def _replay(
     game: Game, events: Sequence[Event], activity: Activity | None, names: Mapping[str, str]
-) -> Replay:
+) -> GameReplay:
     told = (event for event in events if event.kind in (FAULT, RECOVERY))
-    replay = Replay(game, faults=fold_faults(told, names))
+    replay = GameReplay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = {}  # of the faults that were told of so far
     step = 0
@@ -254,9 +254,9 @@ def _state(body: Mapping[str, Any]) -> ActivityState:
     return ActivityState.from_json({"closed": None, **body})
 
 
-def _answered(event: Event) -> Answered:
+def _answered(event: Event) -> AnsweredRequest:
     followed, took = event.body.get("followed"), event.body.get("seconds")
-    return Answered(
+    return AnsweredRequest(
         uuid=event.uuid,
         person=event.person or "",
         strategy=event.strategy or "",

@@ -14,13 +14,13 @@ from tangy_profiles.persuading import PAPER
 from tangy_profiles.reading import plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import Entry
-from tangy_tui.interaction.memory import Known, Memory, counted, replayed
-from tangy_tui.interaction.tally import Row
+from tangy_tui.interaction.feedback import FeedbackEntry
+from tangy_tui.interaction.memory import PersonModel, PersonModels, counted, replayed
+from tangy_tui.interaction.tally import TallyRow
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import Game
-from tangy_tui.monitoring.replay import Noted, Replay, read_replays
+from tangy_tui.monitoring.replay import GameReplay, Noted, read_replays
 
 STATUS_WORDS = {OPEN: "left open", BORNE: "Tangy goes on with it", OVER: "over"}
 """What became of a fault, in words."""
@@ -110,9 +110,9 @@ def result_words(counts: Mapping[str, int]) -> str:
 class Session:
     """Everything that is told of a session. `title` is the activity's."""
 
-    replays: tuple[Replay, ...]
+    replays: tuple[GameReplay, ...]
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[TallyRow, ...]
     people: tuple[Progress, ...]
     notes: tuple[str, ...]
     """What a reader should know of how this was put together."""
@@ -241,7 +241,7 @@ def unknown_words(activity: str) -> str:
     )
 
 
-def _rows(replays: Sequence[Replay], activity: Activity | None) -> tuple[Row, ...]:
+def _rows(replays: Sequence[GameReplay], activity: Activity | None) -> tuple[TallyRow, ...]:
     done: Counter[tuple[Situation, str]] = Counter()
     right: Counter[tuple[Situation, str]] = Counter()
     for replay in replays:
@@ -253,7 +253,7 @@ def _rows(replays: Sequence[Replay], activity: Activity | None) -> tuple[Row, ..
     )
     rank = {situation: place for place, situation in enumerate(order)}
     return tuple(
-        Row(situation, behaviour, count, right[situation, behaviour] / count)
+        TallyRow(situation, behaviour, count, right[situation, behaviour] / count)
         for (situation, behaviour), count in sorted(
             done.items(), key=lambda item: (rank.get(item[0][0], len(rank)), item[0])
         )
@@ -262,7 +262,7 @@ def _rows(replays: Sequence[Replay], activity: Activity | None) -> tuple[Row, ..
 
 def _people(
     store: Store,
-    replays: Sequence[Replay],
+    replays: Sequence[GameReplay],
     activity: Activity | None,
     names: Mapping[str, str],
 ) -> tuple[Progress, ...]:
@@ -274,7 +274,7 @@ def _people(
         a.strategy for replay in replays for _, a in replay.answers
     )  # fmt: skip
     chosen = activity.persuasion if activity is not None else PAPER
-    memory = Memory(store, tuple(strategies), chosen, world=replays[-1].game.world)
+    memory = PersonModels(store, tuple(strategies), chosen, world=replays[-1].game.world)
     responses = memory.responses()
     return tuple(
         _progress(
@@ -292,9 +292,9 @@ def _people(
 def _progress(
     person: str,
     name: str,
-    known: Known,
-    history: Sequence[Entry],
-    replays: Sequence[Replay],
+    known: PersonModel,
+    history: Sequence[FeedbackEntry],
+    replays: Sequence[GameReplay],
     said: Mapping[str, bool | None],
 ) -> Progress:
     """Count what came of each strategy, and say what was believed before and after.
@@ -330,7 +330,9 @@ def _progress(
     return Progress(person, name, found)
 
 
-def _beliefs(known: Known, person: str, entries: Sequence[Entry], now: datetime) -> Beliefs:
+def _beliefs(
+    known: PersonModel, person: str, entries: Sequence[FeedbackEntry], now: datetime
+) -> Beliefs:
     if known.method.forgets:
         return replayed(known.method, known.prior, entries, now)
     counts: dict[tuple[str, str], tuple[int, int]] = {}

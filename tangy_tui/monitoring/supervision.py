@@ -1,9 +1,9 @@
 """Supervision (III-C): a game that is run with an eye on what goes wrong, and what then.
 
 `Supervision` stands in for the `Facilitation` that it holds: screens, lines and scripts begin,
-step and answer through it. `Watch` says before and after every behaviour what is wrong, `Recovery`
-what is done about it; here are the doors by which people act. While the robot is halted nothing is
-executed until staff clear the fault. All of it is in the log before it is told.
+step and answer through it. `FaultWatch` says before and after every behaviour what is wrong,
+`Recovery` what is done about it; here are the doors by which people act. While the robot is halted
+nothing is executed until staff clear the fault. All of it is in the log before it is told.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from tangy_tui.monitoring.fault import (
     OPEN,
     STAFF,
     Fault,
-    Move,
+    RecoveryEvent,
 )
 from tangy_tui.monitoring.recovery import Event as Event
 from tangy_tui.monitoring.recovery import Recovery
-from tangy_tui.monitoring.watch import Watch
+from tangy_tui.monitoring.watch import FaultWatch
 from tangy_tui.world import World
 
 MOST_CLEARINGS = 5
@@ -83,7 +83,7 @@ class Supervision:
         self._detector = Detector(game.world.activity, robot, effects_of(game.policy))
         game.contradicts = self._detector.contradicts
         self._recovery = Recovery(game, self._detector, robot, store, name)
-        self._watch = Watch(game, book, self._detector, self._recovery)
+        self._watch = FaultWatch(game, book, self._detector, self._recovery)
         self._clearings: Counter[str] = Counter()
 
     @property
@@ -222,7 +222,7 @@ class Supervision:
         fault = fault or self.halted
         if fault is None or fault.acknowledged:
             return []
-        return self._recovery.move(fault, Move("acknowledged", self.seconds, by=by))
+        return self._recovery.move(fault, RecoveryEvent("acknowledged", self.seconds, by=by))
 
     def call_expert(self, by: str) -> list[Event]:
         """Note that staff turn to the expert about what halts the robot, and do what Tangy can."""
@@ -230,7 +230,7 @@ class Supervision:
         if fault is None:
             return []
         told = self.acknowledge(by)
-        told += self._recovery.move(fault, Move("expert called", self.seconds, by=by))
+        told += self._recovery.move(fault, RecoveryEvent("expert called", self.seconds, by=by))
         self._recovery.remedy(fault, "call expert")
         return told + self.look()
 
@@ -245,9 +245,11 @@ class Supervision:
         told = self.look()
         self._recovery.remedy(fault, "look again")
         if not self._recovery.solved(fault):
-            return told + self._recovery.move(fault, Move("still there", self.seconds, by=by))
+            return told + self._recovery.move(
+                fault, RecoveryEvent("still there", self.seconds, by=by)
+            )
         told += self._watch.look_after(fault)
-        told += self._recovery.move(fault, Move("cleared", self.seconds, by=by))
+        told += self._recovery.move(fault, RecoveryEvent("cleared", self.seconds, by=by))
         self._recovery.remedy(fault, "resume")
         self._recovery.halted = None
         self._clearings[fault.code] += 1
@@ -270,7 +272,7 @@ class Supervision:
         self._idle = 0
         taught = any(isinstance(event, Taught) for event in events)
         if taught or any(isinstance(event, DoneOnce) for event in events):
-            told += self._answered(question, Move("taught", self.seconds, by=teacher))
+            told += self._answered(question, RecoveryEvent("taught", self.seconds, by=teacher))
         found = self._watch.after(events)  # by what was expected before the answer was learnt
         if taught:
             self._detector.effects = self._effects_of(self.policy)
@@ -285,7 +287,7 @@ class Supervision:
         with self._store.transaction():
             acted = self._watch.acted[fault.id]
             accepted.accept(self._store, self.world.activity, fault, acted, by)
-            told += self._answered(question, Move("accepted", self.seconds, by=by))
+            told += self._answered(question, RecoveryEvent("accepted", self.seconds, by=by))
         self.game.withdraw()
         self._detector.effects = self._effects_of(self.policy)
         return told
@@ -305,7 +307,7 @@ class Supervision:
         told: list[Event] = []
         fault = halted or self._asked_about(question)
         if fault is not None:
-            told += self._recovery.move(fault, Move("given up", self.seconds))
+            told += self._recovery.move(fault, RecoveryEvent("given up", self.seconds))
         if halted is not None:
             return told + self._stop(f"Tangy was halted. {halted.unnamed}")
         if fault is not None and question is not None and question.fault:
@@ -326,7 +328,7 @@ class Supervision:
         fault = self.halted
         if fault is None or self.over or self._clearings[fault.code] < MOST_CLEARINGS:
             return []
-        told = self._recovery.move(fault, Move("given up", self.seconds))
+        told = self._recovery.move(fault, RecoveryEvent("given up", self.seconds))
         times = f"It was cleared {MOST_CLEARINGS} times and came back."
         return told + self._stop(f"Tangy was halted. {fault.unnamed} {times}")
 
@@ -343,6 +345,6 @@ class Supervision:
         ]
         return next((fault for fault in asked if question.fault in ("", fault.id)), None)
 
-    def _answered(self, question: Unsure, move: Move) -> list[Event]:
+    def _answered(self, question: Unsure, move: RecoveryEvent) -> list[Event]:
         fault = self._asked_about(question)
         return self._recovery.move(fault, move) if fault is not None else []

@@ -9,7 +9,7 @@ from tangy_profiles.health import STALE, Fact
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
-from tangy_tui.monitoring.fault import MOVES, Move
+from tangy_tui.monitoring.fault import MOVES, RecoveryEvent
 
 _STATES = {
     "OK": "all is well",
@@ -66,7 +66,7 @@ def mismatch_words(mismatch: Mismatch) -> str:
     return f"after {mismatch.behaviour!r}, {words}{never}"
 
 
-def move_words(move: Move) -> str:
+def move_words(move: RecoveryEvent) -> str:
     """Say in a few words what was done."""
     words = _REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
     if move.kind == "escalated":

@@ -15,7 +15,7 @@ from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.aftermath import Aftermath
 from tangy_tui.monitoring.detection import Detector, together
 from tangy_tui.monitoring.diagnosis import Diagnosis, diagnose
-from tangy_tui.monitoring.fault import BORNE, Fault, Move
+from tangy_tui.monitoring.fault import BORNE, Fault, RecoveryEvent
 from tangy_tui.monitoring.recovery import Event, Recovery
 
 NOT_SHOWN: Evidence = {"situation.shown": False}
@@ -25,7 +25,7 @@ HIDING = frozenset(("mismatch.card", "mismatch.what was asked about"))
 """What a fault of a device explains if it hides cards: what is unseen then is nobody's refusal."""
 
 
-class Watch:
+class FaultWatch:
     """Finds the faults of a game. `begin` each game."""
 
     def __init__(
@@ -64,7 +64,7 @@ class Watch:
         for fault in self._recovery.there:
             reported = fault.status == BORNE and fault.evidence.keys() & evidence.keys()
             if reported and self._recovery.rule(fault).matched(evidence) is None:
-                told += self._recovery.move(fault, Move("ended", self._recovery.seconds))
+                told += self._recovery.move(fault, RecoveryEvent("ended", self._recovery.seconds))
         return told + self._take(self._diagnose(evidence), None)
 
     def look_after(self, fault: Fault) -> list[Event]:
@@ -84,7 +84,7 @@ class Watch:
                 told += self._take(diagnose(self.book, NOT_SHOWN), None)
                 for fault in self._recovery.waiting[:1]:
                     told += self._recovery.move(
-                        fault, Move("teacher asked", self._recovery.seconds)
+                        fault, RecoveryEvent("teacher asked", self._recovery.seconds)
                     )
         if not self._game.over and self._game.world.over:
             told += self._recovery.leave_open() + list(self._game.finish())
@@ -151,5 +151,7 @@ class Watch:
             told += self._recovery.halt_if_critical()
             for fault in self._recovery.waiting[1:]:
                 if not any(move.kind == "kept" for move in fault.moves):
-                    told += self._recovery.move(fault, Move("kept", self._recovery.seconds))
+                    told += self._recovery.move(
+                        fault, RecoveryEvent("kept", self._recovery.seconds)
+                    )
         return told

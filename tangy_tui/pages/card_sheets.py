@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, Face
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box, CardLayout
 from tangy_profiles.card_picture import CAPITALS, font_file, white_modules
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def card_sheets(activity: Activity, cards: Sequence[int], seed: int, paper: str)
     pdf.set_auto_page_break(False)
     pdf.set_margin(0)
     pdf.add_font("cards", fname=font_file())
-    face = Face(activity.deck)
+    face = CardLayout(activity.deck)
     scale = min(width / beside / WIDTH, height / HEIGHT)
     for place, card in enumerate(cards):
         if place % beside == 0:

@@ -8,7 +8,7 @@ from html import escape
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
-from tangy_tui.monitoring.replay import Replay
+from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
@@ -200,7 +200,7 @@ def _timelines(session: Session) -> Iterator[str]:
 
 
 def _timeline(
-    replay: Replay, numbers: dict[str, int], session: Session, stages: Sequence[str]
+    replay: GameReplay, numbers: dict[str, int], session: Session, stages: Sequence[str]
 ) -> str:
     axis = "by minutes in the game" if replay.timed else "step by step"
     drawing = timeline(replay, numbers, session.names, stages)
@@ -288,7 +288,7 @@ def _last_words(fault: Fault) -> str:
     return told[-1] if told else STATUS_WORDS[fault.status]
 
 
-def _fault(fault: Fault, number: int, replay: Replay, many: bool) -> str:
+def _fault(fault: Fault, number: int, replay: GameReplay, many: bool) -> str:
     kind = "critical" if fault.critical else "minor"
     where = f"Game {replay.game.number}, step" if many else "Step"
     facts = f"{where} {fault.step}; first recovery: {RECOVERY_WORDS[fault.recovery]}."
@@ -309,7 +309,7 @@ def _fault(fault: Fault, number: int, replay: Replay, many: bool) -> str:
     )
 
 
-def _times(replay: Replay, fault: Fault) -> Iterator[tuple[float, str, str]]:
+def _times(replay: GameReplay, fault: Fault) -> Iterator[tuple[float, str, str]]:
     """Yield the moments of a fault: time in the game (s), on the clock, and what was done."""
     moves = iter(fault.moves)
     for moment in replay.moments:

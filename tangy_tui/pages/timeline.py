@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from tangy_tui.monitoring.fault import ENDINGS, OVER, Fault, Moved
-from tangy_tui.monitoring.replay import Answered, Done, Replay
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay
 from tangy_tui.monitoring.session import STATUS_WORDS
 
 WIDTH, LEFT, RIGHT = 1000, 118, 18
@@ -33,7 +33,7 @@ class Span(NamedTuple):
 class Scale:
     """Places what happened on the drawing: by time, or by steps where the log has no times."""
 
-    def __init__(self, replay: Replay) -> None:
+    def __init__(self, replay: GameReplay) -> None:
         self.timed = replay.timed
         self.begun: dict[int, float] = {0: 0.0}
         for done in replay.done:
@@ -60,7 +60,7 @@ class Scale:
 
 
 def timeline(
-    replay: Replay, numbers: Mapping[str, int], names: Mapping[str, str], stages: Sequence[str]
+    replay: GameReplay, numbers: Mapping[str, int], names: Mapping[str, str], stages: Sequence[str]
 ) -> str:
     """Draw the timeline of a game as an SVG element.
 
@@ -104,7 +104,7 @@ def timeline(
     )
 
 
-def stages_of(replays: Sequence[Replay]) -> list[str]:
+def stages_of(replays: Sequence[GameReplay]) -> list[str]:
     """Return the stages that came about, in the order in which they first did."""
     return list(dict.fromkeys(done.state.stage for replay in replays for done in replay.done))
 
@@ -118,7 +118,7 @@ def _axis(scale: Scale, height: float) -> Iterator[str]:
         yield _text(x, 10, words, "dim", anchor)
 
 
-def _halts(replay: Replay, scale: Scale, height: float) -> Iterator[str]:
+def _halts(replay: GameReplay, scale: Scale, height: float) -> Iterator[str]:
     """Shade the time in which the robot stood still because of a critical fault."""
     begun: float | None = None
     for moment in replay.moments:
@@ -146,7 +146,7 @@ def ink(stage: str, stages: Sequence[str]) -> str:
     return f"s{INKS[stages.index(stage) % len(INKS)]}"
 
 
-def _stages(replay: Replay, scale: Scale, top: float, stages: Sequence[str]) -> Iterator[str]:
+def _stages(replay: GameReplay, scale: Scale, top: float, stages: Sequence[str]) -> Iterator[str]:
     for stage, steps in groupby(replay.done, key=lambda done: done.state.stage):
         some = list(steps)
         begun = some[0].begun if scale.timed else some[0].number - 1.0
@@ -161,7 +161,7 @@ def _stages(replay: Replay, scale: Scale, top: float, stages: Sequence[str]) -> 
             yield _text((x + end) / 2, top + BAND / 2, stage, "ink", "middle")
 
 
-def _to_all(replay: Replay, scale: Scale, top: float) -> Iterator[str]:
+def _to_all(replay: GameReplay, scale: Scale, top: float) -> Iterator[str]:
     """Mark what was done for everybody: a tick for each call, a taller one for all else."""
     for done in replay.done:
         if done.target is not None or done.after.place in replay.game.people:
@@ -176,7 +176,7 @@ def _to_all(replay: Replay, scale: Scale, top: float) -> Iterator[str]:
         )
 
 
-def _person(replay: Replay, person: str, scale: Scale, top: float) -> Iterator[str]:
+def _person(replay: GameReplay, person: str, scale: Scale, top: float) -> Iterator[str]:
     middle = top + LANE / 2
     yield f'<line class="base" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{middle}" y2="{middle}"/>'
     asking = _spans(replay, scale, lambda done: _asks(done, person))
@@ -201,7 +201,7 @@ def _asks(done: Done, person: str) -> bool:
     return any(user.id == person and user.request == "AR" for user in done.after.users)
 
 
-def _spans(replay: Replay, scale: Scale, holds: Callable[[Done], bool]) -> Iterator[Span]:
+def _spans(replay: GameReplay, scale: Scale, holds: Callable[[Done], bool]) -> Iterator[Span]:
     """Yield the stretches from the end of one behaviour to the next in which something holds."""
     begun: float | None = None
     for done in replay.done:
@@ -215,7 +215,7 @@ def _spans(replay: Replay, scale: Scale, holds: Callable[[Done], bool]) -> Itera
         yield Span(begun, scale.end)
 
 
-def _answer(x: float, y: float, answer: Answered) -> str:
+def _answer(x: float, y: float, answer: AnsweredRequest) -> str:
     """Mark what a person did: a full dot, a ring where it came late, a cross where it never did.
 
     What is not known is a broken ring.
@@ -236,7 +236,7 @@ def _answer(x: float, y: float, answer: Answered) -> str:
     )
 
 
-def _fault_span(replay: Replay, fault: Fault, scale: Scale) -> tuple[float, float]:
+def _fault_span(replay: GameReplay, fault: Fault, scale: Scale) -> tuple[float, float]:
     """Return from where to where a fault was dealt with; to the end where it stayed."""
     begun, over = None, scale.end
     for moment in replay.moments:

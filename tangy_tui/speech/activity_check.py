@@ -21,7 +21,7 @@ from tangy_tui.speech.understanding import NO, YES
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckedFile:
     """A file that was looked over: its mistakes, and what is worth a second look, a line each."""
 
     file: str
@@ -29,7 +29,7 @@ class Checked:
     warnings: tuple[str, ...] = ()
 
 
-def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> Checked:
+def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -> CheckedFile:
     """Look over an activity that could be read.
 
     Phrases that cannot be told from others, or cannot be heard, are mistakes; the game can be
@@ -45,7 +45,7 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
     mistakes += _fillers(activity, phrasebook)
     mistakes += _sounds(activity, phrasebook)
     warnings = [*_stages(activity), *_unused(activity, phrasebook), *_near(activity, phrasebook)]
-    return Checked(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
+    return CheckedFile(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
 
 
 def _stages(activity: Activity) -> Iterator[str]:

@@ -19,9 +19,9 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.verification import Stop
-from tangy_tui.speech.evidence import MODES, USUAL, Evidence, Settings
-from tangy_tui.speech.labels import Label
+from tangy_tui.learning.verification import StopCommand
+from tangy_tui.speech.evidence import MODES, USUAL, AcousticEvidence, EvidenceSettings
+from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.understanding import SURE, UNSURE, understand
 
 CHECKED, FORGOTTEN = "microphone checked", "microphone check forgotten"
@@ -39,11 +39,11 @@ FAR = 6.0  # scores beyond tell no more
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class CalibrationPrompt:
     """What somebody was asked to say: a command (`meant`), or a sentence that is none (None)."""
 
     text: str
-    meant: Label | None
+    meant: UtteranceLabel | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,36 +83,41 @@ class Figures:
 class Chosen:
     """The settings that were found, what they do with the utterances, and the usual ones too."""
 
-    settings: Settings
+    settings: EvidenceSettings
     figures: Figures
     usual: Figures
 
 
 @dataclass(frozen=True, slots=True)
-class Score:
+class CalibrationScore:
     """How sure it is (in logits, at shift 0) that an utterance is a command, and is it right."""
 
     told: float
-    asked: Asked
+    asked: CalibrationPrompt
     right: bool
 
 
-def score(evidence: Evidence, asked: Asked, phrasebook: Phrasebook, settings: Settings) -> Score:
+def score(
+    evidence: AcousticEvidence,
+    asked: CalibrationPrompt,
+    phrasebook: Phrasebook,
+    settings: EvidenceSettings,
+) -> CalibrationScore:
     """Grade one utterance, whatever the shift of the settings is."""
     lowest = SHIFTS[0]
     said = understand(evidence, phrasebook, replace(settings, shift=lowest))
-    if isinstance(said, Stop):
-        return Score(FAR, asked, False)
+    if isinstance(said, StopCommand):
+        return CalibrationScore(FAR, asked, False)
     if not said.commands:
-        return Score(-FAR, asked, False)
+        return CalibrationScore(-FAR, asked, False)
     first = said.commands[0]
-    label = Label(first.behaviour, first.arguments.get("user"))
+    label = UtteranceLabel(first.behaviour, first.arguments.get("user"))
     sure = min(max(said.confidence, 1e-4), 1 - 1e-4)
     told = math.log(sure / (1 - sure)) + lowest
-    return Score(max(-FAR, min(FAR, told)), asked, label == asked.meant)
+    return CalibrationScore(max(-FAR, min(FAR, told)), asked, label == asked.meant)
 
 
-def choose(scores: Mapping[float, Sequence[Score]]) -> Chosen:
+def choose(scores: Mapping[float, Sequence[CalibrationScore]]) -> Chosen:
     """Choose the weight and the shift that part commands from the rest best.
 
     Args:
@@ -131,7 +136,7 @@ def choose(scores: Mapping[float, Sequence[Score]]) -> Chosen:
     return Chosen(replace(USUAL, garbage=weight, shift=shift), found, usual)
 
 
-def spare(scores: Sequence[Score]) -> bool:
+def spare(scores: Sequence[CalibrationScore]) -> bool:
     """Say whether all utterances are parted without any shift, and with room to spare."""
     return all(
         (s.right and s.told >= SURELY + ROOM) if s.asked.meant else s.told <= PERHAPS - ROOM
@@ -139,7 +144,7 @@ def spare(scores: Sequence[Score]) -> bool:
     )
 
 
-def _worth(scores: Sequence[Score], weight: float, shift: float) -> float:
+def _worth(scores: Sequence[CalibrationScore], weight: float, shift: float) -> float:
     """Return how good settings are: log likelihood of the utterances, less what is unusual."""
     told = sum(
         _log_chance(s.told - shift - SURELY)
@@ -155,7 +160,7 @@ def _log_chance(margin: float) -> float:
     return -math.log1p(math.exp(-margin))
 
 
-def _figures(scores: Sequence[Score], shift: float) -> Figures:
+def _figures(scores: Sequence[CalibrationScore], shift: float) -> Figures:
     commands = [s for s in scores if s.asked.meant]
     others = [s for s in scores if not s.asked.meant]
     surely = sum(s.right and s.told - shift >= SURELY for s in commands)
@@ -200,7 +205,7 @@ def is_checked(store: Store, source: str) -> bool:
     return _stored(store, source) is not None
 
 
-def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Settings:
+def settings_for(store: Store, source: str | None, mode: str = "tiers") -> EvidenceSettings:
     """Return how it is listened with a microphone: as its last check has it, else as usual.
 
     Args:
@@ -217,8 +222,8 @@ def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Setti
     return replace(stored or USUAL, mode=mode)
 
 
-def _stored(store: Store, source: str) -> Settings | None:
-    found: Settings | None = None
+def _stored(store: Store, source: str) -> EvidenceSettings | None:
+    found: EvidenceSettings | None = None
     name = microphone(source)
     for event in store.events(CHECKED, FORGOTTEN):
         if event.body.get("source") == name:
@@ -226,7 +231,7 @@ def _stored(store: Store, source: str) -> Settings | None:
     return found
 
 
-def _read(written: Any) -> Settings | None:
+def _read(written: Any) -> EvidenceSettings | None:
     """Read stored settings; None where they are not what this program would write."""
     try:
         settings = replace(USUAL, garbage=float(written["garbage"]), shift=float(written["shift"]))

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from tangy_tui.speech.bandwidth import widened
-from tangy_tui.speech.evidence import RATE, Evidence, Expecting, Wanted
-from tangy_tui.speech.forked_worker import Beside
+from tangy_tui.speech.evidence import RATE, AcousticEvidence, Expecting, Wanted
+from tangy_tui.speech.forked_worker import ForkedWorker
 from tangy_tui.speech.language import (
     EVERYDAY,
     dictionary,
@@ -55,7 +55,7 @@ class Decoder(Protocol):
     left_out: tuple[str, ...]
     """Words that cannot be heard, because nobody says how they are pronounced."""
 
-    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+    def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance (16 kHz mono s16le)."""
 
     def begin(self, expecting: Expecting) -> None:
@@ -102,14 +102,14 @@ class TwoDecoders:
                 self._grammar.add_jsgf_string(name, grammar(said, weight))
         self._said = {"commands": frozenset(phrases), "answers": frozenset(answers)}
         self._open = False
-        self._beside = Beside(self._by_grammar)
+        self._beside = ForkedWorker(self._by_grammar)
 
-    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+    def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance."""
         self._end()
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._said[expecting]:
-            return Evidence(seconds=seconds)
+            return AcousticEvidence(seconds=seconds)
         whole = surrounded(pcm)
         pcm = cleaned(whole)
         if pcm == whole:  # in noise nobody can tell what is missing
@@ -120,7 +120,7 @@ class TwoDecoders:
         margin = score - garbage if garbage > NO_PATH else UNKNOWN_MARGIN
         if phrase not in self._said[expecting]:
             phrase = ""  # garbage, or a path that breaks off in the middle of a phrase
-        return Evidence(words, phrase, margin, 1.0, seconds)
+        return AcousticEvidence(words, phrase, margin, 1.0, seconds)
 
     def _by_grammar(self, asked: tuple[bytes, Expecting]) -> tuple[str, float]:
         phrase, score, _ = _best_path(self._grammar, *asked)
@@ -164,18 +164,18 @@ class PaperDecoder:
         self._searches = {"commands": bool(phrases), "answers": bool(answers)}
         self._open = False
 
-    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+    def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         """Decode a whole utterance."""
         self._end()
         seconds = len(pcm) / 2 / RATE
         if seconds < SHORTEST or not self._searches[expecting]:
-            return Evidence(seconds=seconds)
+            return AcousticEvidence(seconds=seconds)
         text, score, words = _best_path(self._decoder, pcm, expecting)
         sure = (
             OFFSET + SCORE_WEIGHT * (score - SCORE_MIDDLE) + WORDS_WEIGHT * (words - WORDS_MIDDLE)
         )
         confidence = 1 / (1 + math.exp(-max(-50.0, min(50.0, sure)))) if text else 0.0
-        return Evidence(text, "", 0.0, confidence, seconds)
+        return AcousticEvidence(text, "", 0.0, confidence, seconds)
 
     def begin(self, expecting: Expecting) -> None:
         """Begin an utterance that comes in pieces."""

@@ -9,7 +9,15 @@ from typing import Any, Literal
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import LISTENING
 
-__all__ = ["LONGEST", "RATE", "USUAL", "Evidence", "Expecting", "Settings", "Wanted"]
+__all__ = [
+    "LONGEST",
+    "RATE",
+    "USUAL",
+    "AcousticEvidence",
+    "EvidenceSettings",
+    "Expecting",
+    "Wanted",
+]
 
 Expecting = Literal["commands", "answers"]
 """What is listened for: commands, or the answer to a question (yes and no)."""
@@ -19,7 +27,7 @@ MODES = LISTENING
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class EvidenceSettings:
     """How it is listened, which depends on the microphone and the room.
 
     `mode` is one of MODES. `garbage` is the weight of all speech that is no command, against 1 for
@@ -31,7 +39,7 @@ class Settings:
     shift: float = 0.0
 
 
-USUAL = Settings()
+USUAL = EvidenceSettings()
 """For a clean, close microphone that nobody has checked."""
 
 
@@ -46,7 +54,7 @@ class Wanted:
     answers: tuple[str, ...] = ()
     urgent: tuple[str, ...] = ()
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    settings: Settings = USUAL
+    settings: EvidenceSettings = USUAL
 
     def to_json(self) -> dict[str, Any]:
         """Write it for the worker."""
@@ -71,12 +79,12 @@ class Wanted:
             tuple(map(str, written.get("answers", ()))),
             tuple(map(str, written.get("urgent", ()))),
             {str(word): tuple(map(str, some)) for word, some in ways.items()},
-            Settings(**written.get("settings", {})),
+            EvidenceSettings(**written.get("settings", {})),
         )
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class AcousticEvidence:
     """What the decoder says of an utterance.
 
     `words` are the likeliest ones, everyday words among them; `phrase` is the whole phrase that

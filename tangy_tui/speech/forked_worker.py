@@ -15,7 +15,7 @@ Asked = TypeVar("Asked")
 Answer = TypeVar("Answer")
 
 
-class Beside(Generic[Asked, Answer]):
+class ForkedWorker(Generic[Asked, Answer]):
     """A function whose answers are worked out in a process beside this one.
 
     Where there is no second processor, or that process cannot be made or has died, the answer is

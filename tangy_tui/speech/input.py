@@ -12,8 +12,8 @@ from tangy_hw.audio.meter import Meter
 from tangy_hw.audio.sources import open_source
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.verification import Reply, Say, Stop
-from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, Evidence, Settings
+from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, AcousticEvidence, EvidenceSettings
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
@@ -24,14 +24,14 @@ MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound come
 RINGING = 0.3  # s for which a microphone stays shut after the robot has spoken
 FAILURES = 3  # utterances in a row that cannot be decoded, until it is no use to go on by itself
 
-Heard: TypeAlias = Say | Stop | Reply
+Heard: TypeAlias = Say | StopCommand | Reply
 WAITS = {"starting": "The decoder is getting ready.", "thinking": "Still thinking."}
 
 State: TypeAlias = Literal["starting", "off", "listening", "speaking", "thinking", "shut", "over"]
 """off: waiting for the key; listening: for an utterance to begin; speaking: somebody speaks."""
 
 
-class Ears:
+class SpeechInput:
     """A source of spoken commands: `async for heard in ears`. Opening it checks the source.
 
     A live microphone listens while it is pushed to talk, or (hands-free) all the time; a recording
@@ -44,7 +44,7 @@ class Ears:
         source: str,
         phrasebook: Phrasebook,
         *,
-        settings: Settings = USUAL,
+        settings: EvidenceSettings = USUAL,
         hands_free: bool = False,
         answers: bool = False,
         recorder: Recorder | None = None,
@@ -249,7 +249,7 @@ class Ears:
                 self._noticed.add(sentence)
                 self._told(sentence)
 
-    async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
+    async def _recorded(self, recogniser: Recogniser) -> AsyncGenerator[AcousticEvidence, None]:
         pcm = b"".join([chunk async for chunk in self._source])
         for piece in await recogniser.pieces(pcm):
             self._now("thinking")
@@ -270,7 +270,7 @@ class Ears:
             self._now("listening")
             yield evidence
 
-    async def _live(self, recogniser: Recogniser) -> AsyncGenerator[Evidence, None]:
+    async def _live(self, recogniser: Recogniser) -> AsyncGenerator[AcousticEvidence, None]:
         failures = 0
         while (utterance := await self._next(recogniser)) is not None:
             try:
@@ -360,15 +360,15 @@ class Ears:
         if self._utterance is not None and self._utterance.over:
             self._now("thinking")
 
-    def _stops(self, evidence: Evidence) -> bool:
-        return isinstance(understand(evidence, self._phrasebook, self._settings), Stop)
+    def _stops(self, evidence: AcousticEvidence) -> bool:
+        return isinstance(understand(evidence, self._phrasebook, self._settings), StopCommand)
 
-    def _understand(self, evidence: Evidence) -> Heard | None:
+    def _understand(self, evidence: AcousticEvidence) -> Heard | None:
         if self._asking:
             said = answer(evidence, self._settings)
             if self.answers and said is None and evidence.seconds:
                 self._told("I heard something, but no yes, no or stop.")
-            return said if self.answers or isinstance(said, Stop) else None
+            return said if self.answers or isinstance(said, StopCommand) else None
         if not evidence.words:
             if self.live and evidence.seconds:
                 self._told("I heard something, but no words that I know.")

@@ -30,7 +30,7 @@ _TAKE = re.compile(r"(?<!\d)(?:0\d*|\d{3,})(?!\d)")
 
 
 @dataclass(frozen=True, slots=True)
-class Label:
+class UtteranceLabel:
     """What was said: a behaviour (or STOP), and the person it names; None: no command.
 
     `named` is False if nobody can tell from the name; such a recording proves nothing.
@@ -46,18 +46,18 @@ class Label:
         return " ".join(filter(None, (self.behaviour, self.user))) or "no command"
 
 
-NOBODY_KNOWS = Label(None, named=False)
+NOBODY_KNOWS = UtteranceLabel(None, named=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class LabelledRecordings:
     """The recordings below a folder, each with what was said, and what was left out, and why.
 
     `unnamed` are those whose names do not tell what was said: they are left out as well.
     """
 
     folder: Path
-    recordings: tuple[tuple[Path, Label], ...]
+    recordings: tuple[tuple[Path, UtteranceLabel], ...]
     left_out: tuple[tuple[Path, str], ...]
     unnamed: tuple[Path, ...] = ()
 
@@ -72,15 +72,17 @@ class Labels:
     def __init__(self, phrasebook: Phrasebook) -> None:
         """Know what can be said."""
         phrases = phrasebook.table.by_words
-        self._intents = {words: Label(p.behaviour, p.user) for words, p in phrases.items()}
-        self._intents |= {(*words_of(p.behaviour),): Label(p.behaviour) for p in phrases.values()}
-        self._intents |= {words_of(phrase): Label(STOP) for phrase in STOPS}
+        self._intents = {words: UtteranceLabel(p.behaviour, p.user) for words, p in phrases.items()}
+        self._intents |= {
+            (*words_of(p.behaviour),): UtteranceLabel(p.behaviour) for p in phrases.values()
+        }
+        self._intents |= {words_of(phrase): UtteranceLabel(STOP) for phrase in STOPS}
         self._longest = max(map(len, self._intents))
         self._to_people = frozenset(phrasebook.nouns)
         self._ids = {words_of(id): id for id in phrasebook.people}
         self._numbers = phrasebook.table.numbers
 
-    def of(self, file: Path, folder: Path) -> Label:
+    def of(self, file: Path, folder: Path) -> UtteranceLabel:
         """Return what was said in a recording that lies somewhere below a folder.
 
         The folder it lies in counts first, then its own name, then the folders further up.
@@ -95,10 +97,10 @@ class Labels:
         if label is None:
             return NOBODY_KNOWS
         if label.behaviour in self._to_people and label.user is None:
-            return Label(label.behaviour, self._id_in(stem))
+            return UtteranceLabel(label.behaviour, self._id_in(stem))
         return label
 
-    def find(self, folder: Path) -> Found:
+    def find(self, folder: Path) -> LabelledRecordings:
         """Find the recordings below a folder, without following symbolic links.
 
         Raises:
@@ -112,7 +114,7 @@ class Labels:
                 else f"{shown}: there is no such folder."
             )  # fmt: skip
         top = folder.absolute()
-        found: list[tuple[Path, Label]] = []
+        found: list[tuple[Path, UtteranceLabel]] = []
         left_out: list[tuple[Path, str]] = []
         unnamed: list[Path] = []
         for file, why in _files(top):
@@ -137,21 +139,21 @@ class Labels:
                 plain(f"{shown}: there are no WAV files in it{why}; name each by what is said, ")
                 + "as in call_number-1.wav, or put it into a folder of that name."
             )
-        return Found(top, tuple(found), tuple(left_out), tuple(unnamed))
+        return LabelledRecordings(top, tuple(found), tuple(left_out), tuple(unnamed))
 
-    def _of_folder(self, folder: Path, *, below: bool) -> Label | None:
+    def _of_folder(self, folder: Path, *, below: bool) -> UtteranceLabel | None:
         """Return what a folder's name says; of the first one just an intent, not "speech"."""
         words = _words(folder.name)
         return self._intent(words) or (_no_command(words) if below else None)
 
-    def _intent(self, words: Words) -> Label | None:
+    def _intent(self, words: Words) -> UtteranceLabel | None:
         for length in range(min(len(words), self._longest), 0, -1):
             label = self._intents.get(words[:length])
             if label is not None:
                 if label.behaviour in self._to_people and label.user is None:
                     rest = words[length:]
                     user = self._numbers.get(rest[0]) if rest else None
-                    return Label(label.behaviour, user or self._id_in(rest))
+                    return UtteranceLabel(label.behaviour, user or self._id_in(rest))
                 return label
         return None
 
@@ -173,9 +175,9 @@ def _words(name: str) -> Words:
     return tuple(words)
 
 
-def _no_command(words: Words) -> Label | None:
+def _no_command(words: Words) -> UtteranceLabel | None:
     said = [word for word in words if word != TAKE and not word.isdigit()]
-    return Label(None) if said and NO_COMMAND.issuperset(said) else None
+    return UtteranceLabel(None) if said and NO_COMMAND.issuperset(said) else None
 
 
 def _files(top: Path) -> Iterator[tuple[Path, str]]:

@@ -18,15 +18,22 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.speech.calibration import (
     WEIGHTS,
-    Asked,
+    CalibrationPrompt,
+    CalibrationScore,
     Chosen,
-    Score,
     choose,
     score,
     spare,
 )
-from tangy_tui.speech.evidence import RATE, USUAL, Evidence, Expecting, Settings, Wanted
-from tangy_tui.speech.labels import Label
+from tangy_tui.speech.evidence import (
+    RATE,
+    USUAL,
+    AcousticEvidence,
+    EvidenceSettings,
+    Expecting,
+    Wanted,
+)
+from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.loudness import LOUD, SILENT, advice, loudness
 from tangy_tui.speech.understanding import wanted
@@ -51,7 +58,7 @@ TIMES = 2  # that a phrase is asked for, or the quiet of the room
 Tell = Callable[[str], None]
 
 
-class Hearing(Protocol):
+class CheckRecogniser(Protocol):
     """The part of a recogniser that a check needs."""
 
     said: bytes
@@ -62,10 +69,10 @@ class Hearing(Protocol):
 
     async def hear(
         self, sound: asyncio.Queue[bytes], expecting: Expecting = ..., *, endpoint: bool = ...
-    ) -> Evidence:
+    ) -> AcousticEvidence:
         """Hear one utterance as it is spoken."""
 
-    async def decode(self, pcm: bytes, expecting: Expecting = ...) -> Evidence:
+    async def decode(self, pcm: bytes, expecting: Expecting = ...) -> AcousticEvidence:
         """Decode one utterance."""
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
@@ -73,7 +80,7 @@ class Hearing(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class CheckResult:
     """What came of a check; loudness in dB below full scale (negative).
 
     `heard` has for each text that was asked for the words that were heard with the settings that
@@ -82,7 +89,7 @@ class Checked:
 
     room: float
     voice: float
-    heard: tuple[tuple[Asked, str | None], ...]
+    heard: tuple[tuple[CalibrationPrompt, str | None], ...]
     chosen: Chosen
     parted: bool
     advice: tuple[str, ...]
@@ -128,14 +135,14 @@ class Checked:
         }
 
 
-def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[Asked]:
+def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[CalibrationPrompt]:
     """Return what is to be said: commands of different behaviours, then other sentences.
 
     The commands have many different words, and none has just one, because that proves little.
     """
     heard = set(lexicon.heard())
     phrases = [p for p in phrasebook.table.all() if p.heard and p.said in heard and len(p.bare) > 1]
-    chosen: list[Asked] = []
+    chosen: list[CalibrationPrompt] = []
     known: set[str] = set()
     behaviours: set[str] = set()
     while len(chosen) < COMMANDS:
@@ -147,12 +154,12 @@ def to_say(phrasebook: Phrasebook, lexicon: Lexicon) -> list[Asked]:
         best = max(rest, key=lambda p: (len({*p.bare} - known), -p.rank[0], -p.rank[1]))
         known.update(best.bare)
         behaviours.add(best.behaviour)
-        chosen.append(Asked(best.said, Label(best.behaviour, best.user)))
+        chosen.append(CalibrationPrompt(best.said, UtteranceLabel(best.behaviour, best.user)))
     others = [s for s in SENTENCES if phrasebook.understand(s) is None and not stops(s)]
-    return [*chosen, *(Asked(text, None) for text in others[:OTHERS])]
+    return [*chosen, *(CalibrationPrompt(text, None) for text in others[:OTHERS])]
 
 
-def numbered(asked: Sequence[Asked]) -> list[str]:
+def numbered(asked: Sequence[CalibrationPrompt]) -> list[str]:
     """Return what is to be said, a line each."""
     return [f"{number}. {one.text}" for number, one in enumerate(asked, 1)]
 
@@ -164,8 +171,8 @@ class MicrophoneCheck:
         self,
         source: Source,
         phrasebook: Phrasebook,
-        recogniser: Hearing,
-        asked: Sequence[Asked],
+        recogniser: CheckRecogniser,
+        asked: Sequence[CalibrationPrompt],
         tell: Tell,
         phrases: Sequence[str] | None = None,
         patience: float = PATIENCE,
@@ -198,7 +205,7 @@ class MicrophoneCheck:
         self._patience = patience
         self._offered = False
 
-    async def run(self) -> Checked:
+    async def run(self) -> CheckResult:
         """Listen, and find the settings. The source is closed in the end.
 
         Raises:
@@ -279,7 +286,7 @@ class MicrophoneCheck:
                 "changed: is the microphone plugged in? It may be muted."
             )
 
-    async def _say(self, number: int, asked: Asked) -> bytes:
+    async def _say(self, number: int, asked: CalibrationPrompt) -> bytes:
         """Ask for one text, twice if nothing is heard; return its sound."""
         for again in range(TIMES):
             if self._ended:
@@ -340,13 +347,13 @@ class MicrophoneCheck:
             if self._silent(self._patience):
                 self._end()
 
-    async def _find(self, room: float, sounds: Sequence[bytes]) -> Checked:
+    async def _find(self, room: float, sounds: Sequence[bytes]) -> CheckResult:
         """Decode what was said, with one weight or with all of them."""
         self._tell("Thank you. One moment.")
-        scores: dict[float, list[Score]] = {}
+        scores: dict[float, list[CalibrationScore]] = {}
         words: dict[float, list[str | None]] = {}
         for weight in sorted(WEIGHTS, key=lambda weight: weight != USUAL.garbage):
-            settings = Settings(garbage=weight)
+            settings = EvidenceSettings(garbage=weight)
             if weight != USUAL.garbage:
                 await self._recogniser.start(wanted(self._phrasebook, settings, self._phrases))
             heard = [await self._decoded(pcm) for pcm in sounds]
@@ -363,7 +370,7 @@ class MicrophoneCheck:
         chosen = choose(scores)
         voice = loudness(b"".join(sounds), LOUD)
         figures = chosen.figures
-        return Checked(
+        return CheckResult(
             room,
             voice,
             tuple(zip(self._asked, words[chosen.settings.garbage], strict=True)),
@@ -372,5 +379,5 @@ class MicrophoneCheck:
             tuple(advice(room, voice, sounds, figures.perfect)),
         )
 
-    async def _decoded(self, pcm: bytes) -> Evidence:
-        return await self._recogniser.decode(pcm) if pcm else Evidence()
+    async def _decoded(self, pcm: bytes) -> AcousticEvidence:
+        return await self._recogniser.decode(pcm) if pcm else AcousticEvidence()

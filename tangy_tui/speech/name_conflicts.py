@@ -21,7 +21,7 @@ from tangy_tui.speech.understanding import NO, YES
 
 
 @dataclass(frozen=True, slots=True)
-class Clash:
+class NameConflict:
     """What a name sounds like: `like` in words; `lost` cannot be heard then ("": both can).
 
     `guessed` are the phones, if nobody has said yet that the name is said so.
@@ -46,7 +46,7 @@ class Clash:
         return f"{name} sounds like {self.like}: {self.lost} can be typed, but not heard."
 
 
-def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> Clash | None:
+def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> NameConflict | None:
     """Find what the name of one of the people sounds like: as it is said, else as is suggested."""
     said, guessed = person, ""
     how = how_said(person)
@@ -55,7 +55,7 @@ def find_clash(activity: Activity, people: Sequence[Person], person: Person) -> 
         said = replace(person, pronunciation=guessed)
     among = [said if other.id == person.id else other for other in people]
     for like, lost in _alike(activity, among, said):
-        return Clash(person, like, lost, guessed)
+        return NameConflict(person, like, lost, guessed)
     return None
 
 

@@ -15,9 +15,16 @@ from typing import Any, Literal, Protocol
 from tangy_hw.audio.wav import SoundError, read_wav, seconds_cut_off
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.verification import Say, Stop
-from tangy_tui.speech.evidence import LONGEST, RATE, Evidence, Expecting, Settings, Wanted
-from tangy_tui.speech.labels import STOP, Found, Label
+from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.speech.evidence import (
+    LONGEST,
+    RATE,
+    AcousticEvidence,
+    EvidenceSettings,
+    Expecting,
+    Wanted,
+)
+from tangy_tui.speech.labels import STOP, LabelledRecordings, UtteranceLabel
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.transcription import tier_of
 from tangy_tui.speech.understanding import understand, wanted
@@ -27,7 +34,7 @@ NOTHING = "nothing"
 OUTCOMES: tuple[Outcome, ...] = ("right", "offered", "wrong", "nothing")
 
 
-class Hearing(Protocol):
+class PracticeRecogniser(Protocol):
     """The part of a recogniser that practice needs."""
 
     @property
@@ -37,12 +44,12 @@ class Hearing(Protocol):
     async def start(self, wanted: Wanted) -> None:
         """Listen for something."""
 
-    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         """Decode one utterance."""
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PracticeRow:
     """What became of one recording.
 
     `understood` is what was understood first, sure or not ("" is nothing); `outcome` is right
@@ -51,12 +58,12 @@ class Row:
     """
 
     file: str
-    said: Label
+    said: UtteranceLabel
     heard: str
     tier: str
     understood: str
     confidence: float
-    choices: tuple[Label, ...]
+    choices: tuple[UtteranceLabel, ...]
     outcome: Outcome
     seconds: float
     latency: float  # s from the end of the sound to the result
@@ -76,20 +83,20 @@ class Practice:
     `unnamed` were not heard, because their names do not tell what is said in them.
     """
 
-    settings: Settings
-    rows: tuple[Row, ...]
+    settings: EvidenceSettings
+    rows: tuple[PracticeRow, ...]
     left_out: tuple[tuple[str, str], ...]
     cpu: float | None
     cut_off: tuple[str, ...] = ()
     unnamed: tuple[str, ...] = ()
 
     @property
-    def commands(self) -> list[Row]:
+    def commands(self) -> list[PracticeRow]:
         """The recordings of a command."""
         return [row for row in self.rows if row.said.behaviour is not None]
 
     @property
-    def others(self) -> list[Row]:
+    def others(self) -> list[PracticeRow]:
         """The recordings of no command."""
         return [row for row in self.rows if row.said.behaviour is None]
 
@@ -151,10 +158,10 @@ class Practice:
 
 
 async def practise(
-    found: Found,
+    found: LabelledRecordings,
     phrasebook: Phrasebook,
-    settings: Settings,
-    recogniser: Hearing,
+    settings: EvidenceSettings,
+    recogniser: PracticeRecogniser,
     tell: Callable[[int, int], None] = lambda done, of: None,
     *,
     phrases: Sequence[str] | None = None,
@@ -174,7 +181,7 @@ async def practise(
     """
     await recogniser.start(wanted(phrasebook, settings, phrases))
     began = cpu_seconds(recogniser.pid)
-    rows: list[Row] = []
+    rows: list[PracticeRow] = []
     left_out = [(os.fspath(file), why) for file, why in found.left_out]
     cut_off: list[str] = []
     for done, (file, label) in enumerate(found.recordings, 1):
@@ -198,20 +205,22 @@ async def practise(
     return Practice(settings, tuple(rows), tuple(left_out), cpu, tuple(cut_off), unnamed)
 
 
-def judged(file: Path, label: Label, said: Say | Stop, seconds: float, latency: float) -> Row:
+def judged(
+    file: Path, label: UtteranceLabel, said: Say | StopCommand, seconds: float, latency: float
+) -> PracticeRow:
     """Compare what was understood with what was said."""
     tier = tier_of(said)
     commands = (said.commands or ()) if isinstance(said, Say) else ()
-    choices = tuple(Label(c.behaviour, c.arguments.get("user")) for c in commands)
-    if isinstance(said, Stop):
-        choices = (Label(STOP),)
+    choices = tuple(UtteranceLabel(c.behaviour, c.arguments.get("user")) for c in commands)
+    if isinstance(said, StopCommand):
+        choices = (UtteranceLabel(STOP),)
     meant = [_fits(label, choice) for choice in choices]
     outcome: Outcome = "nothing"
     if tier in ("sure", "stop"):
         outcome = "right" if meant[0] else "wrong"
     elif tier == "unsure":
         outcome = "offered" if any(meant) else "wrong"
-    return Row(
+    return PracticeRow(
         os.fspath(file),
         label,
         said.text,
@@ -234,12 +243,12 @@ def cpu_seconds(pid: int | None) -> float | None:
         return None
 
 
-def _fits(said: Label, understood: Label) -> bool:
+def _fits(said: UtteranceLabel, understood: UtteranceLabel) -> bool:
     """Say whether it is what was said; where no person was demanded, anybody is right."""
     return said.behaviour == understood.behaviour and said.user in (None, understood.user)
 
 
-def _called(understood: Label, said: Label) -> str:
+def _called(understood: UtteranceLabel, said: UtteranceLabel) -> str:
     """Name what was understood: with the person only where a person was demanded."""
     return understood.words if said.user is not None else understood.behaviour or ""
 

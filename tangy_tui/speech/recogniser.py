@@ -20,7 +20,7 @@ from typing import IO, Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.worker_log import open_log
-from tangy_tui.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
+from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
 START_SECONDS = 30.0  # for the worker to load its models: 0.8 s when nothing else runs
@@ -96,7 +96,7 @@ class Recogniser:
             except _WorkerDied as how:
                 raise SpeechUnavailable(f"The speech worker ended {how}.") from None
 
-    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         """Decode one whole utterance (16 kHz mono s16le, at most 15 s).
 
         Raises:
@@ -113,7 +113,7 @@ class Recogniser:
         expecting: Expecting = "commands",
         *,
         endpoint: bool = False,
-    ) -> Evidence:
+    ) -> AcousticEvidence:
         """Hear one utterance as it is spoken; an empty chunk ends it.
 
         If the worker dies over it, a new one is given all that was said so far, and it goes on.
@@ -165,7 +165,7 @@ class Recogniser:
 
     async def _hear(
         self, sound: asyncio.Queue[bytes], said: list[bytes], expecting: Expecting, endpoint: bool
-    ) -> Evidence:
+    ) -> AcousticEvidence:
         """Let the worker hear what was said so far, and what comes."""
         await self._ready()
         id, answer = self._expect()
@@ -191,8 +191,8 @@ class Recogniser:
             if not answer.done():
                 await self._send({"id": id, "end": True})
             got = await self._answer(answer, DECODE_SECONDS)
-            evidence = Evidence(
-                **{field.name: got["heard"][field.name] for field in fields(Evidence)}
+            evidence = AcousticEvidence(
+                **{field.name: got["heard"][field.name] for field in fields(AcousticEvidence)}
             )
             self.said, self.left = b"".join(said), b""
             if endpoint:

@@ -29,7 +29,7 @@ from tangy_tui.learning.verification import (
     Rejected,
     Reply,
     Say,
-    Stop,
+    StopCommand,
 )
 
 FOLDER = "recordings"  # in the data folder
@@ -146,7 +146,7 @@ class Recorder:
                 why = f"others may read it, and that cannot be changed ({error.strerror})"
                 raise TangyError(plain(f"{self.folder}: {why}; move it away to record.")) from None
 
-    def heard(self, pcm: bytes, command: Say | Stop | Reply) -> None:
+    def heard(self, pcm: bytes, command: Say | StopCommand | Reply) -> None:
         """Take note of a command, with its sound (16 kHz mono s16le; b"" if it was typed)."""
         if isinstance(command, Reply):
             return  # the question that is answered is still about what was said before

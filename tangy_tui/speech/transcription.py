@@ -11,8 +11,8 @@ from typing import Any
 from tangy_hw.audio.wav import HEADER, read_header, read_wav
 from tangy_profiles.reading import plain
 from tangy_tui.language.commands import Command, Phrasebook
-from tangy_tui.learning.verification import Say, Stop
-from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, Settings
+from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, EvidenceSettings
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.understanding import understand, wanted
@@ -23,7 +23,7 @@ Row = dict[str, Any]
 def listen(
     files: Sequence[Path],
     phrasebook: Phrasebook,
-    settings: Settings = USUAL,
+    settings: EvidenceSettings = USUAL,
     tell: Callable[[int, Sequence[Row]], None] = lambda done, rows: None,
 ) -> list[Row]:
     """Decode WAV files: one row for each command in them, in order.
@@ -58,7 +58,7 @@ def _look_at(file: Path) -> None:
 async def _listen(
     files: Sequence[Path],
     phrasebook: Phrasebook,
-    settings: Settings,
+    settings: EvidenceSettings,
     tell: Callable[[int, Sequence[Row]], None],
 ) -> list[Row]:
     recogniser = Recogniser()
@@ -84,14 +84,14 @@ async def _listen(
     return rows
 
 
-def tier_of(said: Say | Stop) -> str:
+def tier_of(said: Say | StopCommand) -> str:
     """Return in one word what follows from an utterance: sure, unsure, nothing or stop."""
-    if isinstance(said, Stop):
+    if isinstance(said, StopCommand):
         return "stop"
     return "nothing" if not said.commands else "sure" if said.sure else "unsure"
 
 
-def _row(file: Path, said: Say | Stop) -> Row:
+def _row(file: Path, said: Say | StopCommand) -> Row:
     tier = tier_of(said)
     commands = said.commands or () if isinstance(said, Say) else ()
     first = commands[0] if tier == "sure" else None

@@ -14,8 +14,8 @@ from difflib import SequenceMatcher
 
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.language.stop_sentence import STOPS, stops
-from tangy_tui.learning.verification import Reply, Say, Stop
-from tangy_tui.speech.evidence import Evidence, Settings, Wanted
+from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Wanted
 
 # How likely words are to be the command they come nearest to: a logistic over the confidence of
 # the phrasebook, over how many telling words it knows, and over how much better words explain the
@@ -41,7 +41,7 @@ SOUND_ALIKE = {"to": "two", "too": "two", "for": "four", "won": "one", "ate": "e
 
 
 def wanted(
-    phrasebook: Phrasebook, settings: Settings, phrases: Sequence[str] | None = None
+    phrasebook: Phrasebook, settings: EvidenceSettings, phrases: Sequence[str] | None = None
 ) -> Wanted:
     """Return what is to be listened for: the phrases, what stops the robot, and answers.
 
@@ -59,15 +59,17 @@ def wanted(
     )
 
 
-def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -> Say | Stop:
+def understand(
+    evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings
+) -> Say | StopCommand:
     """Return what an utterance commands: it may be several things, or (no commands) nothing."""
     if settings.mode == "paper":
         if stops(evidence.words, phrasebook.game):
-            return Stop(evidence.words)
+            return StopCommand(evidence.words)
         return _as_in_the_paper(evidence, phrasebook)
     text, margin = best_words(evidence, phrasebook)
     if stops(text, phrasebook.game):
-        return Stop(text)
+        return StopCommand(text)
     found = phrasebook.choices(text)
     if not found:
         return Say(text, 0.0, ())
@@ -78,7 +80,7 @@ def understand(evidence: Evidence, phrasebook: Phrasebook, settings: Settings) -
     return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
 
 
-def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
+def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:
     """Return what was said, and the margin of these words.
 
     Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
@@ -95,7 +97,7 @@ def best_words(evidence: Evidence, phrasebook: Phrasebook) -> tuple[str, float]:
     return words, evidence.margin
 
 
-def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
+def answer(evidence: AcousticEvidence, settings: EvidenceSettings) -> Reply | StopCommand | None:
     """Return the answer to a question that an utterance gives, if it gives one.
 
     A yes moves the robot: the grammar, in which any phones can be said instead, has to find it as
@@ -104,7 +106,7 @@ def answer(evidence: Evidence, settings: Settings) -> Reply | Stop | None:
     """
     said = evidence.words
     if stops(said):
-        return Stop(said)
+        return StopCommand(said)
     least = {said: LEAST_ANSWER, "": LEAST_ALONE}.get(evidence.phrase)
     agreed = least is not None and evidence.margin - settings.shift >= least
     if settings.mode != "paper" and agreed and (said in YES or said in NO):
@@ -118,15 +120,15 @@ def likelihood(confidence: float, known: int, margin: float, shift: float = 0.0)
     Args:
         confidence: of the phrasebook, 0 to 1.
         known: how many telling words it knows.
-        margin: see `Evidence`.
-        shift: see `Settings`.
+        margin: see `AcousticEvidence`.
+        shift: see `EvidenceSettings`.
     """
     told = OFFSET - shift + CONFIDENCE_WEIGHT * confidence + KNOWN_WEIGHT * min(known, MOST_KNOWN)
     told += MARGIN_WEIGHT * min(MOST_MARGIN, max(LEAST_MARGIN, margin))
     return 1 / (1 + math.exp(-told))
 
 
-def _as_in_the_paper(evidence: Evidence, phrasebook: Phrasebook) -> Say:
+def _as_in_the_paper(evidence: AcousticEvidence, phrasebook: Phrasebook) -> Say:
     """Match the n-gram model's words by phrases and keywords; there is one tier."""
     command: Command | None = phrasebook.understand(evidence.words)
     if command is None:

@@ -33,7 +33,7 @@ from typing import Any, get_args
 
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
-from tangy_tui.speech.evidence import LONGEST, RATE, Evidence, Expecting, Wanted
+from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
@@ -42,7 +42,7 @@ STANDS = 0.5  # s for which urgent words have to stand alone where it is never q
 CLEAR = 0.12  # s for which they have to stand where no word after them can change what is meant
 
 
-class Refused(Exception):
+class RequestRefused(Exception):
     """A request that cannot be answered; its text is the answer's error."""
 
 
@@ -57,7 +57,9 @@ class Worker:
         self._pcm = bytearray()
         self._endpoints: Endpoints | None = None
         self._pauses: Pauses | None = None
-        self._foreseen: Evidence | None = None  # what was said before a pause that still lasts
+        self._foreseen: AcousticEvidence | None = (
+            None  # what was said before a pause that still lasts
+        )
         self._shown = ""
         self._stood = 0  # bytes since the words so far have changed
         self._urgent: frozenset[str] = frozenset()
@@ -69,7 +71,7 @@ class Worker:
             id = self._id  # whoever waits for the utterance is told what is wrong with its sound
         try:
             self._take(id, request)
-        except Refused as reason:
+        except RequestRefused as reason:
             self._fail(id, str(reason))
         except ImportError as error:
             self._fail(id, f"Speech needs the package {error.name or 'pocketsphinx'}.")
@@ -100,7 +102,7 @@ class Worker:
                 found = [(round(begin, 3), round(end, 3)) for begin, end in pieces(_sound(encoded))]
                 self._write({"id": id, "found": found})
             case _:
-                raise Refused("A request must hold wanted, begin, pcm, end or pieces.")
+                raise RequestRefused("A request must hold wanted, begin, pcm, end or pieces.")
 
     def _build(self, wanted: dict[str, Any]) -> list[str]:
         from tangy_tui.speech.decoder import Unspeakable, make_decoder
@@ -111,15 +113,15 @@ class Worker:
                 self._decoder.close()
             self._decoder = make_decoder(read)
         except Unspeakable as reason:
-            raise Refused(str(reason)) from None
+            raise RequestRefused(str(reason)) from None
         except (KeyError, TypeError) as error:
-            raise Refused(f"What is wanted cannot be read: {error}.") from None
+            raise RequestRefused(f"What is wanted cannot be read: {error}.") from None
         self._urgent = frozenset(read.urgent)
         return list(self._decoder.left_out)
 
     def _begin(self, id: Any, expecting: Any, *, endpoint: bool) -> None:
         if self._decoder is None:
-            raise Refused("The phrases must come before the sound.")
+            raise RequestRefused("The phrases must come before the sound.")
         self._id, self._expecting, self._shown, self._stood = id, expecting, "", 0
         self._pcm.clear()
         self._endpoints = Endpoints() if endpoint else None
@@ -178,9 +180,9 @@ class Worker:
     def _is_urgent(self, words: str) -> bool:
         return words in self._urgent or (bool(self._urgent) and stops(words))
 
-    def _so_far(self) -> Evidence:
+    def _so_far(self) -> AcousticEvidence:
         """Return the words so far as they are: what is urgent does not wait for a second look."""
-        return Evidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
+        return AcousticEvidence(self._shown, "", 0.0, 1.0, len(self._pcm) / 2 / RATE)
 
     def _foresee(self, quiet: float, *, spoke: bool) -> None:
         """Decode in a pause, so that the answer is there when the utterance is said to be over."""
@@ -193,17 +195,17 @@ class Worker:
             self._decoder.begin(self._expecting)
             self._decoder.partial(bytes(self._pcm))
 
-    def _decode(self, pcm: bytes) -> Evidence:
+    def _decode(self, pcm: bytes) -> AcousticEvidence:
         if not _sounds(pcm):
-            return Evidence(seconds=len(pcm) / 2 / RATE)
-        evidence: Evidence = self._decoder.decode(pcm, self._expecting)
+            return AcousticEvidence(seconds=len(pcm) / 2 / RATE)
+        evidence: AcousticEvidence = self._decoder.decode(pcm, self._expecting)
         return evidence
 
     def _said(self) -> bytes:
         """Return the utterance; where it was found, with what lies around it."""
         return self._endpoints.utterance() if self._endpoints and self._pcm else bytes(self._pcm)
 
-    def _end(self, heard: Evidence | None = None) -> None:
+    def _end(self, heard: AcousticEvidence | None = None) -> None:
         id, used = self._id, len(self._pcm)
         if self._endpoints is not None:
             used = self._endpoints.taken
@@ -223,7 +225,7 @@ def _sound(encoded: str) -> bytes:
     try:
         pcm = base64.b64decode(encoded, validate=True)
     except binascii.Error:
-        raise Refused("The sound is not base64.") from None
+        raise RequestRefused("The sound is not base64.") from None
     return pcm[: len(pcm) // 2 * 2]
 
 

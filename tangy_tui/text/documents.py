@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction import saying
-from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.learning.comparison import Row
+from tangy_tui.learning.comparison import PolicyRow
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
 from tangy_tui.learning.explanation import Why, why_words
@@ -41,16 +41,16 @@ def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
     }
 
 
-def policy_document(house: House, policy: Policy) -> dict[str, Any]:
+def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
     """Describe a policy: its rows, its effects, and on how many joint states it is as expected."""
-    activity = house.activity
-    people = [person.id for person in house.people]
+    activity = workspace.activity
+    people = [person.id for person in workspace.people]
     states = list(joint_states(activity, people))
     right = sum(
         policy.decide(state.situation).behaviour == activity.expected.get(state.situation)
         for state in states
     )
-    effects = effects_of(house.store, activity, policy)
+    effects = effects_of(workspace.store, activity, policy)
     return {
         **policy.to_json(),
         "rows": [
@@ -75,14 +75,14 @@ def policy_document(house: House, policy: Policy) -> dict[str, Any]:
             behaviour: {variable: sorted(values) for variable, values in variables.items()}
             for behaviour, variables in effects.values.items()
         },
-        **library_document(house),
+        **library_document(workspace),
     }
 
 
-def library_document(house: House) -> dict[str, Any]:
+def library_document(workspace: Workspace) -> dict[str, Any]:
     """Describe what the finished demonstrations cover, and what they disagree about."""
-    activity = house.activity
-    library = read_library(house.store, activity.name)
+    activity = workspace.activity
+    library = read_library(workspace.store, activity.name)
     found = coverage(activity, library.finished)
     return {
         "coverage": {
@@ -93,15 +93,15 @@ def library_document(house: House) -> dict[str, Any]:
                 for situation in found.missing
             ],
         },
-        "conflicts": [conflict_document(house, conflict) for conflict in library.conflicts],
+        "conflicts": [conflict_document(workspace, conflict) for conflict in library.conflicts],
     }
 
 
-def conflict_document(house: House, conflict: Conflict) -> dict[str, Any]:
+def conflict_document(workspace: Workspace, conflict: Conflict) -> dict[str, Any]:
     """Describe a conflict: the situation, and the answers with their steps."""
     return {
         "situation": list(conflict.situation),
-        "words": house.activity.in_words(conflict.situation),
+        "words": workspace.activity.in_words(conflict.situation),
         "answers": [
             {"behaviour": behaviour, "steps": [shown_document(shown) for shown in steps]}
             for behaviour, steps in conflict.answers.items()
@@ -133,7 +133,7 @@ def decision_document(decision: Decision) -> dict[str, Any]:
     }
 
 
-def why_document(house: House, why: Why) -> dict[str, Any]:
+def why_document(workspace: Workspace, why: Why) -> dict[str, Any]:
     """Describe the grounds of a decision."""
     return {
         "situation": list(why.situation),
@@ -141,11 +141,11 @@ def why_document(house: House, why: Why) -> dict[str, Any]:
         "rests_on": [shown_document(shown) for shown in why.rests_on],
         "against": [shown_document(shown) for shown in why.against],
         "near": [shown_document(shown) for shown in why.near],
-        "sentences": why_words(house.activity, why),
+        "sentences": why_words(workspace.activity, why),
     }
 
 
-def lesson_document(house: House, lesson: Lesson) -> dict[str, Any]:
+def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
     """Describe what was learnt from an answer in a game."""
     made, found = lesson.demonstration, lesson.replay
     return {
@@ -161,7 +161,9 @@ def lesson_document(house: House, lesson: Lesson) -> dict[str, Any]:
     }
 
 
-def comparison_document(house: House, a: Policy, b: Policy, rows: list[Row]) -> dict[str, Any]:
+def comparison_document(
+    workspace: Workspace, a: Policy, b: Policy, rows: list[PolicyRow]
+) -> dict[str, Any]:
     """Describe where two policies differ."""
     return {
         "a": {"name": a.name, "digest": a.digest, "demonstrations": list(a.demonstrations)},
@@ -171,7 +173,7 @@ def comparison_document(house: House, a: Policy, b: Policy, rows: list[Row]) -> 
         "rows": [
             {
                 "situation": list(row.situation),
-                "words": house.activity.in_words(row.situation),
+                "words": workspace.activity.in_words(row.situation),
                 "a": decision_document(row.a),
                 "b": decision_document(row.b),
                 "same": row.same,
@@ -222,7 +224,7 @@ def person_document(record: Record) -> dict[str, Any]:
     }
 
 
-def entry_document(entry: Entry) -> dict[str, Any]:
+def entry_document(entry: FeedbackEntry) -> dict[str, Any]:
     """Describe one line of a person's history; its number is what `people void` takes."""
     return {
         "number": entry.number,

@@ -8,7 +8,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
-from tangy_tui.monitoring.replay import Answered, Done, Moment, Noted, Replay
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
 from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
@@ -26,7 +26,7 @@ def game_words(game: Game) -> str:
     )
 
 
-def replay_lines(replay: Replay, activity: Activity | None, name: Name) -> Iterator[str]:
+def replay_lines(replay: GameReplay, activity: Activity | None, name: Name) -> Iterator[str]:
     """Tell a game step by step; each line begins with the time in the game and on the clock."""
     game = replay.game
     yield game_words(game)
@@ -51,7 +51,7 @@ def _moment_lines(moment: Moment, activity: Activity | None, name: Name) -> list
     match moment.what:
         case Done() as done:
             return _done_lines(done, activity, name)
-        case Answered() as answer:
+        case AnsweredRequest() as answer:
             return [f"   {name(answer.person)} {answer_words(answer)} ({answer.strategy})."]
         case Diagnosed(fault):
             if fault.asks_only:
@@ -85,7 +85,7 @@ def _done_lines(done: Done, activity: Activity | None, name: Name) -> list[str]:
     return lines
 
 
-def answer_words(answer: Answered) -> str:
+def answer_words(answer: AnsweredRequest) -> str:
     """Say what a person did about a request."""
     if answer.complied is None:
         return "was asked; what they did was not known yet"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading, state_of
-from tangy_profiles.robot import Device, Robot
+from tangy_profiles.robot import DeviceProfile, Robot
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
@@ -85,7 +85,7 @@ class Told:
     what it measures, in words.
     """
 
-    device: Device
+    device: DeviceProfile
     code: str
     state: str
     why: str = ""
@@ -148,7 +148,7 @@ class Teller:
             for device in self._robot.devices.values()
         ]
 
-    def _other(self, device: Device, reading: Reading | None) -> Told:
+    def _other(self, device: DeviceProfile, reading: Reading | None) -> Told:
         if reading is None:
             self._since.pop(device.name, None)
             if self._live:
@@ -180,7 +180,7 @@ class Teller:
         )
 
 
-def _camera(device: Device, sight: Sight, source: str) -> Told:
+def _camera(device: DeviceProfile, sight: Sight, source: str) -> Told:
     facts: dict[str, Fact] = dict(sight.reading(device.name).facts)
     told = _facts(device, facts)
     if sight.sharpness is not None:
@@ -199,7 +199,7 @@ def _camera(device: Device, sight: Sight, source: str) -> Told:
     )
 
 
-def _facts(device: Device, facts: dict[str, Fact]) -> tuple[str, ...]:
+def _facts(device: DeviceProfile, facts: dict[str, Fact]) -> tuple[str, ...]:
     """Say what a device measures, in the words of its profile."""
     return tuple(
         f"{device.facts[name].says}: {_value(value)}"

@@ -7,31 +7,33 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING
 
 from tangy_profiles.health import Health
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.camera_hub import Sensors
+    from tangy_hw.perception.camera_hub import CameraHub
 
 FIRST_SECONDS = 5.0
 """For which a game waits at most for the first pictures of its cameras."""
 
 
-class Eyes:
+class CameraSession:
     """A robot's cameras, and whether they count in simulated games."""
 
-    def __init__(self, house: House, sensors: Sensors | None = None, *, live: bool = False) -> None:
+    def __init__(
+        self, workspace: Workspace, sensors: CameraHub | None = None, *, live: bool = False
+    ) -> None:
         """Prepare them.
 
         Args:
-            house: whose robot it is.
+            workspace: whose robot it is.
             sensors: its cameras (default: those of the robot's profile).
             live: what is wrong with them is a fault in a simulated game.
         """
         self.live = live
-        self._house = house
+        self._workspace = workspace
         self._sensors = sensors
 
-    def sensors(self) -> Sensors:
+    def sensors(self) -> CameraHub:
         """Return the cameras; they are opened by whoever uses them.
 
         Raises:
@@ -40,8 +42,10 @@ class Eyes:
         if self._sensors is None:
             from tangy_hw.perception.camera_hub import sensors_of
 
-            house = self._house
-            self._sensors = sensors_of(house.robot, house.activity.deck, house.store.folder)
+            workspace = self._workspace
+            self._sensors = sensors_of(
+                workspace.robot, workspace.activity.deck, workspace.store.folder
+            )
         return self._sensors
 
     @asynccontextmanager

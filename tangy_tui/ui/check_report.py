@@ -13,7 +13,7 @@ from rich.text import Text
 from tangy_profiles.activity import Activity
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.rules import Rules, looks_at, recovery_words
-from tangy_tui.speech.activity_check import Checked
+from tangy_tui.speech.activity_check import CheckedFile
 from tangy_tui.speech.phrase_list import PhraseList, items
 from tangy_tui.text.situations import counted
 
@@ -35,7 +35,7 @@ def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
     Console(highlight=False).print(table)
 
 
-def print_checked(checked: Checked, activity: Activity | None) -> None:
+def print_checked(checked: CheckedFile, activity: Activity | None) -> None:
     """Print what there is to say of an activity's file."""
     console = Console(highlight=False, soft_wrap=True)
     if activity is not None and not checked.mistakes:

@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
@@ -20,14 +20,14 @@ PLAYING = 100.0
 
 async def tell_story_aside(program: Program) -> None:
     """Tell the story in a data folder of its own, so that nothing of it stays."""
-    own = program.house
+    own = program.workspace
     with TemporaryDirectory(prefix="tangy-demo-") as scratch:
-        program.house = House(Path(scratch), activity=own.profile, users=len(own.people))
+        program.workspace = Workspace(Path(scratch), activity=own.profile, users=len(own.people))
         try:
             await tell_story(program, 1)
         finally:
-            program.house.close()
-            program.house = own
+            program.workspace.close()
+            program.workspace = own
 
 
 async def tell_story(program: Program, seed: int) -> None:
@@ -38,18 +38,20 @@ async def tell_story(program: Program, seed: int) -> None:
     from tangy_tui.ui.screens.play import PlayScreen
     from tangy_tui.ui.screens.teach import TeachScreen
 
-    house = program.house
-    teaching = house.teaching(SCRIPTED, seed)
+    workspace = program.workspace
+    teaching = workspace.teaching(SCRIPTED, seed)
     for number, pace in enumerate(TEACHING):
         complete = await program.push_screen_wait(
-            TeachScreen(house, teaching, scripted=pace, another=number > 0)
+            TeachScreen(workspace, teaching, scripted=pace, another=number > 0)
         )
         if not complete:
             return
-    policy = await program.in_thread("Tangy is learning ...", lambda: learn(house))
+    policy = await program.in_thread("Tangy is learning ...", lambda: learn(workspace))
     if policy is None:
         return
     await program.open_policy(policy, leave_after=6.0)
-    supervision = house.supervision(policy, seed)
-    await program.push_screen_wait(PlayScreen(house, supervision, speed=PLAYING, leave_after=3.0))
-    await program.push_screen_wait(PeopleScreen(house, leave_after=None))
+    supervision = workspace.supervision(policy, seed)
+    await program.push_screen_wait(
+        PlayScreen(workspace, supervision, speed=PLAYING, leave_after=3.0)
+    )
+    await program.push_screen_wait(PeopleScreen(workspace, leave_after=None))

@@ -20,7 +20,7 @@ from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
     ENDINGS,
     OPEN,
@@ -76,7 +76,7 @@ class FaultConsole:
     def __init__(
         self,
         screen: Screen[Any],
-        house: House,
+        workspace: Workspace,
         supervision: Supervision,
         who: str,
         *,
@@ -98,7 +98,7 @@ class FaultConsole:
         self.beside: Beside | None = None
         """Does what takes its time: the world is there, and not worked out at once."""
         self._screen = screen
-        self._house = house
+        self._workspace = workspace
         self._who = who
         self._tell = tell
         self._failed = failed
@@ -269,7 +269,7 @@ class FaultConsole:
     async def all_well(self) -> bool:
         """Ask about what nobody cleared in the last game; False: no other one may begin."""
         await self._free.wait()
-        fault = uncleared(self._house.store)
+        fault = uncleared(self._workspace.store)
         if fault is None:
             return True
         dialog = ConfirmDialog(

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
-from tangy_profiles.robot import Device, Robot
+from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_tui.monitoring.diagnosis import narrows
-from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, Move
+from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, RecoveryEvent
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.monitoring.telling import RECOVERY_WORDS, mismatch_words, move_words
 from tangy_tui.ui.clean_output import clean
@@ -100,13 +100,13 @@ def said_words(fault: Fault) -> str:
     return "" if move is None else clean(move.speech)
 
 
-def _last(fault: Fault) -> Move | None:
+def _last(fault: Fault) -> RecoveryEvent | None:
     """Return what was done last; what came before a fault was seen is still so."""
     done = [move for move in fault.moves if _DOING.get(move.kind) != ""]
     return done[-1] if done else None
 
 
-def _tries(fault: Fault, move: Move, book: FaultBook) -> str:
+def _tries(fault: Fault, move: RecoveryEvent, book: FaultBook) -> str:
     tries = book.rule(fault.code).tries
     return f" ({move.attempt} of {tries})" if tries > 1 else ""
 
@@ -155,17 +155,17 @@ def told_in_banner(supervision: Supervision) -> list[Fault]:
     return there if first is None else [first, *(f for f in there if f is not first)]
 
 
-class Piece(NamedTuple):
+class EvidenceLine(NamedTuple):
     """One piece of evidence in words, and ("": nothing more) what was to be expected."""
 
     what: str
     note: str = ""
 
 
-def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
+def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLine]:
     """Hold what was observed against what was to be expected."""
     rule = book.rule(fault.code)
-    pieces: list[Piece] = []
+    pieces: list[EvidenceLine] = []
     for key, value in fault.evidence.items():
         if key in CONTEXT or key.startswith("mismatch.") or key == "situation.shown":
             continue
@@ -184,16 +184,16 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[Piece]:
         expected = _expected(key, value, rule, book)
         if expected:
             observed = _observed(fact, value)
-            pieces.append(Piece(f"{what}: {observed}", f"to be expected: {expected}"))
+            pieces.append(EvidenceLine(f"{what}: {observed}", f"to be expected: {expected}"))
     for one in fault.mismatches:
         words = mismatch_words(one)
         wanted = " or ".join(one.expected) or "nothing known"
         note = f"{one.variable}: {one.seen}; to be expected: {wanted}"
-        pieces.append(Piece(f"{words[:1].upper()}{words[1:]}", note))
+        pieces.append(EvidenceLine(f"{words[:1].upper()}{words[1:]}", note))
     return pieces
 
 
-def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list[Piece]:
+def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list[EvidenceLine]:
     """Say how old the newest data of a fault's device is if it is too old, unless that is said."""
     device = robot.devices.get(book.rule(fault.code).device)
     if device is None or f"{device.name}.age" in fault.evidence:
@@ -220,11 +220,11 @@ def still_there_words(fault: Fault, supervision: Supervision) -> str:
     return f"Still there: {'; '.join(piece.what for piece in pieces)}."
 
 
-def _age(device: Device, age: Fact) -> list[Piece]:
+def _age(device: DeviceProfile, age: Fact) -> list[EvidenceLine]:
     if isinstance(age, (bool, str)) or age <= device.stale_after:
         return []
     expected = f"to be expected: at most {device.stale_after:g} s old"
-    return [Piece(f"{device.label}, newest data: {age:.3g} s old", expected)]
+    return [EvidenceLine(f"{device.label}, newest data: {age:.3g} s old", expected)]
 
 
 def _expected(key: str, value: Fact, rule: FaultRule, book: FaultBook) -> str:

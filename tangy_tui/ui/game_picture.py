@@ -7,13 +7,13 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import (
     Acted,
+    BeliefUpdated,
     DoneOnce,
     GameBegun,
     GameEnded,
-    Learnt,
     Taught,
     Unsure,
 )
@@ -45,7 +45,7 @@ TAUGHT_SECONDS = 6.0
 class GamePicture:
     """Puts the events of games on room, steps, policy, posteriors and log of a screen."""
 
-    def __init__(self, screen: Screen[Any], house: House, supervision: Supervision) -> None:
+    def __init__(self, screen: Screen[Any], workspace: Workspace, supervision: Supervision) -> None:
         self.grounds: list[Ground] = []
         """What each step of the present game rested on."""
         self.lesson = ""
@@ -54,7 +54,7 @@ class GamePicture:
         self._step: int | None = None
         self._game: int | None = None
         self._screen = screen
-        self._house = house
+        self._workspace = workspace
         self._supervision = supervision
         self._policy = supervision.policy
 
@@ -81,8 +81,8 @@ class GamePicture:
                     self._show_scene(0, drive=False, pace=pace)
                 case Acted():
                     self._show_step(event, taught.teacher if taught else "", pace)
-                case Learnt(response, belief):
-                    name = self._house.name(response.person)
+                case BeliefUpdated(response, belief):
+                    name = self._workspace.name(response.person)
                     what = "complied" if response.complied else "followed, but late"
                     log.write(
                         f"{name} {what}: {response.strategy} has worked "
@@ -124,25 +124,25 @@ class GamePicture:
         """Tell why: of the chosen step, what Tangy asks, or the last step; None: there is none."""
         question = self._supervision.question
         if chosen is None and question is not None:
-            return why_asked(self._house, self._policy, question.state.situation)
+            return why_asked(self._workspace, self._policy, question.state.situation)
         return self.why_step(len(self.grounds) if chosen is None else chosen)
 
     def why_step(self, number: int) -> WhyDialog | None:
         """Tell why a step of this game was done; None: there is no such step."""
         if not 1 <= number <= len(self.grounds):
             return None
-        return why_step(self._house, self.grounds[number - 1], number)
+        return why_step(self._workspace, self.grounds[number - 1], number)
 
     def why_row(self, index: int) -> WhyDialog:
         """Tell why, for a row of the policy."""
-        situation = self._house.activity.situations[index]
-        return why_row(self._house, self._policy, situation)
+        situation = self._workspace.activity.situations[index]
+        return why_row(self._workspace, self._policy, situation)
 
     def _show_step(self, event: Acted, teacher: str, pace: float) -> None:
-        house, screen = self._house, self._screen
+        workspace, screen = self._workspace, self._screen
         self.grounds.append(Ground(self._policy, event, teacher))
-        words = house.activity.in_words(event.state.situation)
-        target = f" ({house.name(event.action.target)})" if event.action.target else ""
+        words = workspace.activity.in_words(event.state.situation)
+        target = f" ({workspace.name(event.action.target)})" if event.action.target else ""
         how = f", {event.choice.strategy}" if event.choice else ""
         who = f", {teacher} answered" if teacher else ""
         done = "" if event.outcome.completed else NOT_DONE
@@ -161,7 +161,7 @@ class GamePicture:
 
     def _show_lesson(self, taught: Taught) -> None:
         """Say from whom it was learnt and what the replay showed, and show the new row."""
-        activity, lesson = self._house.activity, taught.lesson
+        activity, lesson = self._workspace.activity, taught.lesson
         learnt = lesson_words(activity, lesson)
         log = self._screen.query_one(LogView)
         log.write(learnt, "good")
@@ -177,7 +177,7 @@ class GamePicture:
         self._show_policy(activity.in_words(lesson.demonstration.steps[-1].state.situation))
 
     def _show_policy(self, highlight: str | None = None) -> None:
-        rows = policy_rows(self._house.activity, self._policy)
+        rows = policy_rows(self._workspace.activity, self._policy)
         self._screen.query_one(PolicyTable).show(rows, highlight)
 
     def _show_scene(self, seconds: float, *, drive: bool, pace: float) -> None:
@@ -189,4 +189,4 @@ class GamePicture:
 
     def _show_beliefs(self, highlight: tuple[str, str] | None) -> None:
         beliefs = self._supervision.persuasion.beliefs
-        self._screen.query_one(Posteriors).show(beliefs, self._house.names, highlight)
+        self._screen.query_one(Posteriors).show(beliefs, self._workspace.names, highlight)

@@ -8,7 +8,7 @@ from typing import Any
 
 from textual.app import App
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.supervision import Event
@@ -21,15 +21,15 @@ AS_IN_LIFE = 1.0
 class GameVoice:
     """Speaks the lines of a game."""
 
-    def __init__(self, house: House) -> None:
-        self._house = house
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
         self._app: App[Any] | None = None
         self._line: asyncio.Future[bool] | None = None
 
     def begin(self, app: App[Any]) -> None:
         """Make ready what is said in every game, beside the screen."""
         self._app = app
-        speaker_of(app).prepare(opening_lines(self._house.activity))
+        speaker_of(app).prepare(opening_lines(self._workspace.activity))
 
     def tell(self, events: Sequence[Event], pace: float) -> None:
         """Speak what is said in these events.
@@ -47,7 +47,7 @@ class GameVoice:
                 speech, person = event.move.speech, None
             else:
                 continue
-            preference = preference_of(self._house, person)
+            preference = preference_of(self._workspace, person)
             if 0 < pace <= AS_IN_LIFE:
                 self._line = speaker.say(speech, preference)
             else:

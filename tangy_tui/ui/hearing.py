@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.question import VerifyingDialog
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from tangy_tui.language.commands import Phrasebook
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.speech.input import SpeechInput
     from tangy_tui.ui.widgets.log_view import Kind
 
 WAITS = 0.05
@@ -62,7 +62,7 @@ class Hearing:
     def __init__(
         self,
         app: App[Any],
-        ears: Ears,
+        ears: SpeechInput,
         stop: Callable[[], None],
         hush: Callable[[], Awaitable[None]],
     ) -> None:
@@ -198,9 +198,9 @@ class Hearing:
         finally:
             await self.ears.close()
 
-    def _take(self, heard: Say | Stop | Reply) -> None:
+    def _take(self, heard: Say | StopCommand | Reply) -> None:
         match heard:
-            case Stop(text):
+            case StopCommand(text):
                 self._stop()
                 self.tell(f"Heard: {text}.", "warn")
             case Reply(yes):

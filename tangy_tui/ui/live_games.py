@@ -33,16 +33,16 @@ async def play_from_home(program: Program, policy: Policy) -> None:
     from tangy_tui.app.robot_opening import opening_of
     from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 
-    house = program.house
-    bench = not house.robot.drivers
+    workspace = program.workspace
+    bench = not workspace.robot.drivers
     if bench:
         dialog = ConfirmDialog("Play on the bench?", BENCH, yes="play", no="back")
     else:
-        question = f"Switch {house.robot.title} on?"
+        question = f"Switch {workspace.robot.title} on?"
         dialog = ConfirmDialog(question, SWITCH_ON, yes="switch it on, and play", no="back")
     if await program.push_screen_wait(dialog):
-        seed = house.game_seed(None)
-        opening = opening_of(house, bench=bench, seed=seed)
+        seed = workspace.game_seed(None)
+        opening = opening_of(workspace, bench=bench, seed=seed)
         await play_live(program, opening, policy, games=1, seed=seed, teacher="")
 
 
@@ -55,7 +55,7 @@ async def play_live(
     """
     from tangy_tui.app.switching_on import SwitchingOn
 
-    house = program.house
+    workspace = program.workspace
     robot = SwitchingOn(opening)
     try:
         world = await _switch_on(program, robot)
@@ -63,8 +63,8 @@ async def play_live(
             return
         from tangy_tui.ui.screens.live import LiveScreen
 
-        supervision = house.supervision(policy, seed, asks=True, world=world)
-        screen = LiveScreen(house, supervision, world, games=games, teacher=teacher)
+        supervision = workspace.supervision(policy, seed, asks=True, world=world)
+        screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher)
         await program.push_screen_wait(screen)
     finally:
         await asyncio.shield(asyncio.to_thread(robot.close))
@@ -79,7 +79,7 @@ async def _switch_on(program: Program, robot: SwitchingOn) -> LiveWorld | None:
     from tangy_tui.ui.dialogs.message import MessageDialog
     from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 
-    dialog = SwitchingOnDialog(program.house.robot.title, robot.cancel)
+    dialog = SwitchingOnDialog(program.workspace.robot.title, robot.cancel)
     program.push_screen(dialog)
     await dialog.shown()
     await asyncio.sleep(TYPED_AHEAD_SECONDS)

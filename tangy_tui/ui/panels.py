@@ -9,7 +9,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.ui.widgets.room_view import RoomView
 
 WidgetT = TypeVar("WidgetT", bound=Widget)
@@ -71,15 +71,15 @@ def panel(widget: WidgetT, title: str = "") -> WidgetT:
     return widget
 
 
-def room_panel(house: House) -> RoomView:
-    """Make the panel of a house's room, with its people, its robot and its numbers."""
+def room_panel(workspace: Workspace) -> RoomView:
+    """Make the panel of a workspace's room, with its people, its robot and its numbers."""
     from tangy_tui.ui.widgets.room_view import RoomView
 
     return panel(
         RoomView(
-            house.room,
-            house.people,
-            robot=house.robot.title,
-            label=house.activity.deck.label,
+            workspace.room,
+            workspace.people,
+            robot=workspace.robot.title,
+            label=workspace.activity.deck.label,
         )
     )

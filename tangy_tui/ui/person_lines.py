@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rich.cells import cell_len
 
 from tangy_profiles.beliefs import Beta
-from tangy_tui.interaction.feedback import Entry
+from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.interaction.saying import (
     entry_words,
@@ -18,7 +18,7 @@ from tangy_tui.interaction.saying import (
     tally,
 )
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.choice_list import Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine
 from tangy_tui.ui.widgets.posteriors import BLOCKS, LOWEST_PEAK, share
 from tangy_tui.ui.widgets.rows import Row, Span, fit, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -29,17 +29,19 @@ COUNTS = 9  # columns: "40 of 100"
 STATE = 13
 
 
-def people_lines(records: Sequence[Record], width: int) -> list[Line]:
+def people_lines(records: Sequence[Record], width: int) -> list[ChoiceLine]:
     """Write one sentence for each person, the name standing out."""
     lines = []
     for record in records:
         words = shorten(clean(sentence(record)), width)
         before, name, after = words.partition(clean(record.person.name))
-        lines.append(Line(((before, "text"), (name, "person"), (after, "text")), record.person.id))
+        lines.append(
+            ChoiceLine(((before, "text"), (name, "person"), (after, "text")), record.person.id)
+        )
     return lines
 
 
-def strategy_lines(record: Record, width: int, height: int) -> list[Line]:
+def strategy_lines(record: Record, width: int, height: int) -> list[ChoiceLine]:
     """Write each strategy with curve, counts, mean, interval and P(best); then where it is from.
 
     Where the panel is high, so are the curves.
@@ -48,16 +50,16 @@ def strategy_lines(record: Record, width: int, height: int) -> list[Line]:
     points = max(6, min(LONGEST_CURVE, width - label - COUNTS - STATE - 22))
     tall = max(1, min(HIGHEST_CURVE, (height - 4) // len(record.beliefs) - 1))
     head = f"{fit('0 to 1', points)} {'complied':>{COUNTS}} mean  90%     best"
-    lines = [Line(((" " * (label + 1), "dim"), (shorten(head, width - label - 1), "dim")))]
+    lines = [ChoiceLine(((" " * (label + 1), "dim"), (shorten(head, width - label - 1), "dim")))]
     for strategy, belief in record.beliefs.items():
         *above, last = curve_lines(belief, points, tall)
         lead = (" " * (label + 1), "text")
-        lines += [Line((lead, (part, "curve")), strategy) for part in above]
-        lines.append(Line(_strategy(record, strategy, label, last), strategy))
+        lines += [ChoiceLine((lead, (part, "curve")), strategy) for part in above]
+        lines.append(ChoiceLine(_strategy(record, strategy, label, last), strategy))
         if tall > 1:
-            lines.append(Line(()))
+            lines.append(ChoiceLine(()))
     for words in (method_words(record), prior_words(record.known.prior)):
-        lines += [Line(((line, "dim"),)) for line in wrap(clean(words), width)]
+        lines += [ChoiceLine(((line, "dim"),)) for line in wrap(clean(words), width)]
     return lines
 
 
@@ -97,22 +99,22 @@ def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
     return tuple(spans)
 
 
-def history_lines(record: Record, width: int) -> list[Line]:
+def history_lines(record: Record, width: int) -> list[ChoiceLine]:
     """Write the history, the newest game first, and within a game the newest response first."""
     if not record.games:
-        return [Line((("No request was put to this person yet.", "dim"),))]
+        return [ChoiceLine((("No request was put to this person yet.", "dim"),))]
     strategy = min(12, max(cell_len(clean(e.strategy)) for e in record.history))
     digits = len(str(len(record.history)))
     lines = []
     for game in reversed(record.games):
         heading = "game of" if game.id is not None else "outside of a game, from"
-        lines.append(Line(((f"{heading} {on_day(game.begun)}", "dim"),)))
+        lines.append(ChoiceLine(((f"{heading} {on_day(game.begun)}", "dim"),)))
         for entry in reversed(game.entries):
-            lines.append(Line(_entry(entry, digits, strategy, width), entry.seq))
+            lines.append(ChoiceLine(_entry(entry, digits, strategy, width), entry.seq))
     return lines
 
 
-def _entry(entry: Entry, digits: int, strategy: int, width: int) -> Row:
+def _entry(entry: FeedbackEntry, digits: int, strategy: int, width: int) -> Row:
     local = entry.at.astimezone()
     front = f" {entry.number:>{digits}}  {local:%H:%M}  "
     words = shorten(clean(entry_words(entry)), width - cell_len(front) - strategy - 2)

@@ -10,12 +10,12 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.explanation import Why
 
 
 async def show_why(
-    screen: Screen[Any], house: House, present: Demonstration, situation: Situation
+    screen: Screen[Any], workspace: Workspace, present: Demonstration, situation: Situation
 ) -> None:
     """Learn beside the screen from all there is, the present game too, and explain a situation."""
     from tangy_tui.ui.dialogs.why import WhyDialog
@@ -23,7 +23,10 @@ async def show_why(
     app: Any = screen.app
     app.say("Tangy thinks it over ... (esc: never mind)")
     worker: Worker[Why] = screen.run_worker(
-        lambda: _grounds(house, present, situation), thread=True, exit_on_error=False, group="why"
+        lambda: _grounds(workspace, present, situation),
+        thread=True,
+        exit_on_error=False,
+        group="why",
     )
     try:
         why = await worker.wait()
@@ -38,16 +41,18 @@ async def show_why(
         return
     app.clear_notifications()
     if app.screen is screen:
-        app.push_screen(WhyDialog(house, why))
+        app.push_screen(WhyDialog(workspace, why))
 
 
-def _grounds(house: House, present: Demonstration, situation: Situation) -> Why:
+def _grounds(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
     from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library
 
-    library = read_library(house.store, house.activity.name)
+    library = read_library(workspace.store, workspace.activity.name)
     there = {d.id: d for d in library.finished}
     if present.id not in library.entries:  # not a step of its own yet, so nothing to open
-        return explain(foresee(house.store, house.activity, None), list(there.values()), situation)
+        return explain(
+            foresee(workspace.store, workspace.activity, None), list(there.values()), situation
+        )
     shown = list((there | {present.id: present}).values())
-    return explain(foresee(house.store, house.activity, present), shown, situation)
+    return explain(foresee(workspace.store, workspace.activity, present), shown, situation)

@@ -11,9 +11,9 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerCancelled, WorkerFailed
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House, teacher_name
+from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.learning import library, policies
-from tangy_tui.ui.camera_session import Eyes
+from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.live_games import play_from_home
 from tangy_tui.ui.messages import OpenStep
@@ -22,9 +22,9 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.sounding import SoundingApp
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.camera_hub import Sensors
+    from tangy_hw.perception.camera_hub import CameraHub
     from tangy_tui.learning.policy import Policy
-    from tangy_tui.learning.teaching_session import Teaching
+    from tangy_tui.learning.teaching_session import TeachingSession
 
 T = TypeVar("T")
 
@@ -38,23 +38,23 @@ Start = Callable[["Program"], Coroutine[Any, Any, None]]
 
 
 class Program(SoundingApp):
-    """Tangy's screens, put together around one house."""
+    """Tangy's screens, put together around one workspace."""
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         start: Start | None = None,
         *,
-        sensors: Sensors | None = None,
+        sensors: CameraHub | None = None,
         live: bool = False,
         **settings: Any,
     ) -> None:
         """Make the program; without a start it waits at home. It may have ears, eyes and voice."""
-        pictures = house.store.folder
-        super().__init__(self._home, pictures=pictures, activity=house.activity, **settings)
-        self.house = house
+        pictures = workspace.store.folder
+        super().__init__(self._home, pictures=pictures, activity=workspace.activity, **settings)
+        self.workspace = workspace
         self._start = start
-        self.eyes = Eyes(house, sensors, live=live)
+        self.eyes = CameraSession(workspace, sensors, live=live)
         self._busy = False
         self._opening = False
         self._told: set[str] = set()
@@ -67,15 +67,15 @@ class Program(SoundingApp):
 
     def _home(self) -> Screen[Any]:
         def far() -> Mapping[str, str]:
-            found = how_far(self.house)
+            found = how_far(self.workspace)
             self.call_later(self._tell_of_log)
             return found
 
-        return HomeScreen(far, note=self.house.activity.title)
+        return HomeScreen(far, note=self.workspace.activity.title)
 
     def _tell_of_log(self) -> None:
         """Say, once, what was noticed of the log, and what is left out of it."""
-        store = self.house.store
+        store = self.workspace.store
         aside = [store.aside[seq] for seq in sorted(store.aside)]
         if len(aside) > 1:
             aside = [f"{aside[0]} And {len(aside) - 1} more: `tangy store check` names them."]
@@ -92,9 +92,9 @@ class Program(SoundingApp):
             return
         match event.id:
             case "teach":
-                self.teach(self.house.teaching(teacher_name(), None))
+                self.teach(self.workspace.teaching(teacher_name(), None))
             case "guided":
-                self.teach(self.house.teaching(teacher_name(), None, guided=True))
+                self.teach(self.workspace.teaching(teacher_name(), None, guided=True))
             case "library":
                 self.library()
             case "learn":
@@ -126,23 +126,23 @@ class Program(SoundingApp):
 
         self.run_worker(go())
 
-    def teach(self, teaching: Teaching) -> None:
+    def teach(self, teaching: TeachingSession) -> None:
         """Open the teaching screen."""
         from tangy_tui.ui.screens.teach import TeachScreen
 
-        self.push_screen(TeachScreen(self.house, teaching))
+        self.push_screen(TeachScreen(self.workspace, teaching))
 
     def on_open_step(self, event: OpenStep) -> None:
         """Show a step where it was demonstrated."""
         from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 
-        self.push_screen(DemonstrationScreen(self.house, event.demonstration, event.number))
+        self.push_screen(DemonstrationScreen(self.workspace, event.demonstration, event.number))
 
     def library(self) -> None:
         """Open the screen of all demonstrations."""
         from tangy_tui.ui.screens.demonstrations import DemonstrationsScreen
 
-        self.push_screen(DemonstrationsScreen(self.house))
+        self.push_screen(DemonstrationsScreen(self.workspace))
 
     async def show_again(self, id: str, kept: int) -> None:
         """Let a demonstration be shown again after its first `kept` steps.
@@ -158,26 +158,26 @@ class Program(SoundingApp):
                 await self.screen.dismiss(None)
             open_one.again(id, kept)
             return
-        teaching = self.house.teaching(teacher_name(), None, again=Again(id, kept))
+        teaching = self.workspace.teaching(teacher_name(), None, again=Again(id, kept))
         try:
             begun = teaching.begin()
         except TangyError as error:
             await self._tell(str(error), title="Not possible")
             return
-        self.push_screen(TeachScreen(self.house, teaching, begun=begun))
+        self.push_screen(TeachScreen(self.workspace, teaching, begun=begun))
 
     def people(self) -> None:
         """Open the people screen."""
         from tangy_tui.ui.screens.people import PeopleScreen
 
-        self.push_screen(PeopleScreen(self.house))
+        self.push_screen(PeopleScreen(self.workspace))
 
     async def sensors(self) -> None:
         """Open the screen of devices and cameras, and wait until it is left."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
         try:
-            screen = SensorsScreen(self.house, self.eyes.sensors())
+            screen = SensorsScreen(self.workspace, self.eyes.sensors())
         except TangyError as error:
             await self._tell(str(error), title="Not possible")
             return
@@ -197,9 +197,9 @@ class Program(SoundingApp):
 
         if self._busy or any(isinstance(s, ConflictsScreen) for s in self.screen_stack):
             return
-        if not await settle_conflicts(self, self.house, "let Tangy learn"):
+        if not await settle_conflicts(self, self.workspace, "let Tangy learn"):
             return
-        policy = await self.in_thread("Tangy is learning ...", lambda: learn(self.house))
+        policy = await self.in_thread("Tangy is learning ...", lambda: learn(self.workspace))
         if policy is not None:
             await self.open_policy(policy)
 
@@ -230,13 +230,13 @@ class Program(SoundingApp):
         policy = await self._load_policy(wanted)
         if policy is None:
             return
-        house = self.house
+        workspace = self.workspace
         speed = speed or (1.0 if self.speaker.on or self.eyes.live else PLAYING)
         async with self.eyes.watching() as live:
-            supervision = house.supervision(
+            supervision = workspace.supervision(
                 policy, seed, asks=True, injections=injections, live=live
             )
-            screen = PlayScreen(house, supervision, games=games, speed=speed, teacher=teacher)
+            screen = PlayScreen(workspace, supervision, games=games, speed=speed, teacher=teacher)
             if live is None:
                 await self.push_screen(screen)
             else:
@@ -255,14 +255,14 @@ class Program(SoundingApp):
         from tangy_tui.monitoring.drill import ROUNDS, Drill
         from tangy_tui.ui.screens.drill import DrillScreen
 
-        house = self.house
+        workspace = self.workspace
         made = await self.in_thread(
             "Tangy is preparing the drill ...",
             lambda: Drill.of(
-                house.activity,
-                house.robot,
-                house.names,
-                house.store,
+                workspace.activity,
+                workspace.robot,
+                workspace.names,
+                workspace.store,
                 who=who or teacher_name(),
                 seed=seed,
                 rounds=rounds or ROUNDS,
@@ -281,17 +281,17 @@ class Program(SoundingApp):
         from tangy_tui.learning.comparison import find_policy
         from tangy_tui.ui.screens.compare import CompareScreen, choose_two
 
-        house = self.house
-        wanted = await choose_two(self, house, first)
+        workspace = self.workspace
+        wanted = await choose_two(self, workspace, first)
         if len(wanted) < 2:
             return
         found = await self.in_thread(
             "Tangy is recalling both ...",
-            lambda: [find_policy(house.store, house.activity, one) for one in wanted],
+            lambda: [find_policy(workspace.store, workspace.activity, one) for one in wanted],
         )
         if found is not None:
             (a, of_a), (b, of_b) = found
-            await self.push_screen(CompareScreen(house, a, b, [*of_a, *of_b]))
+            await self.push_screen(CompareScreen(workspace, a, b, [*of_a, *of_b]))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List what the command palette offers, with what no key of home leads to."""
@@ -313,7 +313,7 @@ class Program(SoundingApp):
                 await hear(phones)
 
         if not any(isinstance(screen, PhrasesScreen) for screen in self.screen_stack):
-            await self.push_screen(PhrasesScreen(self.house, say))
+            await self.push_screen(PhrasesScreen(self.workspace, say))
 
     def action_other_policy(self) -> None:
         """Look at another policy that was kept."""
@@ -322,7 +322,7 @@ class Program(SoundingApp):
     async def _other_policy(self) -> None:
         from tangy_tui.ui.screens.compare import choose_policy
 
-        chosen = await choose_policy(self, self.house)
+        chosen = await choose_policy(self, self.workspace)
         policy = None if chosen is None else await self._load_policy(chosen)
         if policy is not None:
             await self.open_policy(policy)
@@ -331,17 +331,17 @@ class Program(SoundingApp):
         """Open the screen of a policy, for so many s at most, and wait until it is left."""
         from tangy_tui.ui.screens.policy import PolicyScreen
 
-        house = self.house
-        effects = library.effects_of(house.store, house.activity, policy)
-        screen = PolicyScreen(house, policy, effects, leave_after)
+        workspace = self.workspace
+        effects = library.effects_of(workspace.store, workspace.activity, policy)
+        screen = PolicyScreen(workspace, policy, effects, leave_after)
         await self.push_screen_wait(screen)
 
     async def _load_policy(self, wanted: str = "") -> Policy | None:
         """Learn the kept policy again; what must be said of it is said before it is used."""
-        house = self.house
+        workspace = self.workspace
         loaded = await self.in_thread(
             "Tangy is recalling what it learnt ...",
-            lambda: policies.load_policy(house.store, house.activity, wanted),
+            lambda: policies.load_policy(workspace.store, workspace.activity, wanted),
         )
         if loaded is None:
             return None
@@ -352,12 +352,12 @@ class Program(SoundingApp):
         """Show how a policy differs from what was kept of it, and ask before it is used."""
         from tangy_tui.ui.dialogs.difference import DifferenceDialog
 
-        house = self.house
-        kept = policies.need_policy(house.store, house.activity, wanted)
+        workspace = self.workspace
+        kept = policies.need_policy(workspace.store, workspace.activity, wanted)
         changes = policies.changes(kept, policy)
-        answer = await self.push_screen_wait(DifferenceDialog(house.activity, notice, changes))
+        answer = await self.push_screen_wait(DifferenceDialog(workspace.activity, notice, changes))
         if answer == "keep":
-            policies.keep_policy(house.store, policy)
+            policies.keep_policy(workspace.store, policy)
         return answer != "back"
 
     async def _tell(self, text: str, title: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
@@ -22,30 +22,32 @@ class Ground:
     teacher: str = ""
 
 
-def why_of(house: House, policy: Policy, situation: Situation) -> Why:
+def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> Why:
     """Find the grounds of a policy's decision, among hidden demonstrations as well."""
-    entries = read_library(house.store, house.activity.name).entries.values()
+    entries = read_library(workspace.store, workspace.activity.name).entries.values()
     return explain(policy, [entry.demonstration for entry in entries], situation)
 
 
-def why_step(house: House, ground: Ground, number: int) -> WhyDialog:
+def why_step(workspace: Workspace, ground: Ground, number: int) -> WhyDialog:
     """Explain a step of a game."""
     acted = ground.acted
     done = f"Tangy asked, and {ground.teacher} answered: {acted.action.behaviour.name}."
     return WhyDialog(
-        house,
-        why_of(house, ground.policy, acted.state.situation),
+        workspace,
+        why_of(workspace, ground.policy, acted.state.situation),
         acted.choice,
         title=f"Step {number}: why this?",
         remarks=(done,) if ground.teacher else (),
     )
 
 
-def why_row(house: House, policy: Policy, situation: Situation) -> WhyDialog:
+def why_row(workspace: Workspace, policy: Policy, situation: Situation) -> WhyDialog:
     """Explain a row of a policy."""
-    return WhyDialog(house, why_of(house, policy, situation), title=f"{policy.name}: why this?")
+    return WhyDialog(
+        workspace, why_of(workspace, policy, situation), title=f"{policy.name}: why this?"
+    )
 
 
-def why_asked(house: House, policy: Policy, situation: Situation) -> WhyDialog:
+def why_asked(workspace: Workspace, policy: Policy, situation: Situation) -> WhyDialog:
     """Explain why Tangy asks."""
-    return WhyDialog(house, why_of(house, policy, situation), title="Why does Tangy ask?")
+    return WhyDialog(workspace, why_of(workspace, policy, situation), title="Why does Tangy ask?")

@@ -15,9 +15,9 @@ from rich.text import Text
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, leading, probability_best
 from tangy_profiles.reading import plain
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.learning.comparison import Row
+from tangy_tui.learning.comparison import PolicyRow
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
@@ -101,7 +101,7 @@ def print_demonstrations(rows: Sequence[ListRow]) -> None:
     console.print(table)
 
 
-def print_comparison(activity: Activity, a: Policy, b: Policy, rows: Sequence[Row]) -> None:
+def print_comparison(activity: Activity, a: Policy, b: Policy, rows: Sequence[PolicyRow]) -> None:
     """Print two policies side by side, and mark the rows that differ."""
     console = Console(highlight=False)
     table = _table("", "", "situation", plain(a.name), plain(b.name))
@@ -122,34 +122,34 @@ def _does(decision: Decision, also: Sequence[str] = ()) -> str:
     return f"asks ({why})"
 
 
-def print_tally(house: House, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:
+def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Beliefs]) -> None:
     """Print the rows of Table II for the games that were played, and the beliefs after them."""
     console = Console(highlight=False)
     table = _table(
         f"{counted(tally.games, 'game')}, {counted(tally.steps, 'behaviour')}",
         "situation", "behaviour", "instances", "success",
     )  # fmt: skip
-    for row in tally.rows(house.activity.situations):
+    for row in tally.rows(workspace.activity.situations):
         table.add_row(
-            house.activity.in_words(row.situation),
+            workspace.activity.in_words(row.situation),
             row.behaviour,
             str(row.instances),
             f"{row.success:.1%}",
         )
     console.print(table)
-    console.print(_people_table(house, beliefs))
+    console.print(_people_table(workspace, beliefs))
     for reason, times in sorted(Counter(reason for _, reason in tally.stopped).items()):
         console.print(Text(f"{counted(times, 'game')} stopped: {reason}"))
 
 
-def _people_table(house: House, beliefs: Mapping[str, Beliefs]) -> Table:
-    strategies = tuple(house.activity.strategies)
+def _people_table(workspace: Workspace, beliefs: Mapping[str, Beliefs]) -> Table:
+    strategies = tuple(workspace.activity.strategies)
     table = _table("Complied, of times tried (P(best))", "person", *strategies)
     for person, profile in beliefs.items():
         best = probability_best(profile)
         leads = leading(best)
         table.add_row(
-            Text(house.name(person)),
+            Text(workspace.name(person)),
             *(
                 Text(
                     f"{profile[s].complied}/{profile[s].trials} ({best[s]:.2f})"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.live_games import play_live
@@ -14,23 +14,23 @@ from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.camera_hub import Sensors
+    from tangy_hw.perception.camera_hub import CameraHub
     from tangy_tui.app.robot_opening import Opening
     from tangy_tui.learning.policy import Policy
-    from tangy_tui.learning.teaching_session import Teaching
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.learning.teaching_session import TeachingSession
+    from tangy_tui.speech.input import SpeechInput
 
 
-def run_program(house: House, *, ascii_only: bool, voice: bool = False) -> int:
+def run_program(workspace: Workspace, *, ascii_only: bool, voice: bool = False) -> int:
     """Open the program at its first screen; return the exit status."""
-    return _run(house, None, ascii_only, voice=voice)
+    return _run(workspace, None, ascii_only, voice=voice)
 
 
 def run_teaching(
-    house: House,
-    teaching: Teaching,
+    workspace: Workspace,
+    teaching: TeachingSession,
     *,
-    ears: Ears | None,
+    ears: SpeechInput | None,
     resume: bool,
     games: int,
     speed: float | None,
@@ -49,18 +49,20 @@ def run_teaching(
 
         pace = speed if teaching.teacher == SCRIPTED else None
         for number in range(games if pace else 1):
-            screen = TeachScreen(house, teaching, resume=resume, another=number > 0, scripted=pace)
+            screen = TeachScreen(
+                workspace, teaching, resume=resume, another=number > 0, scripted=pace
+            )
             complete = await program.push_screen_wait(screen)
             if pace and not complete:
                 break
         if pace:
             program.leave()
 
-    return _run(house, start, ascii_only, ears, voice=voice)
+    return _run(workspace, start, ascii_only, ears, voice=voice)
 
 
 def run_playing(
-    house: House,
+    workspace: Workspace,
     *,
     games: int,
     speed: float | None,
@@ -70,8 +72,8 @@ def run_playing(
     injections: Sequence[str] = (),
     ascii_only: bool,
     voice: bool = False,
-    ears: Ears | None = None,
-    sensors: Sensors | None = None,
+    ears: SpeechInput | None = None,
+    sensors: CameraHub | None = None,
 ) -> int:
     """Open the playing screen; return the exit status.
 
@@ -80,7 +82,7 @@ def run_playing(
     Where Tangy asks, answers are heard through the ears, if there are any.
     """
     return _run(
-        house,
+        workspace,
         lambda program: program.play(games, speed, seed, policy, teacher, injections),
         ascii_only,
         ears,
@@ -91,7 +93,7 @@ def run_playing(
 
 
 def run_live(
-    house: House,
+    workspace: Workspace,
     opening: Opening,
     policy: Policy,
     *,
@@ -99,7 +101,7 @@ def run_live(
     seed: int,
     teacher: str,
     ascii_only: bool,
-    ears: Ears | None = None,
+    ears: SpeechInput | None = None,
 ) -> int:
     """Switch the robot on, play on the live screen, and end with it; return the exit status.
 
@@ -110,45 +112,49 @@ def run_live(
         await play_live(program, opening, policy, games=games, seed=seed, teacher=teacher)
         program.leave()
 
-    return _run(house, start, ascii_only, ears)
+    return _run(workspace, start, ascii_only, ears)
 
 
-def run_drill(house: House, *, rounds: int, seed: int | None, who: str, ascii_only: bool) -> int:
+def run_drill(
+    workspace: Workspace, *, rounds: int, seed: int | None, who: str, ascii_only: bool
+) -> int:
     """Open the screen on which faults are rehearsed; return the exit status."""
-    return _run(house, lambda program: program.drill(rounds, seed, who), ascii_only)
+    return _run(workspace, lambda program: program.drill(rounds, seed, who), ascii_only)
 
 
-def run_sensors(house: House, sensors: Sensors, *, ascii_only: bool) -> int:
+def run_sensors(workspace: Workspace, sensors: CameraHub, *, ascii_only: bool) -> int:
     """Open the screen of devices and cameras, and end with it; return the exit status."""
 
     async def start(program: Program) -> None:
         await program.sensors()
         program.leave()
 
-    return _run(house, start, ascii_only, sensors=sensors)
+    return _run(workspace, start, ascii_only, sensors=sensors)
 
 
-def run_demo(house: House, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
+def run_demo(workspace: Workspace, *, seed: int, ascii_only: bool, voice: bool = False) -> int:
     """Tell the whole story in the program; return the exit status."""
 
     async def start(program: Program) -> None:
         await tell_story(program, seed)
         program.leave()
 
-    return _run(house, start, ascii_only, voice=voice)
+    return _run(workspace, start, ascii_only, voice=voice)
 
 
 def _run(
-    house: House,
+    workspace: Workspace,
     start: Start | None,
     ascii_only: bool,
-    ears: Ears | None = None,
+    ears: SpeechInput | None = None,
     *,
     voice: bool = False,
-    sensors: Sensors | None = None,
+    sensors: CameraHub | None = None,
     live: bool = False,
 ) -> int:
     outlive_terminal()
     kind = terminal_kind(ascii=True if ascii_only else None)
-    program = Program(house, start, kind=kind, ears=ears, voice=voice, sensors=sensors, live=live)
+    program = Program(
+        workspace, start, kind=kind, ears=ears, voice=voice, sensors=sensors, live=live
+    )
     return run_app(program)

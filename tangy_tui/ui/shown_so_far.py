@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, coverage
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 
 
 class ShownSoFar:
     """Counts the situations of a session; the library is read when a game begins, not per step."""
 
-    def __init__(self, house: House, teaching: Teaching) -> None:
-        self._house = house
+    def __init__(self, workspace: Workspace, teaching: TeachingSession) -> None:
+        self._workspace = workspace
         self._teaching = teaching
-        self._before = Coverage(dict.fromkeys(house.activity.situations, 0))
+        self._before = Coverage(dict.fromkeys(workspace.activity.situations, 0))
 
     def begin(self) -> None:
         """Count what was shown before the present game, and is not replaced by it."""
-        activity, present = self._house.activity, self._teaching.demonstration
+        activity, present = self._workspace.activity, self._teaching.demonstration
         replaced = {present.id, *present.of}
-        finished = read_library(self._house.store, activity.name).finished
+        finished = read_library(self._workspace.store, activity.name).finished
         self._before = coverage(activity, [d for d in finished if d.id not in replaced])
 
     def now(self) -> Coverage:
@@ -31,7 +31,7 @@ class ShownSoFar:
 
     def here(self) -> Coverage:
         """Count what was shown in the present game."""
-        return coverage(self._house.activity, [self._teaching.demonstration])
+        return coverage(self._workspace.activity, [self._teaching.demonstration])
 
     def first(self, situation: Situation) -> bool:
         """Say whether the last step is the first one ever in its situation."""

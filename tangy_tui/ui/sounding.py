@@ -16,7 +16,7 @@ from tangy_tui.ui.hearing import Hearing
 from tangy_tui.ui.speaking import OFF, ON, Speaker
 
 if TYPE_CHECKING:
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.speech.input import SpeechInput
 
 
 VOICE = "Voice on or off"
@@ -38,7 +38,7 @@ class SoundingApp(TangyApp):
         first: FirstScreen | None = None,
         *,
         activity: Activity | None = None,
-        ears: Ears | None = None,
+        ears: SpeechInput | None = None,
         voice: bool = False,
         **settings: Any,
     ) -> None:

@@ -15,8 +15,8 @@ from tangy_profiles.voice import VoicePreference
 from tangy_tui.ui.hearing import Hearing
 
 if TYPE_CHECKING:
-    from tangy_hw.audio.voice import Rendered, Voice
-    from tangy_tui.app.workspace import House
+    from tangy_hw.audio.voice import Rendered, SpeechVoice
+    from tangy_tui.app.workspace import Workspace
 
 GAP = 0.15
 """Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""
@@ -26,7 +26,7 @@ OFF = "Tangy does not speak any more: what it says is shown."
 
 
 class CanSpeak(Protocol):
-    """What is used of a `Voice`."""
+    """What is used of a `SpeechVoice`."""
 
     @property
     def speaking(self) -> bool:
@@ -63,20 +63,22 @@ MakeVoice = Callable[[Activity, Callable[[], None], Callable[[], None], Tell], C
 
 def make_voice(
     activity: Activity, begin: Callable[[], None], end: Callable[[], None], tell: Tell
-) -> Voice:
+) -> SpeechVoice:
     """Make a voice with what this machine has; where no sound can come out, that is told."""
-    from tangy_hw.audio.player import Player, PlayerError, open_player
+    from tangy_hw.audio.player import PlayerError, SoundPlayer, open_player
     from tangy_hw.audio.synthesis import Synthesiser
-    from tangy_hw.audio.voice import Voice
+    from tangy_hw.audio.voice import SpeechVoice
 
     synthesiser = Synthesiser()
-    player: Player | None = None
+    player: SoundPlayer | None = None
     try:
         player = open_player()
     except PlayerError as error:
         if not synthesiser.reason:
             tell(f"{error} What Tangy says is shown as text.")
-    return Voice(synthesiser, player, deck=activity.deck, on_begin=begin, on_end=end, tell=tell)
+    return SpeechVoice(
+        synthesiser, player, deck=activity.deck, on_begin=begin, on_end=end, tell=tell
+    )
 
 
 class Speaker:
@@ -210,9 +212,9 @@ def opening_lines(activity: Activity) -> tuple[str, ...]:
     return tuple(dict.fromkeys(lines))
 
 
-def preference_of(house: House, person: str | None) -> VoicePreference:
+def preference_of(workspace: Workspace, person: str | None) -> VoicePreference:
     """Return how somebody likes to be spoken to; of everybody, as usual."""
-    found = (one.voice for one in house.people if one.id == person)
+    found = (one.voice for one in workspace.people if one.id == person)
     return next(found, VoicePreference())
 
 

@@ -8,10 +8,10 @@ from typing import Any
 from textual.screen import Screen
 from textual.widgets import Static
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import Executed, StepUndone
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.text.situations import counted, state_words, step_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -27,11 +27,13 @@ DRIVING_PACE = 4.0
 class TeachingPicture:
     """Puts what happens in a session on the widgets of its screen."""
 
-    def __init__(self, screen: Screen[Any], house: House, teaching: Teaching) -> None:
+    def __init__(
+        self, screen: Screen[Any], workspace: Workspace, teaching: TeachingSession
+    ) -> None:
         self._screen = screen
-        self._house = house
+        self._workspace = workspace
         self._teaching = teaching
-        self._shown = ShownSoFar(house, teaching)
+        self._shown = ShownSoFar(workspace, teaching)
 
     def step(self, event: Executed) -> None:
         """Show a step that was carried out."""
@@ -108,9 +110,9 @@ class TeachingPicture:
         scene = self._teaching.world.scene()
         room.hold(False)
         if came_from != scene.place:
-            stand, people = self._house.room.stand, self._teaching.people
+            stand, people = self._workspace.room.stand, self._teaching.people
             way = stand(came_from, people).distance(stand(scene.place, people))
-            room.drive(scene.place, way / self._house.robot.speed / DRIVING_PACE)
+            room.drive(scene.place, way / self._workspace.robot.speed / DRIVING_PACE)
         room.show(scene)
 
     def _coverage(self, found: Coverage) -> None:

@@ -11,12 +11,12 @@ import typer
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Users, print_json
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.robot import Robot
-    from tangy_tui.speech.activity_check import Checked
+    from tangy_tui.speech.activity_check import CheckedFile
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -109,8 +109,8 @@ def activity_phrases(
     """Show the phrasebook: what can be said for what, and how every word is said."""
     from tangy_tui.speech.phrase_list import list_phrases
 
-    with open_house(data, activity, users, write=False) as house:
-        listed = list_phrases(house.activity, house.people)
+    with open_workspace(data, activity, users, write=False) as workspace:
+        listed = list_phrases(workspace.activity, workspace.people)
     if as_json:
         print_json(listed.to_json())
     else:
@@ -157,16 +157,16 @@ def _holds_faults(file: str) -> bool:
         return False
 
 
-def _check(name: str, robot: Robot) -> tuple[Checked, Activity | None]:
+def _check(name: str, robot: Robot) -> tuple[CheckedFile, Activity | None]:
     from tangy_profiles.activity import load_activity
     from tangy_profiles.person import load_people
     from tangy_profiles.room import load_room
-    from tangy_tui.speech.activity_check import Checked, check_activity
+    from tangy_tui.speech.activity_check import CheckedFile, check_activity
 
     try:
         activity = load_activity(name)
     except ProfileError as error:
-        return Checked(plain(Path(name).name), (str(error),)), None
+        return CheckedFile(plain(Path(name).name), (str(error),)), None
     return check_activity(activity, robot, load_room().placed(load_people(SHOWN))), activity
 
 
@@ -182,7 +182,7 @@ def _activity_document(name: str, activity: Activity) -> dict[str, Any]:
     }
 
 
-def _checked_document(checked: Checked, activity: Activity | None) -> dict[str, Any]:
+def _checked_document(checked: CheckedFile, activity: Activity | None) -> dict[str, Any]:
     told = {} if activity is None else _activity_document(activity.name, activity)
     return {
         **told,

@@ -121,10 +121,10 @@ def _draw(activity: Activity, cards: Sequence[int], seed: int, dpi: float, folde
     """Write a picture of each card, and `cards.json` that says what stands where on it."""
     from PIL import Image
 
-    from tangy_profiles.card_face import Face, rows_of
+    from tangy_profiles.card_face import CardLayout, rows_of
     from tangy_profiles.card_picture import draw_face
 
-    face = Face(activity.deck)
+    face = CardLayout(activity.deck)
     scale = dpi / 25.4
     grid = [face.grid.left, face.grid.top, face.grid.right, face.grid.bottom]
     listed = []

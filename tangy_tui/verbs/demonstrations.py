@@ -11,11 +11,11 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.conflicts import Conflict
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import Edit
@@ -38,8 +38,8 @@ def list_them(
     from tangy_tui.learning.library import read_library
     from tangy_tui.ui import reports
 
-    with open_house(data, activity, 4, write=False) as house:
-        rows = list_rows(house.activity, read_library(house.store, house.activity.name))
+    with open_workspace(data, activity, 4, write=False) as workspace:
+        rows = list_rows(workspace.activity, read_library(workspace.store, workspace.activity.name))
         if as_json:
             print_json([row.to_json() for row in rows])
         else:
@@ -59,8 +59,8 @@ def show(
     from tangy_tui.text.documents import demonstration_document
     from tangy_tui.text.situations import step_words
 
-    with open_house(data, activity, 8, write=False) as house:
-        library = read_library(house.store, house.activity.name)
+    with open_workspace(data, activity, 8, write=False) as workspace:
+        library = read_library(workspace.store, workspace.activity.name)
         entry = library.find(demonstration)
         shown = entry.demonstration
         if as_json:
@@ -71,7 +71,9 @@ def show(
             wrong = any(said.sets_aside(step) for said in library.resolutions)
             failed = "" if step.completed else " (could not be done)"
             note = " (a teacher called it wrong)" if wrong else failed
-            print(plain(f"{number:4}. {step_words(house.activity, step, house.name)}{note}"))
+            print(
+                plain(f"{number:4}. {step_words(workspace.activity, step, workspace.name)}{note}")
+            )
 
 
 @app.command()
@@ -152,14 +154,14 @@ def conflicts(
     from tangy_tui.text.documents import conflict_document
     from tangy_tui.text.situations import conflict_lines
 
-    with open_house(data, activity, 4, write=False) as house:
-        library = read_library(house.store, house.activity.name)
+    with open_workspace(data, activity, 4, write=False) as workspace:
+        library = read_library(workspace.store, workspace.activity.name)
         found = library.all_conflicts if unfinished else library.conflicts
         if as_json:
-            print_json([conflict_document(house, c) for c in found])
+            print_json([conflict_document(workspace, c) for c in found])
             return
         for number, conflict in enumerate(found, 1):
-            first, *rest = conflict_lines(house.activity, library, conflict)
+            first, *rest = conflict_lines(workspace.activity, library, conflict)
             print(f"Conflict {number}. {first}")
             for line in rest:
                 print(line)
@@ -234,13 +236,13 @@ def _change(
     from tangy_tui.learning.editing import Editor
     from tangy_tui.text.situations import counted
 
-    with open_house(data, activity, 4) as house:
-        editor = Editor(house.store, house.activity)
+    with open_workspace(data, activity, 4) as workspace:
+        editor = Editor(workspace.store, workspace.activity)
         edit = change(editor)
         if as_json:
             print_json(_edit_document(edit))
             return
-        print(plain(f"{before}{_edit_words(house, editor, edit)}"))
+        print(plain(f"{before}{_edit_words(workspace, editor, edit)}"))
         if not before:
             print("`tangy demonstrations undo` takes it back.")
         if edit.what == "resolve":
@@ -253,10 +255,10 @@ def _edit_document(edit: Edit) -> dict[str, Any]:
     return {"edit": edit.seq, "at": edit.at, **body}
 
 
-def _edit_words(house: House, editor: Editor, edit: Edit) -> str:
+def _edit_words(workspace: Workspace, editor: Editor, edit: Edit) -> str:
     from tangy_tui.text.situations import edit_words
 
-    return edit_words(house.activity, editor.library, edit)
+    return edit_words(workspace.activity, editor.library, edit)
 
 
 @app.command()
@@ -275,11 +277,11 @@ def accepted(
     from tangy_tui.monitoring.telling import mismatch_words
     from tangy_tui.ui.local_time import local_time
 
-    with open_house(data, activity, 4, write=take_back is not None) as house:
-        name = house.activity.name
+    with open_workspace(data, activity, 4, write=take_back is not None) as workspace:
+        name = workspace.activity.name
         if take_back is not None:
-            take_it_back(house.store, name, take_back)
-        there = read_accepted(house.store, name)
+            take_it_back(workspace.store, name, take_back)
+        there = read_accepted(workspace.store, name)
         words = ["; ".join(map(mismatch_words, one.mismatches)) for one in there]
         if as_json:
             print_json(

@@ -17,7 +17,7 @@ from tangy_tui.verbs.common import (
     print_json,
     print_line,
 )
-from tangy_tui.verbs.opening import full_screen, open_house, say_notices
+from tangy_tui.verbs.opening import full_screen, open_workspace, say_notices
 
 
 def drill(
@@ -40,7 +40,7 @@ def drill(
     from tangy_tui.app.workspace import teacher_name
 
     name = teacher_name() if who is None else read_name(who, "--who: a name")
-    with open_house(data, activity, users, write=not scores) as house:
+    with open_workspace(data, activity, users, write=not scores) as workspace:
         if scores:
             from tangy_tui.console.drills import sheets_lines
             from tangy_tui.monitoring.drill_sheet import read_sheets
@@ -48,17 +48,17 @@ def drill(
 
             only = "" if who is None else name
             if as_json:
-                sheets = read_sheets(house.store, only)
+                sheets = read_sheets(workspace.store, only)
                 print_json([{"at": sheet.at, **sheet.to_json()} for sheet in sheets])
             else:
-                for line in sheets_lines(read_sheets(house.store), local_time, only):
+                for line in sheets_lines(read_sheets(workspace.store), local_time, only):
                     print_line(line)
             return
         if not (plain_lines or as_json) and full_screen():
             from tangy_tui.ui.run import run_drill
 
             raise typer.Exit(
-                run_drill(house, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
+                run_drill(workspace, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
             )
         from tangy_tui.console.drills import drill_by_lines, left_words
         from tangy_tui.console.inputs import line_reader
@@ -67,10 +67,10 @@ def drill(
         if not as_json:
             print_line("Tangy is preparing the drill ...")
         made = Drill.of(
-            house.activity,
-            house.robot,
-            house.names,
-            house.store,
+            workspace.activity,
+            workspace.robot,
+            workspace.names,
+            workspace.store,
             who=name,
             seed=seed,
             rounds=rounds,

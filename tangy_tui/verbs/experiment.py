@@ -74,9 +74,9 @@ def second(
     as_json: Json = False,
 ) -> None:
     """Persuade: optimal strategies over interactions, and every way to choose one."""
-    from tangy_tui.experiments.scenarios import Persuading, persuasion
+    from tangy_tui.experiments.scenarios import PersuasionScenario, persuasion
 
-    asked = Persuading(activity, users, people, seed)
+    asked = PersuasionScenario(activity, users, people, seed)
     _run(lambda where: persuasion(asked, where), data, jobs, dask, fresh, report, as_json)
 
 

@@ -16,14 +16,14 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_source import CameraSource
-    from tangy_hw.perception.faces.gallery import Gallery, Match
-    from tangy_hw.perception.faces.reader import Face, FaceReader
+    from tangy_hw.perception.faces.gallery import FaceMatch, Gallery
+    from tangy_hw.perception.faces.reader import FaceReader, FaceReading
     from tangy_hw.perception.pictures import Picture
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -67,8 +67,8 @@ def faces_who(
     found = None if source is None else find_camera(source)
     if source is not None and found is not None and not found.live:
         found = find_camera(source, each=True)
-    with knowing(data, robot) as (house, reader, gallery):
-        names = names_of(house)
+    with knowing(data, robot) as (workspace, reader, gallery):
+        names = names_of(workspace)
         if not gallery.people:
             print("tangy: Nobody's face is known yet: tangy faces enrol NAME.", file=sys.stderr)
         if found is not None:
@@ -96,17 +96,17 @@ def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> N
     """List whose faces are known, and who agreed to it how."""
     from tangy_hw.perception.faces.face_store import CONSENT, consented, kept_faces, read_face
 
-    with open_house(data, "bingo", MOST_PEOPLE, write=False) as house:
-        names, agreed = names_of(house), consented(house.store)
+    with open_workspace(data, "bingo", MOST_PEOPLE, write=False) as workspace:
+        names, agreed = names_of(workspace), consented(workspace.store)
         how = {
             event.person: event
-            for event in house.store.events(CONSENT)
+            for event in workspace.store.events(CONSENT)
             if event.body.get("yes") is True
         }
         rows: list[dict[str, Any]] = []
-        for person, kind in kept_faces(house.store):
+        for person, kind in kept_faces(workspace.store):
             if person in agreed:
-                pictures = read_face(house.store, person, kind)
+                pictures = read_face(workspace.store, person, kind)
                 rows.append(
                     {
                         "id": person,
@@ -142,9 +142,9 @@ def faces_forget(
     """Forget a person's face, and that they agreed; the rest of what is known of them stays."""
     from tangy_hw.perception.faces.face_store import forget_face
 
-    with open_house(data, "bingo", MOST_PEOPLE) as house:
-        known = find_anybody(house, person)
-        forgotten = forget_face(house.store, known.id)
+    with open_workspace(data, "bingo", MOST_PEOPLE) as workspace:
+        known = find_anybody(workspace, person)
+        forgotten = forget_face(workspace.store, known.id)
         if as_json:
             print_json({"id": known.id, "name": known.name, "forgotten": forgotten})
         elif forgotten:
@@ -156,39 +156,41 @@ def faces_forget(
 @contextmanager
 def knowing(
     data: Path | None, robot: str, *, write: bool = False
-) -> Iterator[tuple[House, FaceReader, Gallery]]:
-    """Open the house, the reader of faces that the robot has, and the faces that are known."""
+) -> Iterator[tuple[Workspace, FaceReader, Gallery]]:
+    """Open the workspace, the reader of faces that the robot has, and the faces that are known."""
     from tangy_hw.perception.faces.face_store import read_faces
     from tangy_hw.perception.faces.gallery import Gallery
     from tangy_hw.perception.faces.reader import open_reader
     from tangy_profiles.robot import load_robot
 
     reader = open_reader(load_robot(robot).faces)
-    with open_house(data, "bingo", MOST_PEOPLE, write=write) as house:
-        yield house, reader, Gallery(read_faces(house.store, reader.kind))
+    with open_workspace(data, "bingo", MOST_PEOPLE, write=write) as workspace:
+        yield workspace, reader, Gallery(read_faces(workspace.store, reader.kind))
 
 
-def names_of(house: House) -> dict[str, str]:
+def names_of(workspace: Workspace) -> dict[str, str]:
     """Return the names of all who may be known by their faces, by id."""
-    return house.store.names() | house.names
+    return workspace.store.names() | workspace.names
 
 
-def find_anybody(house: House, wanted: str) -> Person:
+def find_anybody(workspace: Workspace, wanted: str) -> Person:
     """Return somebody who plays, or a guest whose face is known, by id or name.
 
     Raises:
         TangyError: nobody, or more than one, is called that.
     """
-    guests = [Person(id, name) for id, name in house.store.names().items() if id.startswith(GUEST)]
+    guests = [
+        Person(id, name) for id, name in workspace.store.names().items() if id.startswith(GUEST)
+    ]
     found = [guest for guest in guests if guest.id == wanted] or [
         guest for guest in guests if folded(guest.name) == folded(wanted)
     ]
-    if len(found) == 1 and not any(folded(p.name) == folded(wanted) for p in house.people):
+    if len(found) == 1 and not any(folded(p.name) == folded(wanted) for p in workspace.people):
         return found[0]
-    return house.find_person(wanted)
+    return workspace.find_person(wanted)
 
 
-def _row(faces: list[Face], gallery: Gallery) -> dict[str, Any]:
+def _row(faces: list[FaceReading], gallery: Gallery) -> dict[str, Any]:
     """Say of a picture whose faces are in it; the first that can be told stands for it."""
     matches = [None if face.vector is None else gallery.compare(face.vector) for face in faces]
     told = [_face_row(face, match) for face, match in zip(faces, matches, strict=True)]
@@ -200,7 +202,7 @@ def _row(faces: list[Face], gallery: Gallery) -> dict[str, Any]:
     return {**chief, "threshold": _enough(), "faces": told}
 
 
-def _face_row(face: Face | None, match: Match | None) -> dict[str, Any]:
+def _face_row(face: FaceReading | None, match: FaceMatch | None) -> dict[str, Any]:
     return {
         "person": match.person if match else None,
         "likeness": round(match.likeness, 4) if match else None,
@@ -218,7 +220,7 @@ def _enough() -> float:
     return ENOUGH
 
 
-def _voted(pictures: list[list[Face]], gallery: Gallery) -> dict[str, Any]:
+def _voted(pictures: list[list[FaceReading]], gallery: Gallery) -> dict[str, Any]:
     """Let the frames vote that show one face well."""
     from tangy_hw.perception.faces.enrolment import one_face
     from tangy_hw.perception.faces.face_votes import vote
@@ -251,7 +253,7 @@ async def _watch(
     from tangy_hw.perception.faces.enrolment import one_face
     from tangy_hw.perception.faces.face_votes import FRAMES
 
-    pictures: list[list[Face]] = []
+    pictures: list[list[FaceReading]] = []
     well = 0
     ends = time.monotonic() + seconds
     async with Camera(source) as camera:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tangy_hw.perception.faces.enrolment import Enrolment
     from tangy_hw.perception.faces.gallery import Gallery
     from tangy_profiles.store import Store
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
 
 EVERY = 0.4  # seconds between two pictures of a camera: the head has moved
 Tell = Callable[[str], None]
@@ -71,14 +71,14 @@ def faces_enrol(
     if not found.live:
         found = find_camera(source, each=True)
     tell: Tell = (lambda _: None) if as_json else (lambda line: print(plain(line), flush=True))
-    with knowing(data, robot, write=True) as (house, reader, gallery):
-        person, new = _find(house, name)
-        agreed = _agreed(house, person, consent)
+    with knowing(data, robot, write=True) as (workspace, reader, gallery):
+        person, new = _find(workspace, name)
+        agreed = _agreed(workspace, person, consent)
         if agreed is None:
             raise TangyError(plain(f"{person.name} has not agreed: nothing is kept."))
         enrolment = Enrolment(reader)
         if add:
-            enrolment.take(read_face(house.store, person.id, reader.kind))
+            enrolment.take(read_face(workspace.store, person.id, reader.kind))
         if found.kind == "folder":
             rows = _from_pictures(Path(source), enrolment, tell)
         else:
@@ -96,8 +96,8 @@ def faces_enrol(
             )
         _check_same(enrolment, gallery, person)
         if agreed:
-            _note(house.store, person, new, agreed)
-        keep_face(house.store, person.id, reader.kind, enrolment.vectors())
+            _note(workspace.store, person, new, agreed)
+        keep_face(workspace.store, person.id, reader.kind, enrolment.vectors())
         several = enrolment.several()
         like = _like_another(enrolment, gallery, person)
         if as_json:
@@ -114,27 +114,27 @@ def faces_enrol(
                 f"{person.id}` deletes what was kept."
             )
         if like is not None:
-            tell(f"They look like those of {house.store.names().get(like, like)} ({like}).")
+            tell(f"They look like those of {workspace.store.names().get(like, like)} ({like}).")
 
 
-def _find(house: House, wanted: str) -> tuple[Person, bool]:
+def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
     """Find who is meant, or make a guest of somebody who is new; say whether they are."""
     from tangy_hw.perception.faces.face_store import CONSENT
 
     called = wanted.strip()
     if folded(called) == FRONT:
         raise TangyError(plain(f"{called!r} is a place: choose another name."))
-    players = [p for p in house.people if folded(called) in (p.id, folded(p.name))]
-    names = house.store.names()
+    players = [p for p in workspace.people if folded(called) in (p.id, folded(p.name))]
+    names = workspace.store.names()
     guests = [i for i in names if i.startswith(GUEST)]
     if players or called in guests or folded(called) in {folded(names[i]) for i in guests}:
-        return find_anybody(house, called), False
-    ids = {*names, *(event.person or "" for event in house.store.events(CONSENT))}
+        return find_anybody(workspace, called), False
+    ids = {*names, *(event.person or "" for event in workspace.store.events(CONSENT))}
     numbers = [int(i.removeprefix(GUEST)) for i in ids if re.fullmatch(rf"{GUEST}\d{{1,9}}", i)]
     return Person(f"{GUEST}{max(numbers, default=0) + 1}", called), True
 
 
-def _agreed(house: House, person: Person, how: str | None) -> str | None:
+def _agreed(workspace: Workspace, person: Person, how: str | None) -> str | None:
     """Ask the person, unless they have agreed before, or somebody says how they did.
 
     Returns:
@@ -142,7 +142,7 @@ def _agreed(house: House, person: Person, how: str | None) -> str | None:
     """
     from tangy_hw.perception.faces.face_store import consent, consented
 
-    store = house.store
+    store = workspace.store
     if how is not None:
         if not how.strip():
             raise TangyError('--consent: say how they agreed, as in "in writing, asked by staff".')

@@ -13,9 +13,9 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import as_given
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.language.commands import Phrasebook
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.speech.input import SpeechInput
     from tangy_tui.speech.recordings import Recorder
 
 Mic = Annotated[
@@ -61,7 +61,9 @@ class Listening:
         if self.mic is None and (self.hands_free or self.answers or self.mode or self.record):
             raise TangyError("There is nothing to listen to: name a microphone with --mic.")
 
-    def ears(self, house: House, phrasebook: Phrasebook, who: str, *, sound: int) -> Ears | None:
+    def ears(
+        self, workspace: Workspace, phrasebook: Phrasebook, who: str, *, sound: int
+    ) -> SpeechInput | None:
         """Open the ears, if any are wanted; `sound` is the descriptor that - stands for.
 
         Raises:
@@ -70,40 +72,42 @@ class Listening:
         if self.mic is None:
             return None
         from tangy_tui.speech.calibration import settings_for
-        from tangy_tui.speech.input import Ears
+        from tangy_tui.speech.input import SpeechInput
 
-        return Ears(
+        return SpeechInput(
             self.mic,
             phrasebook,
-            settings=settings_for(house.store, self.mic, self.mode or house.activity.listening),
-            recorder=_recorder(house, who) if self.record else None,
+            settings=settings_for(
+                workspace.store, self.mic, self.mode or workspace.activity.listening
+            ),
+            recorder=_recorder(workspace, who) if self.record else None,
             hands_free=self.hands_free,
             answers=self.answers,
             stdin=sound,
-            folder=house.store.folder,
+            folder=workspace.store.folder,
         )
 
 
-def _recorder(house: House, teacher: str) -> Recorder | None:
+def _recorder(workspace: Workspace, teacher: str) -> Recorder | None:
     """Record a teacher who agrees; nothing is recorded without a yes."""
     from tangy_tui.speech.recordings import Recorder, consent, consent_question, consented
 
-    if not consented(house.store, teacher):
+    if not consented(workspace.store, teacher):
         if not sys.stdin.isatty():
             raise TangyError(
                 "--record: say yes to it once on a terminal; nothing is recorded before."
             )
-        question = consent_question(house.store, _options(house))
+        question = consent_question(workspace.store, _options(workspace))
         yes = typer.confirm(plain(question), default=False, err=True)
-        consent(house.store, teacher, yes)
+        consent(workspace.store, teacher, yes)
         if not yes:
             return None
-    return Recorder(house.store.folder, teacher)
+    return Recorder(workspace.store.folder, teacher)
 
 
-def _options(house: House) -> str:
+def _options(workspace: Workspace) -> str:
     """Return the options with which another command means the same data folder."""
     from tangy_tui.app.workspace import data_folder
 
-    folder = house.store.folder
+    folder = workspace.store.folder
     return as_given(None if folder == data_folder(None) else folder)

@@ -11,12 +11,12 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
-from tangy_tui.verbs.opening import open_house, say_notices
+from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policies import Change
     from tangy_tui.learning.policy import Policy
 
@@ -56,10 +56,10 @@ def learn(
     if forest not in FORESTS:
         raise TangyError(f"--forest {plain(forest)}: {nearest(forest, FORESTS)}")
     check_name(name)
-    with open_house(data, activity, 4) as house:
+    with open_workspace(data, activity, 4) as workspace:
         if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
-            _settle_conflicts(house)
-        library = read_library(house.store, house.activity.name)
+            _settle_conflicts(workspace)
+        library = read_library(workspace.store, workspace.activity.name)
         shown = library.demonstrations
         if teacher is not None:
             shown = _of_teacher(shown, teacher)
@@ -67,27 +67,27 @@ def learn(
         left_out = [d for d in shown if d.steps and d not in used]
         if left_out and not used:
             raise TangyError(_only_unfinished(left_out))
-        before = last_policy(house.store, house.activity.name)
+        before = last_policy(workspace.store, workspace.activity.name)
         policy = learn_policy(
-            house.activity,
+            workspace.activity,
             used,
             resolutions=library.resolutions,
             settings=replace(FORESTS[forest], seed=seed),
             name=plain(name)[:40],
-            grow=ForestCache(house.store.folder).afresh,
+            grow=ForestCache(workspace.store.folder).afresh,
         )
-        policy = unused_name(house.store, policy)
-        keep_policy(house.store, policy)
+        policy = unused_name(workspace.store, policy)
+        keep_policy(workspace.store, policy)
         steps = sum(len(d.steps) for d in used)
         changed = [] if before is None else changes(before, policy)
         if as_json:
-            found = policy_document(house, policy)
+            found = policy_document(workspace, policy)
             told = [[list(c.situation), c.before, c.after] for c in changed]
             more = {"steps": steps, "left_out": len(left_out), "changed": told}
             print_json({**found, **more})
         else:
-            _tell_learnt(house, policy, steps, len(left_out))
-            _tell_changed(house, before, changed)
+            _tell_learnt(workspace, policy, steps, len(left_out))
+            _tell_changed(workspace, before, changed)
 
 
 def policy(
@@ -108,30 +108,30 @@ def policy(
     as_json: Json = False,
 ) -> None:
     """Show what was learnt: every situation, what Tangy does there, and why; or compare two."""
-    with open_house(data, activity, 4, write=False) as house:
+    with open_workspace(data, activity, 4, write=False) as workspace:
         if list_all:
-            _list_policies(house, as_json)
+            _list_policies(workspace, as_json)
         elif compare is not None:
-            _compare(house, *compare, as_json)
+            _compare(workspace, *compare, as_json)
         elif why is not None:
-            _why(house, name, why, as_json)
+            _why(workspace, name, why, as_json)
         else:
-            _show(house, name, as_json)
+            _show(workspace, name, as_json)
 
 
 # ------------------------------------------------------------------------------------ learning
 
 
-def _settle_conflicts(house: House) -> None:
+def _settle_conflicts(workspace: Workspace) -> None:
     """Put each conflict to the person at the terminal, before anything is learnt."""
     from tangy_tui.learning.editing import Editor
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.situations import conflict_lines
 
-    library = read_library(house.store, house.activity.name)
-    editor = Editor(house.store, house.activity)
+    library = read_library(workspace.store, workspace.activity.name)
+    editor = Editor(workspace.store, workspace.activity)
     for conflict in library.conflicts:
-        for line in conflict_lines(house.activity, library, conflict):
+        for line in conflict_lines(workspace.activity, library, conflict):
             print(line)
         answers = list(conflict.answers)
         while True:
@@ -173,11 +173,11 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
     return [d for d in shown if d.teacher == teacher]
 
 
-def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> None:
+def _tell_learnt(workspace: Workspace, policy: Policy, steps: int, left_out: int) -> None:
     from tangy_tui.learning.coverage import NOT_SHOWN
     from tangy_tui.text.situations import counted
 
-    activity = house.activity
+    activity = workspace.activity
     unseen = [s for s in activity.situations if not policy.decide(s).seen]
     contested = [s for s in activity.situations if policy.decide(s).contested]
     seen = len(activity.situations) - len(unseen)
@@ -206,7 +206,7 @@ def _tell_learnt(house: House, policy: Policy, steps: int, left_out: int) -> Non
 
 
 def _tell_changed(
-    house: House, before: Mapping[str, Any] | None, changed: Sequence[Change]
+    workspace: Workspace, before: Mapping[str, Any] | None, changed: Sequence[Change]
 ) -> None:
     """Say what the new policy does otherwise than the one before."""
     if before is None:
@@ -217,42 +217,42 @@ def _tell_changed(
         return
     print(f"Otherwise than {name!r} before it:")
     for change in changed:
-        where = house.activity.in_words(change.situation)
+        where = workspace.activity.in_words(change.situation)
         print(f"  {where}: was {change.before}, is now {change.after}")
 
 
 # ------------------------------------------------------------------------------------- showing
 
 
-def _find(house: House, name: str) -> Policy:
+def _find(workspace: Workspace, name: str) -> Policy:
     from tangy_tui.learning.comparison import find_policy
     from tangy_tui.learning.policies import need_policy
 
-    need_policy(house.store, house.activity)
-    found, notices = find_policy(house.store, house.activity, name)
+    need_policy(workspace.store, workspace.activity)
+    found, notices = find_policy(workspace.store, workspace.activity, name)
     say_notices(notices)
     return found
 
 
-def _show(house: House, name: str, as_json: bool) -> None:
+def _show(workspace: Workspace, name: str, as_json: bool) -> None:
     from tangy_tui.learning.library import effects_of, read_library
     from tangy_tui.text.documents import policy_document
     from tangy_tui.ui import reports
 
-    learnt = _find(house, name)
+    learnt = _find(workspace, name)
     if as_json:
-        print_json(policy_document(house, learnt))
+        print_json(policy_document(workspace, learnt))
         return
-    library = read_library(house.store, house.activity.name)
-    effects = effects_of(house.store, house.activity, learnt)
-    reports.print_policy(house.activity, learnt, effects, library)
+    library = read_library(workspace.store, workspace.activity.name)
+    effects = effects_of(workspace.store, workspace.activity, learnt)
+    reports.print_policy(workspace.activity, learnt, effects, library)
 
 
-def _list_policies(house: House, as_json: bool) -> None:
+def _list_policies(workspace: Workspace, as_json: bool) -> None:
     from tangy_tui.learning.policies import kept_policies
     from tangy_tui.ui import reports
 
-    kept = kept_policies(house.store, house.activity.name)
+    kept = kept_policies(workspace.store, workspace.activity.name)
     if as_json:
         print_json(
             [
@@ -264,35 +264,35 @@ def _list_policies(house: House, as_json: bool) -> None:
         reports.print_policies(kept)
 
 
-def _compare(house: House, a: str, b: str, as_json: bool) -> None:
+def _compare(workspace: Workspace, a: str, b: str, as_json: bool) -> None:
     from tangy_tui.learning.comparison import compare, find_policy
     from tangy_tui.text.documents import comparison_document
     from tangy_tui.ui import reports
 
-    first, notices = find_policy(house.store, house.activity, a)
-    second, more = find_policy(house.store, house.activity, b)
+    first, notices = find_policy(workspace.store, workspace.activity, a)
+    second, more = find_policy(workspace.store, workspace.activity, b)
     say_notices([*notices, *more])
-    rows = compare(house.activity, first, second)
+    rows = compare(workspace.activity, first, second)
     if as_json:
-        print_json(comparison_document(house, first, second, rows))
+        print_json(comparison_document(workspace, first, second, rows))
     else:
-        reports.print_comparison(house.activity, first, second, rows)
+        reports.print_comparison(workspace.activity, first, second, rows)
 
 
-def _why(house: House, name: str, wanted: str, as_json: bool) -> None:
+def _why(workspace: Workspace, name: str, wanted: str, as_json: bool) -> None:
     from tangy_tui.learning.explanation import explain, shown_words, why_words
     from tangy_tui.learning.library import read_library
     from tangy_tui.text.documents import why_document
 
-    policy = _find(house, name)
-    library = read_library(house.store, house.activity.name)
-    situation = _situation(house, wanted)
+    policy = _find(workspace, name)
+    library = read_library(workspace.store, workspace.activity.name)
+    situation = _situation(workspace, wanted)
     shown = [entry.demonstration for entry in library.entries.values()]
     why = explain(policy, shown, situation)
     if as_json:
-        print_json(why_document(house, why))
+        print_json(why_document(workspace, why))
         return
-    for sentence in why_words(house.activity, why):
+    for sentence in why_words(workspace.activity, why):
         print(sentence)
     for title, steps in (
         ("It rests on", why.rests_on), ("Against it", why.against), ("Nearby", why.near),
@@ -305,9 +305,9 @@ def _why(house: House, name: str, wanted: str, as_json: bool) -> None:
                 print(f"  and {len(steps) - MOST_SHOWN} more (--json has them all)")
 
 
-def _situation(house: House, wanted: str) -> Situation:
+def _situation(workspace: Workspace, wanted: str) -> Situation:
     """Return the situation of a number, of its parts, or of its words."""
-    activity = house.activity
+    activity = workspace.activity
     situations = list(activity.situations)
     if wanted.isdecimal() and 1 <= int(wanted) <= len(situations):
         return situations[int(wanted) - 1]

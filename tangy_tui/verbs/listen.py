@@ -15,12 +15,12 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
-from tangy_tui.verbs.opening import open_house, say_notices
+from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.language.commands import Phrasebook
-    from tangy_tui.speech.evidence import Settings
+    from tangy_tui.speech.evidence import EvidenceSettings
 
 
 def listen(
@@ -58,25 +58,25 @@ def listen(
 
     if bool(files) + (bench is not None) + forget_recordings != 1:
         raise TangyError("Give WAV files, or a folder of them with --bench DIR.")
-    with open_house(data, activity, 4, write=forget_recordings) as house:
+    with open_workspace(data, activity, 4, write=forget_recordings) as workspace:
         if forget_recordings:
-            _forget(house, as_json)
+            _forget(workspace, as_json)
             return
-        settings = settings_for(house.store, mic, mode or house.activity.listening)
-        if mic is not None and not is_checked(house.store, mic):
+        settings = settings_for(workspace.store, mic, mode or workspace.activity.listening)
+        if mic is not None and not is_checked(workspace.store, mic):
             check = f"tangy mic check --mic {shlex.quote(mic)}{as_given(data)}"
             say_notices([f"{mic} was never checked, so the usual settings are used: {check}"])
-        phrasebook = Phrasebook(house.activity, house.people)
+        phrasebook = Phrasebook(workspace.activity, workspace.people)
         if bench is not None:
             _bench(bench, phrasebook, settings, as_json)
         else:
-            _listen(files or [], phrasebook, settings, house.names, as_json)
+            _listen(files or [], phrasebook, settings, workspace.names, as_json)
 
 
 def _listen(
     files: list[Path],
     phrasebook: Phrasebook,
-    settings: Settings,
+    settings: EvidenceSettings,
     names: dict[str, str],
     as_json: bool,
 ) -> None:
@@ -122,7 +122,7 @@ def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
             return "not understood"
 
 
-def _bench(folder: Path, phrasebook: Phrasebook, settings: Settings, as_json: bool) -> None:
+def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_json: bool) -> None:
     from tangy_tui.speech.labels import Labels
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.practice import Practice, practise
@@ -167,17 +167,17 @@ def _progress() -> Iterator[Callable[[int, int], None]]:
         yield lambda done, of: progress.update(bar, completed=done, total=of)
 
 
-def _forget(house: House, as_json: bool) -> None:
+def _forget(workspace: Workspace, as_json: bool) -> None:
     from tangy_tui.speech.recordings import FOLDER, forget_recordings
     from tangy_tui.text.situations import counted
 
-    count, left = forget_recordings(house.store)
+    count, left = forget_recordings(workspace.store)
     if as_json:
         print_json({"deleted": count, "left": left})
         return
     deleted = f"{counted(count, 'recording')} deleted"
     print(f"{deleted}; nothing more is recorded until somebody agrees again.")
     if left:
-        there = plain(str(house.store.folder / FOLDER))
+        there = plain(str(workspace.store.folder / FOLDER))
         files = "1 other file is" if left == 1 else f"{left} other files are"
         print(f"{files} left in {there}.")

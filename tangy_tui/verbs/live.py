@@ -15,7 +15,7 @@ from tangy_profiles.reading import plain
 from tangy_tui.text.situations import counted
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
-from tangy_tui.verbs.opening import full_screen, open_house
+from tangy_tui.verbs.opening import full_screen, open_workspace
 from tangy_tui.verbs.playing import (
     INJECT_HELP,
     SCRIPTED,
@@ -30,7 +30,7 @@ from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
     from tangy_sim.worlds.injection import Injection
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.monitoring.supervision import Event, Supervision
 
 PACE = 30.0  # as in tangy_hw.robot_client.live_world, which is not to be imported here
@@ -128,27 +128,27 @@ def live(
     screen = not (headless or as_json) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
-    with open_house(data, activity, users, robot=robot) as house:
-        need_policy(house.store, house.activity, policy)
-        learnt = recall(house, policy, quiet=as_json)
-        number = house.game_seed(seed)
+    with open_workspace(data, activity, users, robot=robot) as workspace:
+        need_policy(workspace.store, workspace.activity, policy)
+        learnt = recall(workspace, policy, quiet=as_json)
+        number = workspace.game_seed(seed)
         from tangy_tui.app.dealing import read_dealt
         from tangy_tui.app.robot_opening import check_map, opening_of
 
         if map_:
-            check_map(house, map_)
+            check_map(workspace, map_)
         own = {
             "cameras": camera or (), "requests": requests, "corners": read_corners(table),
-            "cards": read_dealt(card or (), house.people),
+            "cards": read_dealt(card or (), workspace.people),
         }  # fmt: skip
         both: dict[str, Any] = {"seed": number, "pace": pace, "map_": map_, "lost": lost}
-        opening = opening_of(house, bench=bench, injections=faults, own=own, **both)
+        opening = opening_of(workspace, bench=bench, injections=faults, own=own, **both)
         if screen:
             from tangy_tui.ui.run import run_live
 
             raise typer.Exit(
                 run_live(
-                    house,
+                    workspace,
                     opening,
                     learnt,
                     games=games,
@@ -156,7 +156,10 @@ def live(
                     teacher=who,
                     ascii_only=ascii_only,
                     ears=listening.ears(
-                        house, Phrasebook(house.activity, house.people), who, sound=sound
+                        workspace,
+                        Phrasebook(workspace.activity, workspace.people),
+                        who,
+                        sound=sound,
                     ),
                 )
             )
@@ -168,8 +171,8 @@ def live(
             if not (as_json or bench) and world.link.tablet:
                 print(plain(world.link.tablet), file=sys.stderr)
             asks = who == SCRIPTED
-            supervision = house.supervision(learnt, number, asks=asks, world=world)
-            to_their_end = _play(house, supervision, games, as_json, expert=bool(expert))
+            supervision = workspace.supervision(learnt, number, asks=asks, world=world)
+            to_their_end = _play(workspace, supervision, games, as_json, expert=bool(expert))
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games did not come to their end
 
@@ -199,13 +202,13 @@ def _listed(given: list[str]) -> tuple[Injection, ...]:
 
 
 def _play(
-    house: House, supervision: Supervision, games: int, as_json: bool, *, expert: bool
+    workspace: Workspace, supervision: Supervision, games: int, as_json: bool, *, expert: bool
 ) -> bool:
     """Play games, tell of them, and return whether all of them came to their end."""
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.ui import reports
 
-    played = LiveGames(house, supervision)
+    played = LiveGames(workspace, supervision)
 
     def tell(events: list[Event]) -> None:
         for line in [] if as_json else played.lines(events):
@@ -218,7 +221,7 @@ def _play(
     if as_json:
         common.print_json(document)
         return to_their_end
-    reports.print_tally(house, played.tally, supervision.persuasion.beliefs)
+    reports.print_tally(workspace, played.tally, supervision.persuasion.beliefs)
     for name in ("reads", "identities"):
         if name in document:
             counts = ", ".join(f"{count} {word}" for word, count in document[name].items())

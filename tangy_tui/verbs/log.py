@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tangy_profiles.activity import Activity
     from tangy_profiles.store import Store
     from tangy_tui.monitoring.games import Game
-    from tangy_tui.monitoring.replay import Moment, Replay
+    from tangy_tui.monitoring.replay import GameReplay, Moment
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -193,7 +193,7 @@ def _say_unknown(games: Sequence[Game], known: dict[str, Activity]) -> None:
     say_notices([unknown_words(name) for name in sorted({g.activity for g in games} - set(known))])
 
 
-def _document(replay: Replay) -> dict[str, Any]:
+def _document(replay: GameReplay) -> dict[str, Any]:
     return {
         **replay.game.to_json(),
         "seconds": replay.seconds if replay.timed else None,

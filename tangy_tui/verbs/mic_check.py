@@ -10,15 +10,15 @@ import typer
 
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
     from tangy_hw.audio.source import Source
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.language.commands import Phrasebook
-    from tangy_tui.speech.calibration import Asked
+    from tangy_tui.speech.calibration import CalibrationPrompt
     from tangy_tui.speech.lexicon import Lexicon
-    from tangy_tui.speech.microphone_check import Checked
+    from tangy_tui.speech.microphone_check import CheckResult
 
 ALONE = 3.0  # s without any sound, after which a check is given up where nobody could help
 
@@ -51,22 +51,22 @@ def check(
     from tangy_tui.speech.calibration import forget as forget_check
     from tangy_tui.speech.calibration import keep
 
-    with open_house(data, activity, 4, write=not listed) as house:
+    with open_workspace(data, activity, 4, write=not listed) as workspace:
         if listed:
-            _list(house, as_json)
+            _list(workspace, as_json)
             return
         if forget:
-            dropped = forget_check(house.store, mic)
+            dropped = forget_check(workspace.store, mic)
             if as_json:
                 print_json({"source": mic, "forgotten": dropped})
             else:
                 print(plain(f"{mic}: {'forgotten' if dropped else 'nothing was stored'}."))
             return
-        source = open_source(mic, folder=house.store.folder)
-        checked = asyncio.run(_run(house, source, as_json))
+        source = open_source(mic, folder=workspace.store.folder)
+        checked = asyncio.run(_run(workspace, source, as_json))
         stored = checked.parted
         if stored:
-            keep(house.store, mic, checked.chosen)
+            keep(workspace.store, mic, checked.chosen)
         if as_json:
             print_json({"source": mic, "stored": stored, **checked.document()})
         else:
@@ -77,11 +77,11 @@ def check(
             raise typer.Exit(1)
 
 
-def _list(house: House, as_json: bool) -> None:
+def _list(workspace: Workspace, as_json: bool) -> None:
     """Print what is to be said."""
     from tangy_tui.speech.microphone_check import numbered
 
-    _, _, asked = _asked(house)
+    _, _, asked = _asked(workspace)
     if as_json:
         print_json([{"say": one.text, "command": one.meant is not None} for one in asked])
         return
@@ -89,18 +89,18 @@ def _list(house: House, as_json: bool) -> None:
         print(plain(line))
 
 
-def _asked(house: House) -> tuple[Phrasebook, Lexicon, list[Asked]]:
+def _asked(workspace: Workspace) -> tuple[Phrasebook, Lexicon, list[CalibrationPrompt]]:
     """Return what can be said, what of it can be heard, and what is to be said."""
     from tangy_tui.language.commands import Phrasebook
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.microphone_check import to_say
 
-    phrasebook = Phrasebook(house.activity, house.people)
+    phrasebook = Phrasebook(workspace.activity, workspace.people)
     lexicon = Lexicon(phrasebook, suggest=lambda word: "")
     return phrasebook, lexicon, to_say(phrasebook, lexicon)
 
 
-async def _run(house: House, source: Source, as_json: bool) -> Checked:
+async def _run(workspace: Workspace, source: Source, as_json: bool) -> CheckResult:
     from tangy_tui.speech.microphone_check import MicrophoneCheck
     from tangy_tui.speech.recogniser import Recogniser
 
@@ -110,7 +110,7 @@ async def _run(house: House, source: Source, as_json: bool) -> Checked:
     def on_stdout(sentence: str) -> None:
         print_line(plain(sentence))
 
-    phrasebook, lexicon, asked = _asked(house)
+    phrasebook, lexicon, asked = _asked(workspace)
     tell = on_stderr if as_json else on_stdout
     recogniser = Recogniser()
     try:
@@ -135,7 +135,7 @@ def _patience(mic: str) -> float:
     return PATIENCE if sys.stderr.isatty() or from_elsewhere else ALONE
 
 
-def _lines(checked: Checked, mic: str) -> list[str]:
+def _lines(checked: CheckResult, mic: str) -> list[str]:
     """Say what came of it."""
     from tangy_tui.speech.evidence import USUAL
     from tangy_tui.speech.loudness import CLEAR, FAIR

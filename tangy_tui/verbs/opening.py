@@ -1,4 +1,4 @@
-"""Opening the house that a verb works in, and the program on its screens; without Typer."""
+"""Opening the workspace that a verb works in, and the program on its screens; without Typer."""
 
 from __future__ import annotations
 
@@ -13,30 +13,32 @@ from tangy_tui.ui.terminal import terminal_kind
 
 if TYPE_CHECKING:
     from tangy_profiles.store import Store
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
 
 MOST_TOLD = 5
 """Events that are named one by one where they were left out."""
 
 
 @contextmanager
-def open_house(
+def open_workspace(
     data: Path | None, activity: str, users: int, *, write: bool = True, robot: str = "tangy"
-) -> Iterator[House]:
-    """Open the house on a data folder, say what its store has noticed, and close it afterwards.
+) -> Iterator[Workspace]:
+    """Open the workspace on a data folder, say what its store has noticed, and close it afterwards.
 
     Raises:
         TangyError: where the folder, the activity or the robot cannot be read.
     """
-    from tangy_tui.app.workspace import House, data_folder
+    from tangy_tui.app.workspace import Workspace, data_folder
 
-    house = House(data_folder(data), activity=activity, users=users, write=write, robot=robot)
+    workspace = Workspace(
+        data_folder(data), activity=activity, users=users, write=write, robot=robot
+    )
     try:
-        say_notices(house.store.notices)
-        yield house
+        say_notices(workspace.store.notices)
+        yield workspace
     finally:
-        say_aside(house.store)
-        house.close()
+        say_aside(workspace.store)
+        workspace.close()
 
 
 def open_program(
@@ -46,9 +48,9 @@ def open_program(
     from tangy_profiles.fault_file import load_faults
     from tangy_tui.ui.run import run_program
 
-    with open_house(data, "bingo", 4, robot=robot) as house:
-        load_faults(house.robot)  # what is wrong with its file is said before a screen opens
-        return run_program(house, ascii_only=ascii_only)
+    with open_workspace(data, "bingo", 4, robot=robot) as workspace:
+        load_faults(workspace.robot)  # what is wrong with its file is said before a screen opens
+        return run_program(workspace, ascii_only=ascii_only)
 
 
 def full_screen() -> bool:

@@ -13,13 +13,13 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, as_given, print_json
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
-    from tangy_profiles.persuading import Persuading
-    from tangy_tui.app.workspace import House
-    from tangy_tui.interaction.feedback import Entry
+    from tangy_profiles.persuading import PersuasionConfig
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.interaction.feedback import FeedbackEntry
     from tangy_tui.interaction.record import Record
 
 app = typer.Typer(
@@ -68,8 +68,8 @@ def people_list(
     from tangy_tui.text.documents import person_document
     from tangy_tui.ui import people_report
 
-    with open_house(data, activity, users, write=False) as house:
-        records = house.records(world=_world(world))
+    with open_workspace(data, activity, users, write=False) as workspace:
+        records = workspace.records(world=_world(world))
         if as_json:
             print_json([person_document(record) for record in records])
         else:
@@ -89,8 +89,8 @@ def people_show(
     """Show one person: what works, how sure that is, and the history game by game."""
     from tangy_tui.ui import people_report
 
-    with open_house(data, activity, users, write=False) as house:
-        record = _record(house, house.find_person(person), _world(world))
+    with open_workspace(data, activity, users, write=False) as workspace:
+        record = _record(workspace, workspace.find_person(person), _world(world))
         if not _printed(record, as_json):
             people_report.print_person(record)
 
@@ -109,8 +109,8 @@ def people_history(
     from tangy_tui.text.documents import entry_document
     from tangy_tui.ui import people_report
 
-    with open_house(data, activity, users, write=False) as house:
-        record = _record(house, house.find_person(person), _world(world))
+    with open_workspace(data, activity, users, write=False) as workspace:
+        record = _record(workspace, workspace.find_person(person), _world(world))
         if as_json:
             print_json([entry_document(entry) for entry in record.history])
         else:
@@ -132,8 +132,8 @@ def people_void(
     as_json: Json = False,
 ) -> None:
     """Let a response no longer count ("that was not compliance")."""
-    with _changing(data, activity, users, person, as_json, world) as (house, found):
-        memory = house.memory(_world(world))
+    with _changing(data, activity, users, person, as_json, world) as (workspace, found):
+        memory = workspace.memory(_world(world))
         entry = _numbered(memory.history(found.id), number, found)
         memory.feedback.void(found.id, entry.seq, plain(why))
         if not as_json:
@@ -159,9 +159,9 @@ def people_feedback(
     as_json: Json = False,
 ) -> None:
     """Say later what a person did about a request that waits for an answer."""
-    with _changing(data, activity, users, person, as_json, world) as (house, found):
-        memory = house.memory(_world(world))
-        _known(strategy, house.activity.strategies, "strategy")
+    with _changing(data, activity, users, person, as_json, world) as (workspace, found):
+        memory = workspace.memory(_world(world))
+        _known(strategy, workspace.activity.strategies, "strategy")
         _known(complied, ("yes", "no"), "answer")
         if seen and of is not None:
             raise TangyError("Choose one: --of for a request in the history, or --seen for none.")
@@ -185,11 +185,11 @@ def people_switch(
     as_json: Json = False,
 ) -> None:
     """Switch a strategy off for a person, or on again."""
-    with _changing(data, activity, users, person, as_json) as (house, found):
-        strategies = house.activity.strategies
+    with _changing(data, activity, users, person, as_json) as (workspace, found):
+        strategies = workspace.activity.strategies
         _known(strategy, strategies, "strategy")
         _known(state, ("on", "off"), "state")
-        house.memory().feedback.switch(found.id, strategy, state == "on", strategies)
+        workspace.memory().feedback.switch(found.id, strategy, state == "on", strategies)
 
 
 @app.command("method")
@@ -216,8 +216,8 @@ def people_method(
     """
     from tangy_profiles.persuading import DEFAULT
 
-    with _changing(data, activity, users, person, as_json) as (house, found):
-        memory = house.memory()
+    with _changing(data, activity, users, person, as_json) as (workspace, found):
+        memory = workspace.memory()
         chosen = None if words == [DEFAULT] else _changed(memory.recall(found.id).chosen, words)
         memory.feedback.choose_method(found.id, chosen)
 
@@ -237,8 +237,8 @@ def people_undo(
     """
     from tangy_tui.interaction.saying import change_words
 
-    with _changing(data, activity, users, person, as_json) as (house, found):
-        change = house.memory().feedback.undo(found.id)
+    with _changing(data, activity, users, person, as_json) as (workspace, found):
+        change = workspace.memory().feedback.undo(found.id)
         if not as_json:
             print(plain(f"Taken back: {change_words(change)}."))
 
@@ -256,11 +256,11 @@ def people_rename(
     from tangy_tui.speech.name_conflicts import find_clash
     from tangy_tui.speech.name_pronunciation import how_said, naming_lines
 
-    with open_house(data, "bingo", users) as house:
-        found = house.find_person(person)
-        house.rename(found, name)
-        named = house.find_person(found.id)
-        clash = find_clash(house.activity, house.people, named)
+    with open_workspace(data, "bingo", users) as workspace:
+        found = workspace.find_person(person)
+        workspace.rename(found, name)
+        named = workspace.find_person(found.id)
+        clash = find_clash(workspace.activity, workspace.people, named)
         if as_json:
             like = None if clash is None else clash.like
             named_so = {"id": named.id, "name": name, **how_said(named).to_json()}
@@ -279,21 +279,21 @@ def people_rename(
 @contextmanager
 def _changing(
     data: Path | None, activity: str, users: int, person: str, as_json: bool, world: str = ""
-) -> Iterator[tuple[House, Person]]:
-    """Open the house for a change to a person, and say afterwards what is now known of them."""
+) -> Iterator[tuple[Workspace, Person]]:
+    """Open the workspace for a change to a person, and say afterwards what is now known of them."""
     from tangy_tui.interaction.saying import method_words, sentence
 
-    with open_house(data, activity, users) as house:
-        found = house.find_person(person)
-        yield house, found
-        record = _record(house, found, _world(world))
+    with open_workspace(data, activity, users) as workspace:
+        found = workspace.find_person(person)
+        yield workspace, found
+        record = _record(workspace, found, _world(world))
         if not _printed(record, as_json):
             print(plain(f"Now: {sentence(record)}, in {record.world} games."))
             off = sorted(record.known.off)
             print(plain(f"Method: {method_words(record)}.") + _off_words(off))
 
 
-def _changed(chosen: Persuading, words: list[str]) -> Persuading:
+def _changed(chosen: PersuasionConfig, words: list[str]) -> PersuasionConfig:
     """Change what the words say of a choice of method, and nothing else."""
     from dataclasses import replace
 
@@ -306,7 +306,7 @@ def _changed(chosen: Persuading, words: list[str]) -> Persuading:
     return replace(chosen, **{key: getattr(spoken, key) for key in said})
 
 
-def _entry_words(entry: Entry) -> str:
+def _entry_words(entry: FeedbackEntry) -> str:
     """Name a line of a history: its number, strategy, time, and what came of it."""
     from tangy_tui.interaction.saying import entry_words, on_day
 
@@ -317,8 +317,8 @@ def _off_words(off: list[str]) -> str:
     return plain(f" Switched off: {', '.join(off)}.") if off else ""
 
 
-def _record(house: House, person: Person, world: GameWorld | None) -> Record:
-    (record,) = house.records(person, world=world)
+def _record(workspace: Workspace, person: Person, world: GameWorld | None) -> Record:
+    (record,) = workspace.records(person, world=world)
     return record
 
 
@@ -341,7 +341,7 @@ def _known(word: str, words: Iterable[str], what: str) -> None:
         raise TangyError(plain(f"There is no {what} {word!r}: {nearest(word, words)}"))
 
 
-def _numbered(history: list[Entry], number: int | None, person: Person) -> Entry:
+def _numbered(history: list[FeedbackEntry], number: int | None, person: Person) -> FeedbackEntry:
     """Return the line of a history with a number; without one, the last that counts."""
     counting = [entry for entry in history if entry.counts]
     if number is None and counting:
@@ -355,7 +355,9 @@ def _numbered(history: list[Entry], number: int | None, person: Person) -> Entry
     raise TangyError(plain(f"{person.name} has no response number {number}: there are {most}."))
 
 
-def _awaiting(history: list[Entry], strategy: str, of: int | None, person: Person) -> Entry:
+def _awaiting(
+    history: list[FeedbackEntry], strategy: str, of: int | None, person: Person
+) -> FeedbackEntry:
     """Return the request that late feedback answers: the numbered one, or the last open one."""
     if of is not None:
         return _numbered(history, of, person)

@@ -14,12 +14,12 @@ from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import find_anybody
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:
     from tangy_profiles.person import Person
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.interaction.forgetting import Forgotten
 
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask first, for scripts.")]
@@ -43,12 +43,12 @@ def people_forget(
     of the data folder. What worked with them is still counted, under an id that says nobody's
     name. Copies in other folders are yours to delete.
     """
-    with open_house(data, "bingo", MOST_PEOPLE) as house:
-        known = find_anybody(house, person)
-        if not yes and not _agreed(house, known):
+    with open_workspace(data, "bingo", MOST_PEOPLE) as workspace:
+        known = find_anybody(workspace, person)
+        if not yes and not _agreed(workspace, known):
             print(plain(f"Nothing was forgotten: {known.name} is known as before."))
             raise typer.Exit(1)
-        forgotten = house.forget(known, also or ())
+        forgotten = workspace.forget(known, also or ())
         if as_json:
             print_json(_document(known, forgotten))
             return
@@ -56,7 +56,7 @@ def people_forget(
             print(plain(line))
 
 
-def _agreed(house: House, person: Person) -> bool:
+def _agreed(workspace: Workspace, person: Person) -> bool:
     """Ask whether a person is to be forgotten.
 
     Raises:
@@ -72,7 +72,7 @@ def _agreed(house: House, person: Person) -> bool:
     called = person.name if person.name == person.id else f"{person.name} ({person.id})"
     what_goes = (
         f"This deletes who {called} is: the name, how it is said, their voice and their face. "
-        f"Where the name was typed or said, or stands in a file in {house.store.folder}, "
+        f"Where the name was typed or said, or stands in a file in {workspace.store.folder}, "
         f"{person.id} takes its place. What worked with them stays, counted for {person.id}. "
         "This cannot be taken back."
     )

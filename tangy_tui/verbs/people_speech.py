@@ -10,7 +10,7 @@ import typer
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, print_json
-from tangy_tui.verbs.opening import open_house
+from tangy_tui.verbs.opening import open_workspace
 from tangy_tui.verbs.people import Who
 
 if TYPE_CHECKING:
@@ -45,18 +45,18 @@ def people_pronounce(
     changes = phones is not None or accept or forget
     if (phones is not None) + accept + forget > 1:
         raise TangyError("Choose one: phones, --accept or --forget.")
-    with open_house(data, "bingo", users, write=changes) as house:
-        found = house.find_person(person)
+    with open_workspace(data, "bingo", users, write=changes) as workspace:
+        found = workspace.find_person(person)
         if accept:
             phones = accept_suggested(found)
         if changes:
-            house.pronounce(found, phones)
-            found = house.find_person(found.id)
+            workspace.pronounce(found, phones)
+            found = workspace.find_person(found.id)
         said = how_said(found)
         if as_json:
             print_json({"id": found.id, "name": found.name, **said.to_json()})
         else:
-            clash = find_clash(house.activity, house.people, found)
+            clash = find_clash(workspace.activity, workspace.people, found)
             print(plain(said.sentence))
             if clash is not None:
                 print(plain(clash.sentence))
@@ -86,13 +86,13 @@ def people_voice(
     if usual and (rate, voice) != (None, None):
         raise TangyError("Choose one: --usual, or a --rate and a --voice.")
     changes = usual or (rate, voice) != (None, None)
-    with open_house(data, "bingo", users, write=changes) as house:
-        found = house.find_person(person)
+    with open_workspace(data, "bingo", users, write=changes) as workspace:
+        found = workspace.find_person(person)
         if voice is not None:
             _check_voice(wanted)
         if changes:
-            house.prefer_voice(found, VoicePreference() if usual else wanted.over(found.voice))
-            found = house.find_person(found.id)
+            workspace.prefer_voice(found, VoicePreference() if usual else wanted.over(found.voice))
+            found = workspace.find_person(found.id)
         if as_json:
             chosen = {"rate": found.voice.rate, "voice": found.voice.voice}
             print_json({"id": found.id, "name": found.name, **chosen})

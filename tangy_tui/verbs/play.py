@@ -17,7 +17,7 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
-from tangy_tui.verbs.opening import full_screen, open_house
+from tangy_tui.verbs.opening import full_screen, open_workspace
 from tangy_tui.verbs.playing import (
     INJECT_HELP,
     SCRIPTED,
@@ -31,7 +31,7 @@ from tangy_tui.verbs.playing import (
 from tangy_tui.verbs.sensors import Cameras, RobotName
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.online_learning import Lesson
     from tangy_tui.monitoring.supervision import Supervision
 
@@ -95,18 +95,18 @@ def play(
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
         raise TangyError("--camera: cameras are watched on the screen; see tangy sensors --plain.")
-    with open_house(data, activity, users, robot=robot) as house:
-        need_policy(house.store, house.activity, policy)
+    with open_workspace(data, activity, users, robot=robot) as workspace:
+        need_policy(workspace.store, workspace.activity, policy)
         if screen:
             from tangy_hw.perception.camera_hub import sensors_of
             from tangy_tui.ui.run import run_playing
 
-            deck, folder = house.activity.deck, house.store.folder
-            sensors = sensors_of(house.robot, deck, folder, camera) if camera else None
+            deck, folder = workspace.activity.deck, workspace.store.folder
+            sensors = sensors_of(workspace.robot, deck, folder, camera) if camera else None
 
             raise typer.Exit(
                 run_playing(
-                    house,
+                    workspace,
                     games=games,
                     speed=speed,
                     seed=seed,
@@ -116,18 +116,23 @@ def play(
                     ascii_only=ascii_only,
                     voice=voice,
                     ears=listening.ears(
-                        house, Phrasebook(house.activity, house.people), who, sound=sound
+                        workspace,
+                        Phrasebook(workspace.activity, workspace.people),
+                        who,
+                        sound=sound,
                     ),
                     sensors=sensors,
                 )
             )
-        learnt = recall(house, policy, quiet=as_json)
+        learnt = recall(workspace, policy, quiet=as_json)
         by_lines = not (headless or as_json)
         scripted = who == SCRIPTED
-        supervision = house.supervision(learnt, seed, asks=by_lines or scripted, injections=faults)
+        supervision = workspace.supervision(
+            learnt, seed, asks=by_lines or scripted, injections=faults
+        )
         if not by_lines:
             _play_headless(
-                house, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
+                workspace, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
             )
             return
         from tangy_tui.console.games import play_by_lines
@@ -138,13 +143,13 @@ def play(
         play_by_lines(
             supervision,
             games,
-            house.name,
+            workspace.name,
             common.print_line,
             read,
             who,
             demonstrations=lambda: [
                 entry.demonstration
-                for entry in read_library(house.store, house.activity.name).entries.values()
+                for entry in read_library(workspace.store, workspace.activity.name).entries.values()
             ],
             expert=bool(expert),
         )
@@ -160,24 +165,24 @@ def demo(
     """See the whole story in a minute: three demonstrations, learning, one game."""
     from tempfile import TemporaryDirectory
 
-    with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_house(
+    with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_workspace(
         data or Path(scratch), "bingo", 4
-    ) as house:  # fmt: skip
+    ) as workspace:  # fmt: skip
         if full_screen() and not (plain_lines or as_json):
             from tangy_tui.ui.run import run_demo
 
-            status = run_demo(house, seed=seed, ascii_only=ascii_only)
+            status = run_demo(workspace, seed=seed, ascii_only=ascii_only)
             print("Teach it yourself: tangy teach. All you can do: tangy --help.")
             raise typer.Exit(status)
         from tangy_tui.console.demo import tell
 
-        tally = tell(house, seed, (lambda _: None) if as_json else print)
+        tally = tell(workspace, seed, (lambda _: None) if as_json else print)
         if as_json:
             common.print_json(tally)
 
 
 def _play_headless(
-    house: House,
+    workspace: Workspace,
     supervision: Supervision,
     games: int,
     as_json: bool,
@@ -198,7 +203,7 @@ def _play_headless(
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
-        with house.store.transaction():  # one commit a game: .1 ms a step instead of 4
+        with workspace.store.transaction():  # one commit a game: .1 ms a step instead of 4
             tally.add(supervision.begin())
             stopped = None
             while not supervision.over:
@@ -214,15 +219,15 @@ def _play_headless(
     if as_json:
         told: dict[str, Any] = {}
         if lessons:
-            told["answers"] = [lesson_document(house, one) for one in lessons]
+            told["answers"] = [lesson_document(workspace, one) for one in lessons]
         if injected:
             told["injected"] = tally.injected
             told["did_not_come_about"] = tally.absent
-        common.print_json({**tally.to_json(house.activity.situations, beliefs, faults), **told})
+        common.print_json({**tally.to_json(workspace.activity.situations, beliefs, faults), **told})
     else:
         for lesson in lessons:
-            print(lesson_words(house.activity, lesson))
-        reports.print_tally(house, tally, beliefs)
+            print(lesson_words(workspace.activity, lesson))
+        reports.print_tally(workspace, tally, beliefs)
         for one, times in tally.absent.items():
             print(f"{one} did not come about in {times} of {games} games.")
         if faults:

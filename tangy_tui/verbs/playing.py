@@ -12,7 +12,7 @@ from tangy_tui.verbs.common import print_json
 from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policy import Policy
 
 PolicyName = Annotated[
@@ -46,11 +46,11 @@ def who_answers(teacher: str | None, expert: str) -> str:
     return teacher_name(teacher)
 
 
-def recall(house: House, wanted: str, *, quiet: bool) -> Policy:
+def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
     """Return the policy to play by; say what is to be known before, also of the last game.
 
     Args:
-        house: whose policy it is.
+        workspace: whose policy it is.
         wanted: its name or digest, "" for the last one.
         quiet: whether the last game is left out.
 
@@ -60,8 +60,8 @@ def recall(house: House, wanted: str, *, quiet: bool) -> Policy:
     from tangy_tui.learning.policies import load_policy
     from tangy_tui.monitoring.games import uncleared
 
-    learnt, notices = load_policy(house.store, house.activity, wanted)
-    left = None if quiet else uncleared(house.store)
+    learnt, notices = load_policy(workspace.store, workspace.activity, wanted)
+    left = None if quiet else uncleared(workspace.store)
     if left is not None:
         last = f"The last game ended with a fault that nobody cleared: {left.name}."
         notices = [*notices, last]

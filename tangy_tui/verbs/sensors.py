@@ -10,11 +10,11 @@ import typer
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_json
-from tangy_tui.verbs.opening import full_screen, open_house
+from tangy_tui.verbs.opening import full_screen, open_workspace
 
 if TYPE_CHECKING:
-    from tangy_hw.perception.camera_hub import Sensors
-    from tangy_tui.app.workspace import House
+    from tangy_hw.perception.camera_hub import CameraHub
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.text.sensors import Told
 
 Cameras = Annotated[
@@ -53,14 +53,14 @@ def sensors(
     from tangy_hw.perception.camera_hub import sensors_of
 
     screen = full_screen() and not (plain_lines or as_json)
-    with open_house(data, activity, 4, write=False, robot=robot) as house:
-        deck, folder = house.activity.deck, house.store.folder
-        opened = sensors_of(house.robot, deck, folder, camera or (), deck_seed=deck_seed)
+    with open_workspace(data, activity, 4, write=False, robot=robot) as workspace:
+        deck, folder = workspace.activity.deck, workspace.store.folder
+        opened = sensors_of(workspace.robot, deck, folder, camera or (), deck_seed=deck_seed)
         if screen:
             from tangy_tui.ui.run import run_sensors
 
-            raise typer.Exit(run_sensors(house, opened, ascii_only=ascii_only))
-        found, card = asyncio.run(_look(house, opened, seconds))
+            raise typer.Exit(run_sensors(workspace, opened, ascii_only=ascii_only))
+        found, card = asyncio.run(_look(workspace, opened, seconds))
     live = [told for told in found if told.live]
     works = all(told.well for told in live)
     if as_json:
@@ -83,7 +83,7 @@ def sensors(
 
 
 async def _look(
-    house: House, sensors: Sensors, seconds: float
+    workspace: Workspace, sensors: CameraHub, seconds: float
 ) -> tuple[list[Told], dict[str, Any]]:
     """Look at all devices for so many s; return what is told of them, and of the last card."""
     from tangy_tui.text.sensors import Teller, card_document, card_words
@@ -91,7 +91,7 @@ async def _look(
     async with sensors:
         with sensors.reading_cards():
             await asyncio.sleep(seconds)
-        found = Teller(house.robot, sensors).tell()
+        found = Teller(workspace.robot, sensors).tell()
         if not sensors.card_device:
             return found, {"document": None, "words": []}
         cards = sensors.cards

@@ -23,13 +23,13 @@ from tangy_tui.verbs.hearing import (
     SpokenAnswers,
     WithVoice,
 )
-from tangy_tui.verbs.opening import full_screen, open_house
+from tangy_tui.verbs.opening import full_screen, open_workspace
 
 if TYPE_CHECKING:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.teaching_events import Again
-    from tangy_tui.learning.teaching_session import Teaching
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.learning.teaching_session import TeachingSession
+    from tangy_tui.speech.input import SpeechInput
 
 
 def teach(
@@ -80,22 +80,22 @@ def teach(
     screen = not (plain_lines or script or as_json) and full_screen()
     if not screen:
         listening = replace(listening, hands_free=True)  # there is no key to talk with
-    with open_house(data, activity, users) as house:
-        teaching = house.teaching(who, seed, guided=guided, again=_again(again))
+    with open_workspace(data, activity, users) as workspace:
+        teaching = workspace.teaching(who, seed, guided=guided, again=_again(again))
         teaching.check()
-        ears = listening.ears(house, teaching.phrasebook, who, sound=sound)
+        ears = listening.ears(workspace, teaching.phrasebook, who, sound=sound)
         if who == "scripted" and (speed is None or not full_screen()):
             _teach_by_script(teaching, games, as_json)
         elif screen:
             from tangy_tui.ui.run import run_teaching
 
             status = run_teaching(
-                house, teaching, ears=ears, resume=not new, games=games, speed=speed,
+                workspace, teaching, ears=ears, resume=not new, games=games, speed=speed,
                 ascii_only=ascii_only, voice=voice,
             )  # fmt: skip
             raise typer.Exit(status)
         else:
-            _teach_by_lines(house, teaching, script, ears, as_json, resume=not new)
+            _teach_by_lines(workspace, teaching, script, ears, as_json, resume=not new)
 
 
 def _again(wanted: str | None) -> Again | None:
@@ -110,7 +110,7 @@ def _again(wanted: str | None) -> Again | None:
     return Again(demonstration, int(step) - 1)
 
 
-def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
+def _teach_by_script(teaching: TeachingSession, games: int, as_json: bool) -> None:
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
     from tangy_tui.learning.teaching_events import Finished, Next
     from tangy_tui.text.documents import demonstration_document
@@ -137,10 +137,10 @@ def _teach_by_script(teaching: Teaching, games: int, as_json: bool) -> None:
 
 
 def _teach_by_lines(
-    house: House,
-    teaching: Teaching,
+    workspace: Workspace,
+    teaching: TeachingSession,
     script: Path | None,
-    ears: Ears | None,
+    ears: SpeechInput | None,
     as_json: bool,
     *,
     resume: bool,
@@ -150,10 +150,10 @@ def _teach_by_lines(
     from tangy_tui.console.teaching import TeachingLines, command_line
     from tangy_tui.text.documents import demonstration_document
 
-    folder = house.store.folder
+    folder = workspace.store.folder
     usual = signature(teach).parameters["activity"].default
     options = {
-        "activity": None if house.profile == usual else house.profile,
+        "activity": None if workspace.profile == usual else workspace.profile,
         "data": None if folder == data_folder(None).absolute() else str(folder),
     }
     who = None if teaching.teacher == teacher_name() else teaching.teacher
@@ -164,8 +164,8 @@ def _teach_by_lines(
         write,
         ears,
         scripted=script is not None,
-        seen=lambda: _seen(house, teaching),
-        why=lambda: _why(house, teaching),
+        seen=lambda: _seen(workspace, teaching),
+        why=lambda: _why(workspace, teaching),
         resume=command_line("teach", teacher=who, **options),
         learn=command_line("learn", **options),
     )
@@ -174,20 +174,20 @@ def _teach_by_lines(
         common.print_json({"demonstrations": [demonstration_document(teaching.demonstration)]})
 
 
-def _seen(house: House, teaching: Teaching) -> list[str]:
+def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     """Say which situations were shown, in what is finished and in the present demonstration."""
     from tangy_tui.learning.coverage import coverage, missing_words
     from tangy_tui.learning.library import read_library
 
     present = teaching.demonstration
-    library = read_library(house.store, house.activity.name)
+    library = read_library(workspace.store, workspace.activity.name)
     shown = [d for d in library.finished if d.id != present.id]
-    found = coverage(house.activity, [*shown, present])
+    found = coverage(workspace.activity, [*shown, present])
     lines = [f"{len(found.seen)} of {len(found.times)} situations were shown."]
-    return lines + [f"  {words}" for words in missing_words(house.activity, found)]
+    return lines + [f"  {words}" for words in missing_words(workspace.activity, found)]
 
 
-def _why(house: House, teaching: Teaching) -> list[str]:
+def _why(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     """Say what Tangy would do now by what it has been shown, and why."""
     from tangy_tui.learning.explanation import explain, foresee, why_words
     from tangy_tui.learning.library import read_library
@@ -195,10 +195,10 @@ def _why(house: House, teaching: Teaching) -> list[str]:
 
     present = teaching.demonstration
     try:
-        policy = foresee(house.store, house.activity, present)
+        policy = foresee(workspace.store, workspace.activity, present)
     except NothingToLearnFrom:
         return ["Nobody has shown Tangy anything yet."]
-    library = read_library(house.store, house.activity.name)
+    library = read_library(workspace.store, workspace.activity.name)
     shown = [d for d in library.demonstrations if d.id != present.id]
     why = explain(policy, [*shown, present], teaching.world.observe().situation)
-    return why_words(house.activity, why)
+    return why_words(workspace.activity, why)

@@ -20,7 +20,7 @@ import numpy as np
 from sklearn.datasets import load_sample_images
 
 from tangy_hw.drivers.camera_look import measure
-from tangy_hw.drivers.camera_state import Sight, Watch
+from tangy_hw.drivers.camera_state import CameraWatch, Sight
 from tests.hw.pictures import Image, room, seen
 
 TUNED, QUOTED = range(20), range(5_000, 5_040)
@@ -47,7 +47,7 @@ ILL: dict[str, tuple[str, dict[str, float]]] = {
 
 def judged(image: Image) -> Sight:
     """Return what is said of one picture by itself."""
-    watch = Watch(0.0, each=True)
+    watch = CameraWatch(0.0, each=True)
     watch.saw(measure(image, 0, 0.0))
     return watch.at(0.0)
 
@@ -98,7 +98,7 @@ def video(minutes: float, seed: int, size: tuple[int, int] = (640, 360)) -> Iter
 
 def alarms(frames: Iterator[Image]) -> tuple[Counter[str], int]:
     """Count the changes to any state but OK over a video, and its pictures."""
-    watch, told, was, count = Watch(0.0), Counter[str](), "OK", 0
+    watch, told, was, count = CameraWatch(0.0), Counter[str](), "OK", 0
     for count, image in enumerate(frames, 1):
         now = count / RATE
         watch.saw(measure(image, count, now))

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from tangy_hw.perception.cards.reader import CardReader
 from tangy_profiles.activity import load_activity
-from tangy_profiles.card_face import HEIGHT, WIDTH, Face
+from tangy_profiles.card_face import HEIGHT, WIDTH, CardLayout
 from tangy_sim.rendering.card_backgrounds import tone_of
 from tangy_sim.rendering.card_chips import Chip
-from tangy_sim.rendering.card_frames import CardCamera, Frame, View
+from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, View
 from tests.bench.cards import HEAD, Bench, Count, timed
 
 Picture: TypeAlias = NDArray[Any]
@@ -122,13 +122,13 @@ class HarshCamera:
         self.palette = palette
         self.marks = marks
 
-    def frames(self, trouble: Trouble, count: int) -> Iterator[Frame]:
+    def frames(self, trouble: Trouble, count: int) -> Iterator[RenderedFrame]:
         """Yield so many frames."""
         at = next(n for n, one in enumerate(TROUBLES) if one.name == trouble.name)
         for number in range(count):
             yield self.frame(trouble, np.random.default_rng([self.palette.seed, at, number]))
 
-    def frame(self, trouble: Trouble, random: Random) -> Frame:
+    def frame(self, trouble: Trouble, random: Random) -> RenderedFrame:
         """Take a frame: a card in good light first, and then what befalls it."""
         size = (1280, 720) if random.random() < 0.5 else (900, 700)
         view = View(
@@ -245,7 +245,7 @@ def _laid(lit: Picture, layer: Picture, plane: Picture, shadow: float) -> Pictur
     return np.asarray(lit * (1 - shade) * (1 - alpha) + laid[..., :3])
 
 
-def _plane(face: Face, frame: Frame) -> Picture:
+def _plane(face: CardLayout, frame: RenderedFrame) -> Picture:
     """Return what takes mm on the card to pixels, from the corners of the grid."""
     g = face.grid
     ends = [(g.left, g.top), (g.right, g.top), (g.right, g.bottom), (g.left, g.bottom)]
@@ -274,7 +274,7 @@ def _finger(
         _limb(layer, tip + along * 2, tip + along * 8, thick * 0.5, nail)
 
 
-def _shares(face: Face, mask: Picture) -> Picture:
+def _shares(face: CardLayout, mask: Picture) -> Picture:
     """Return how much of each cell something lies on."""
     half, found = face.cell * COVERED, []
     for cell in range(face.deck.rows * len(face.deck.columns)):

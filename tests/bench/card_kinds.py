@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tangy_profiles.activity import load_activity
 from tangy_sim.rendering.card_chips import Chip
-from tangy_sim.rendering.card_frames import HANDS, CardCamera, Frame, some_view
+from tangy_sim.rendering.card_frames import HANDS, CardCamera, RenderedFrame, some_view
 from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
 from tests.bench.cards import Bench
 
@@ -31,7 +31,7 @@ SMALL = (660, 540)
 ROOMS = (101_000, 102_000, 103_000, 104_000)
 
 
-def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames as rooms have them, and more of what is hard: steep, dark, behind hands."""
     yield from camera.frames(seed, frames * 6 // 10, size=SMALL)
     hard: list[dict[str, Any]] = [
@@ -47,7 +47,7 @@ def some_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
     yield from camera.frames(seed + 50, frames // 10, size=SMALL, hand="thing")
 
 
-def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames of chips that are hard to see, half of them in glare."""
     hard: list[dict[str, Any]] = [
         {}, {}, {}, *({"glare": glare} for glare in (0.25, 0.45, 0.7, 1.0)), {"hand": "finger"},
@@ -56,7 +56,7 @@ def faint_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
         yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
 
 
-def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames of things that lie on cards in the place of chips."""
     hard: list[dict[str, Any]] = [
         {}, {}, {}, {}, {"glare": 0.35}, {"glare": 0.7}, {"hand": "finger"}, {"hand": "blob"},
@@ -65,21 +65,21 @@ def odd_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
         yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
 
 
-def room_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def room_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames as rooms have them, those of the bench."""
     yield from camera.frames(seed, frames)
 
 
-def scene_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def scene_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames of the bench's scenes, five of each."""
     for scene in Bench(load_activity("bingo"), camera).scenes(seed, frames // 5, 5):
         yield from scene
 
 
-def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames in which just the tip of a hand is on the grid: it looks like a chip."""
 
-    def tried() -> Iterator[Frame]:
+    def tried() -> Iterator[RenderedFrame]:
         for number in count():
             random = np.random.default_rng([seed, number])
             view = some_view(random, hand=TIPS[number % len(TIPS)], size=SMALL)
@@ -91,7 +91,7 @@ def tip_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
     yield from islice(tried(), frames)
 
 
-def line_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def line_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames of chips that lie near lines, some of them in glare or beside hands."""
     hard: list[dict[str, Any]] = [
         {}, {}, {}, {"hand": ""}, {"glare": 0.6}, {"glare": 0.9, "hand": ""},
@@ -101,10 +101,10 @@ def line_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
         yield from camera.frames(seed + number, frames // len(hard), size=SMALL, **given)
 
 
-def lying_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[Frame]:
+def lying_frames(camera: CardCamera, seed: int, frames: int) -> Iterator[RenderedFrame]:
     """Yield frames on which something ends that is larger than a chip: fists, arms and things."""
 
-    def tried() -> Iterator[Frame]:
+    def tried() -> Iterator[RenderedFrame]:
         for number in count():
             random = np.random.default_rng([seed, number])
             steep = {"tilt": float(random.uniform(*STEEP))} if number % ONE_STEEP == 0 else {}
@@ -143,7 +143,7 @@ class LyingCamera(TipCamera):
 class Kind:
     """Frames of one kind: how they are made, and how many from which seeds."""
 
-    frames: Callable[[CardCamera, int, int], Iterator[Frame]]
+    frames: Callable[[CardCamera, int, int], Iterator[RenderedFrame]]
     straddling: float
     faint: float
     odd: float

@@ -42,7 +42,7 @@ from tangy_hw.perception.cards.classifier import (
 from tangy_hw.perception.cards.features import NAMES, SEEN, SPOTS, features_of
 from tangy_hw.perception.cards.rectification import flatten
 from tangy_profiles.card_face import numbers_of
-from tangy_sim.rendering.card_frames import CardCamera, Frame
+from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame
 from tests.bench.card_kinds import KINDS
 from tests.bench.card_nets import ALONE, AMONG, fit
 
@@ -80,7 +80,7 @@ class Cells:
 MEASURED = ("rows", "beside", "belongs", "marks")
 
 
-def measured(frames: Iterable[Frame], camera: CardCamera) -> Iterator[Cells]:
+def measured(frames: Iterable[RenderedFrame], camera: CardCamera) -> Iterator[Cells]:
     """Measure the cells of frames in which a card is found."""
     deck = camera.face.deck
     for frame in frames:

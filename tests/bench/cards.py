@@ -23,7 +23,7 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.cards import judge, judge_partly
 from tangy_sim.rendering.card_backgrounds import background
-from tangy_sim.rendering.card_frames import CardCamera, Frame, some_view
+from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, some_view
 
 QUOTED = 150_000  # seed; nothing was chosen on its frames
 Picture: TypeAlias = NDArray[Any]
@@ -72,7 +72,7 @@ class Bench:
         self.deck = activity.deck
         self.camera = camera or CardCamera(activity.deck, title=activity.title)
 
-    def called(self, frame: Frame, random: np.random.Generator) -> set[int]:
+    def called(self, frame: RenderedFrame, random: np.random.Generator) -> set[int]:
         """Draw what was called so that every user state comes up."""
         numbers = numbers_of(self.deck, frame.card or 1)
         marked = [n for cell, n in enumerate(numbers) if frame.marked >> cell & 1]
@@ -86,7 +86,7 @@ class Bench:
             called |= {int(n) for n in random.choice(open_, min(2, len(open_)))}
         return called
 
-    def judged(self, frame: Frame, called: set[int]) -> tuple[str, bool]:
+    def judged(self, frame: RenderedFrame, called: set[int]) -> tuple[str, bool]:
         """Return the true state, and whether it can be told in spite of the hand."""
         numbers = numbers_of(self.deck, frame.card or 1)
         cells = called_cells(self.deck, numbers, called)
@@ -95,7 +95,9 @@ class Bench:
         there = judge_partly(states, self.deck, frame.marked, frame.unknown(), cells)
         return true, there == true
 
-    def count(self, into: Count, frame: Frame, reading: CardReading, called: set[int]) -> None:
+    def count(
+        self, into: Count, frame: RenderedFrame, reading: CardReading, called: set[int]
+    ) -> None:
         """Add one reading."""
         into.frames += 1
         true, tellable = self.judged(frame, called)
@@ -120,7 +122,7 @@ class Bench:
         into.wrong_states += state not in (true, unread)
         into.needless += tellable and state == unread
 
-    def scenes(self, seed: int, count: int, frames: int) -> Iterator[list[Frame]]:
+    def scenes(self, seed: int, count: int, frames: int) -> Iterator[list[RenderedFrame]]:
         """Yield scenes: the same card and chips from nearly the same place, a hand that moves."""
         for number in range(count):
             random = np.random.default_rng([seed, number])

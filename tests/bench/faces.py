@@ -25,7 +25,7 @@ import numpy as np
 
 from tangy_hw.perception.faces.enrolment import one_face
 from tangy_hw.perception.faces.face_votes import vote
-from tangy_hw.perception.faces.gallery import Gallery, Match
+from tangy_hw.perception.faces.gallery import FaceMatch, Gallery
 from tangy_hw.perception.faces.reader import HaarReader
 
 LEAST = 15
@@ -102,8 +102,8 @@ def draw(
         used[name] = {int(number) for number in rng.permutation(there)[:pictures]}
         kept[name] = np.array([enrol[name][number] for number in sorted(used[name])])
     gallery = Gallery(kept)
-    own: list[tuple[str, Match | None]] = []
-    strangers: list[Match] = []
+    own: list[tuple[str, FaceMatch | None]] = []
+    strangers: list[FaceMatch] = []
     seen = total = 0
     voted: list[tuple[str | None, str | None]] = []
     for name, rows in probe.items():

@@ -19,7 +19,7 @@ from time import perf_counter, process_time
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import AT_ONCE, KINDS
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.demo import learn
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
@@ -53,9 +53,9 @@ def told(program: Program, fault: Fault) -> bool:
     return fault.name in drawn(program)
 
 
-def teach(house: House) -> Policy:
+def teach(workspace: Workspace) -> Policy:
     """Learn a policy from three scripted demonstrations."""
-    teaching = house.teaching(SCRIPTED, 1)
+    teaching = workspace.teaching(SCRIPTED, 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for number in range(3):
@@ -63,11 +63,11 @@ def teach(house: House) -> Policy:
             teaching.apply(teacher.command())
         for _ in teacher.demonstrate():
             pass
-    return learn(house)
+    return learn(workspace)
 
 
 async def one(
-    house: House, policy: Policy, size: tuple[int, int], kind: str, chance: Random
+    workspace: Workspace, policy: Policy, size: tuple[int, int], kind: str, chance: Random
 ) -> tuple[float, float]:
     """Bring about a fault in a paused game.
 
@@ -76,10 +76,10 @@ async def one(
     """
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True)
-        await program.push_screen(PlayScreen(house, supervision, speed=1))
+        supervision = workspace.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(workspace, supervision, speed=1))
 
-    program = Program(house, start)
+    program = Program(workspace, start)
     async with program.run_test(size=size) as pilot:
         await pilot.pause()
         await pilot.press("p")
@@ -108,14 +108,14 @@ async def one(
         return observed[0] - begun, seen - observed[0]
 
 
-async def idle(house: House, policy: Policy) -> float:
+async def idle(workspace: Workspace, policy: Policy) -> float:
     """Return the share of a core that a paused game takes."""
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True)
-        await program.push_screen(PlayScreen(house, supervision, speed=1))
+        supervision = workspace.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(workspace, supervision, speed=1))
 
-    program = Program(house, start)
+    program = Program(workspace, start)
     async with program.run_test(size=(120, 40)) as pilot:
         await pilot.press("p")
         await asyncio.sleep(0.5)
@@ -131,14 +131,14 @@ def main() -> int:
     chance = Random(1)
     kept = True
     with TemporaryDirectory() as folder:
-        house = House(Path(folder))
-        policy = teach(house)
+        workspace = Workspace(Path(folder))
+        policy = teach(workspace)
         print(f"{'ms':>17} {'until observed':^16} {'and then until seen':^22}")
         head = ("faults", "median", "p95", "median", "p95", "most")
         print("   window" + "".join(f"{word:>{w}}" for word, w in zip(head, WIDTHS, strict=True)))
         for columns, lines in SIZES:
             taken = [
-                asyncio.run(one(house, policy, (columns, lines), kind, chance))
+                asyncio.run(one(workspace, policy, (columns, lines), kind, chance))
                 for _ in range(rounds)
                 for kind in kinds
             ]
@@ -151,8 +151,10 @@ def main() -> int:
                 f"{max(seen):>6.0f}",
                 flush=True,
             )
-        print(f"looking, while nothing happens: {asyncio.run(idle(house, policy)):.2%} of a core")
-        house.close()
+        print(
+            f"looking, while nothing happens: {asyncio.run(idle(workspace, policy)):.2%} of a core"
+        )
+        workspace.close()
     print(f"limit: p95 under {1000 * MOST_SECONDS:.0f} ms:", "kept" if kept else "NOT KEPT")
     return 0 if kept else 1
 

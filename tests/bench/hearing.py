@@ -26,7 +26,7 @@ from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tangy_hw.audio.voice import Voice
+    from tangy_hw.audio.voice import SpeechVoice
     from tangy_profiles.activity import Activity
 
 SENTENCES = ("greet everyone", "call the next number", "ask him to move the card closer")
@@ -134,27 +134,27 @@ def be_the_child(folder: Path) -> int:
     """Show the teaching screen, measure, and leave."""
     from tangy_hw.audio.player import open_player
     from tangy_hw.audio.synthesis import Synthesiser
-    from tangy_hw.audio.voice import Voice
+    from tangy_hw.audio.voice import SpeechVoice
     from tangy_profiles.voice import VoicePreference
-    from tangy_tui.app.workspace import House
-    from tangy_tui.speech.input import Ears
+    from tangy_tui.app.workspace import Workspace
+    from tangy_tui.speech.input import SpeechInput
     from tangy_tui.ui.app import run_app
     from tangy_tui.ui.program import Program
     from tangy_tui.ui.screens.teach import TeachScreen
     from tangy_tui.ui.speaking import opening_lines
     from tangy_tui.ui.terminal import terminal_kind
 
-    def silent_voice(activity: Activity, *calls: Any) -> Voice:
-        return Voice(Synthesiser(folder / "voice"), open_player("null"), deck=activity.deck)
+    def silent_voice(activity: Activity, *calls: Any) -> SpeechVoice:
+        return SpeechVoice(Synthesiser(folder / "voice"), open_player("null"), deck=activity.deck)
 
-    house = House(folder / "data")
-    teaching = house.teaching("ann", 1)
+    workspace = Workspace(folder / "data")
+    teaching = workspace.teaching("ann", 1)
     teaching.begin()
-    ears = Ears("arecord", teaching.phrasebook, folder=house.store.folder)
+    ears = SpeechInput("arecord", teaching.phrasebook, folder=workspace.store.folder)
     partial: set[str] = set()
 
     async def start(program: Program) -> None:
-        await program.push_screen(TeachScreen(house, teaching))
+        await program.push_screen(TeachScreen(workspace, teaching))
         while ears.state != "off":  # noqa: ASYNC110 - its `changed` is the screen's
             await asyncio.sleep(0.05)
         await asyncio.sleep(1.0)
@@ -163,15 +163,15 @@ def be_the_child(folder: Path) -> int:
         found["decoding"] = await gaps(PHASE_SECONDS)
         partial.add(ears.words)
         program.speaker._make = silent_voice
-        program.speaker.prepare(opening_lines(house.activity))
+        program.speaker.prepare(opening_lines(workspace.activity))
         program.speaker.switch(True)
         program.speaker.say("Good afternoon, everybody, and welcome.", VoicePreference())
         found["speaking"] = await gaps(PHASE_SECONDS)
         (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")
         program.leave()
 
-    status = run_app(Program(house, start, kind=terminal_kind(), ears=ears))
-    house.close()
+    status = run_app(Program(workspace, start, kind=terminal_kind(), ears=ears))
+    workspace.close()
     if not any(partial):
         raise SystemExit("nothing was heard")
     return status

@@ -34,11 +34,11 @@ def played(kind: type[OddWorld], odd: str, share: float, games: int) -> dict[str
     found: Counter[str] = Counter()
     codes: Counter[str] = Counter()
     for lesson in LESSONS:
-        with supervised(Course("bingo", 4, RANDOM, lesson)) as house:
+        with supervised(Course("bingo", 4, RANDOM, lesson)) as workspace:
             seed = 1_000 * lesson + 7
-            people = people_of(house)
-            world = kind(activity_of(house.activity), people, seed=seed, odd=odd, share=share)
-            game = house.games(world, seed)
+            people = people_of(workspace)
+            world = kind(activity_of(workspace.activity), people, seed=seed, odd=odd, share=share)
+            game = workspace.games(world, seed)
             for _ in range(-(-games // len(LESSONS))):
                 play(game)
                 found["games"] += 1

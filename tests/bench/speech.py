@@ -42,7 +42,7 @@ from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.verification import Reply, Say
 from tangy_tui.speech import understanding
 from tangy_tui.speech.decoder import Decoder, make_decoder
-from tangy_tui.speech.evidence import Evidence, Expecting, Settings
+from tangy_tui.speech.evidence import AcousticEvidence, EvidenceSettings, Expecting
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.transcription import tier_of
 from tests.bench.sentences import FAR, NEAR, WORDINGS
@@ -196,17 +196,17 @@ def _pcm(samples: Samples) -> bytes:
 # --------------------------------------------------------------------------------- what is heard
 
 _decoder: Decoder | None = None
-_settings = Settings()
+_settings = EvidenceSettings()
 
 
-def _prepare(settings: Settings) -> None:
+def _prepare(settings: EvidenceSettings) -> None:
     global _decoder, _settings
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the grammar's unfinished paths are told there
     _settings = settings
     _decoder = make_decoder(understanding.wanted(BOOK, settings))
 
 
-def _decode(sound: tuple[str, str] | bytes, expecting: Expecting = "commands") -> Evidence:
+def _decode(sound: tuple[str, str] | bytes, expecting: Expecting = "commands") -> AcousticEvidence:
     assert _decoder is not None
     pcm = sound if isinstance(sound, bytes) else heard(Path(sound[0]), sound[1])
     return _decoder.decode(pcm, expecting)
@@ -227,9 +227,9 @@ def gather(
     half: int,
     seed: int,
     folder: Path,
-    settings: Settings,
+    settings: EvidenceSettings,
     expecting: Expecting = "commands",
-) -> list[tuple[Job, Evidence]]:
+) -> list[tuple[Job, AcousticEvidence]]:
     """Have everything said, and decode it."""
     said = texts(half)
     if expecting == "answers":
@@ -259,7 +259,7 @@ def gather(
     return list(zip(jobs, found, strict=True))
 
 
-def figures(job: Job, evidence: Evidence) -> tuple[list[float], bool] | None:
+def figures(job: Job, evidence: AcousticEvidence) -> tuple[list[float], bool] | None:
     """Return what the likelihood of an utterance is made of, and whether it was understood."""
     text, margin = understanding.best_words(evidence, BOOK)
     found = BOOK.choices(text)
@@ -271,7 +271,7 @@ def figures(job: Job, evidence: Evidence) -> tuple[list[float], bool] | None:
     return [found[0].confidence, float(known), margin], ok
 
 
-def fit(decoded: Sequence[tuple[Job, Evidence]]) -> None:
+def fit(decoded: Sequence[tuple[Job, AcousticEvidence]]) -> None:
     """Print the weights of the likelihood: a logistic regression, right ones against others."""
     from sklearn.linear_model import LogisticRegression
 
@@ -287,10 +287,10 @@ def fit(decoded: Sequence[tuple[Job, Evidence]]) -> None:
     for sure, unsure in ((0.6, 0.4), (0.7, 0.4), (0.8, 0.4), (0.7, 0.3), (0.7, 0.5)):
         understanding.SURE, understanding.UNSURE = sure, unsure
         print(f"SURE, UNSURE = {sure}, {unsure}")
-        table(decoded, Settings())
+        table(decoded, EvidenceSettings())
 
 
-def table(decoded: Sequence[tuple[Job, Evidence]], settings: Settings) -> None:
+def table(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceSettings) -> None:
     """Print what became of each kind of utterance, by condition and by voice."""
     counts: dict[tuple[str, str, str], Counter[str]] = {}
     for (kind, voice, text, condition), evidence in decoded:
@@ -309,7 +309,7 @@ def table(decoded: Sequence[tuple[Job, Evidence]], settings: Settings) -> None:
             )
 
 
-def judge(kind: str, text: str, evidence: Evidence, settings: Settings) -> str:
+def judge(kind: str, text: str, evidence: AcousticEvidence, settings: EvidenceSettings) -> str:
     """Say what became of an utterance.
 
     right: asked about, and meant; offered: among the choices; wrong: another was asked about;
@@ -329,7 +329,7 @@ def judge(kind: str, text: str, evidence: Evidence, settings: Settings) -> str:
     return "offered" if any(meant) else "misled"
 
 
-def answers(decoded: Sequence[tuple[Job, Evidence]], settings: Settings) -> None:
+def answers(decoded: Sequence[tuple[Job, AcousticEvidence]], settings: EvidenceSettings) -> None:
     """Print how many answers are taken as they were meant, and what else is taken for one."""
     counts: dict[tuple[str, str], Counter[str]] = {}
     for (kind, _, text, condition), evidence in decoded:
@@ -349,7 +349,7 @@ def answers(decoded: Sequence[tuple[Job, Evidence]], settings: Settings) -> None
         )
 
 
-async def latency(folder: Path, voices: Sequence[str], settings: Settings) -> None:
+async def latency(folder: Path, voices: Sequence[str], settings: EvidenceSettings) -> None:
     """Print how long after the end of an utterance its evidence is there.
 
     The sound is given in pieces of 40 ms at the pace at which it is spoken, as a microphone does.
@@ -386,7 +386,7 @@ def main() -> None:
     options.add_argument("--voices", nargs="*", help="voices of flite or festival")
     options.add_argument("--keep", type=Path, help="a folder for the voices and what was decoded")
     chosen = options.parse_args()
-    settings = Settings(mode="paper" if chosen.paper else "tiers")
+    settings = EvidenceSettings(mode="paper" if chosen.paper else "tiers")
     voices = chosen.voices or (TUNED if chosen.fit else QUOTED)
     with tempfile.TemporaryDirectory() as temporary:
         folder = chosen.keep or Path(temporary)

@@ -14,7 +14,7 @@ from tangy_tui.experiments import incremental, mistakes, teachers
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, SEED_SPACE, Course, activity_of, taught
 from tangy_tui.experiments.estimates import share_interval, summary
 from tangy_tui.experiments.styles import STYLES, StyledTeacher, anybody, by_seat, last_come, nearest
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 
 SETTINGS = {"activity": "bingo", "most": incremental.MOST_GAMES}
 SEATS = ("a", "b", "c", "d")
@@ -128,7 +128,7 @@ def test_a_mistake_that_is_seen_leaves_no_trace() -> None:
     careful = replace(STYLES[1], mistakes=0.2, mends=1.0)
     made: list[StyledTeacher] = []
 
-    def make(teaching: Teaching) -> StyledTeacher:
+    def make(teaching: TeachingSession) -> StyledTeacher:
         made.append(StyledTeacher(careful, teaching, 7500))
         return made[0]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.client import RobotState
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.activity import load_activity
 from tangy_profiles.card_face import called_cells, numbers_of
@@ -83,7 +83,7 @@ class FakeLink:
         self.done.append((do, what))
         answer: Future[dict[str, Any]] = Future()
         if do in self.breaks:
-            answer.set_exception(BrokenOff(self.breaks.pop(do)))
+            answer.set_exception(Preempted(self.breaks.pop(do)))
             return answer
         if do == "cancel" and self._doing is not None:
             self._called_off = what["why"]
@@ -111,7 +111,7 @@ class FakeLink:
                 return False
             self._doing = None
             if self._called_off:
-                asked.set_exception(BrokenOff(self._called_off))
+                asked.set_exception(Preempted(self._called_off))
                 self._called_off = ""
             else:
                 self._end(do, what, asked)

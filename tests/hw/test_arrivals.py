@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_hw.rate_estimator import FIRST, WINDOW, Arrivals
+from tangy_hw.rate_estimator import FIRST, WINDOW, RateEstimator
 
 
 @pytest.mark.parametrize("hertz", [1, 2.5, 10, 40])
 @pytest.mark.parametrize("seconds", [1.5, 2.0, 7.3])
 def test_it_is_told_by_what_came_of_late(hertz: float, seconds: float) -> None:
-    arrivals = Arrivals()
+    arrivals = RateEstimator()
     for number in range(round(seconds * hertz) + 1):
         arrivals.count(50 + number / hertz)
     now = 50 + round(seconds * hertz) / hertz
@@ -18,7 +18,7 @@ def test_it_is_told_by_what_came_of_late(hertz: float, seconds: float) -> None:
 
 
 def test_nothing_is_told_of_what_has_not_come_for_long_enough() -> None:
-    arrivals = Arrivals()
+    arrivals = RateEstimator()
     assert arrivals.rate(100) is None
     arrivals.count(100)
     arrivals.count(100.1)
@@ -27,7 +27,7 @@ def test_nothing_is_told_of_what_has_not_come_for_long_enough() -> None:
 
 
 def test_what_comes_no_more_has_no_rate_left_and_what_comes_again_has_its_own() -> None:
-    arrivals = Arrivals()
+    arrivals = RateEstimator()
     for number in range(31):
         arrivals.count(number / 10)
     assert arrivals.rate(3 + WINDOW / 2) == pytest.approx(5)
@@ -40,7 +40,7 @@ def test_what_comes_no_more_has_no_rate_left_and_what_comes_again_has_its_own() 
 
 
 def test_several_that_come_at_once_are_all_counted() -> None:
-    arrivals = Arrivals()
+    arrivals = RateEstimator()
     for number in range(21):
         arrivals.count(number / 5, 4)
     assert arrivals.rate(4) == pytest.approx(20)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.camera_look import Look, measure
-from tangy_hw.drivers.camera_state import State, Watch
+from tangy_hw.drivers.camera_state import CameraWatch, State
 from tangy_profiles.health import OK, STALE, WARN, Reading
 from tangy_profiles.robot import load_robot
 from tests.hw.pictures import Image, room, seen
@@ -28,7 +28,7 @@ class Film:
 
     def __init__(self) -> None:
         self.now = 0.0
-        self.watch = Watch(0.0)
+        self.watch = CameraWatch(0.0)
         self.states: list[tuple[float, State]] = [(0.0, self.watch.at(0.0).state)]
         self._count = 0
 
@@ -133,7 +133,7 @@ class TestStates:
         assert film.names == ["OPENING", "OK", "ENDED"]
 
     def test_a_picture_that_is_taken_when_wanted_is_judged_by_itself(self) -> None:
-        watch = Watch(0.0, each=True)
+        watch = CameraWatch(0.0, each=True)
         for stamp in (1.0, 60.0, 120.0):
             watch.saw(FINE._replace(stamp=stamp))
         assert watch.at(500.0).state == "OK"
@@ -141,7 +141,7 @@ class TestStates:
         assert watch.at(121.0).state == "BLURRED"
 
     def test_a_slow_folder_is_not_disconnected_between_its_pictures(self) -> None:
-        watch = Watch(0.0, interval=2.0)
+        watch = CameraWatch(0.0, interval=2.0)
         watch.saw(FINE)
         assert watch.at(3.0).state == "OK"
         assert watch.at(5.5).state == "DISCONNECTED"
@@ -160,7 +160,7 @@ class TestReadings:
         assert not any(measures[fact].wrong(value) for fact, value in reading.facts.items())
 
     def test_pictures_are_counted_by_their_numbers_and_those_of_a_folder_are_not(self) -> None:
-        watch, folder = Watch(0.0), Watch(0.0, each=True)
+        watch, folder = CameraWatch(0.0), CameraWatch(0.0, each=True)
         for number in range(16):  # every third is looked at, of 15 in a second
             for one in (watch, folder):
                 one.saw(FINE._replace(seq=3 * number, stamp=number / 5))
@@ -190,7 +190,7 @@ class TestReadings:
         assert film.watch.at(3699.0).reading("camera").facts["unchanged"] == 3600
 
     def test_before_the_first_picture_nothing_is_measured(self) -> None:
-        assert Watch(0.0).at(0.7).reading("eye") == Reading("eye", 0.7, STALE)
+        assert CameraWatch(0.0).at(0.7).reading("eye") == Reading("eye", 0.7, STALE)
 
 
 class TestMeasures:
@@ -233,7 +233,7 @@ def film_of(seed: int) -> Iterator[tuple[str, Image]]:
 
 
 def test_live_video_raises_no_false_alarm() -> None:
-    watch, told = Watch(0.0), set()
+    watch, told = CameraWatch(0.0), set()
     for count, (kind, image) in enumerate(film_of(900)):
         watch.saw(measure(image, count, count / RATE))
         told.add((kind, watch.at(count / RATE + 0.05).state))

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.camera import Frame as Picture
-from tangy_hw.perception.camera_hub import Sensors
-from tangy_hw.perception.card_and_face_perception import CardSeen, Senses
+from tangy_hw.perception.camera_hub import CameraHub
+from tangy_hw.perception.card_and_face_perception import CardAndFacePerception, CardSeen
 from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.cards.reader import CardReader, CardReading
 from tangy_profiles.activity import Activity, load_activity
@@ -117,7 +117,7 @@ def test_moments_are_apart_and_a_picture_that_comes_again_is_none() -> None:
 
 
 class Filmed:
-    """Stands in for `Sensors`: gives pictures of these chips, so many s after one another."""
+    """Stands in for `CameraHub`: gives pictures of these chips, so many s after one another."""
 
     card_device = "camera"
 
@@ -152,7 +152,7 @@ async def seen_in(
     apart: float = APART,
     called: Iterable[int] = (),
 ) -> CardSeen:
-    senses = Senses(cast(Sensors, Filmed(pictures, apart)), activity)
+    senses = CardAndFacePerception(cast(CameraHub, Filmed(pictures, apart)), activity)
     try:
         return await senses.read_card(set(called))
     finally:

@@ -23,13 +23,13 @@ from tangy_hw.perception.cards.reader import (
 from tangy_profiles.activity import Activity, load_activity, read_activity
 from tangy_profiles.card_face import numbers_of
 from tangy_sim.rendering.card_chips import Chip
-from tangy_sim.rendering.card_frames import CardCamera, Frame, View
+from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, View
 from tangy_sim.rendering.card_odd_chips import odd_chip, sheer_chip
 from tests.conftest import TESTS
 
 CLEAN = View(pixels=36, noise=1, quality=95)
 ALL = (1 << 25) - 1
-Take = Callable[..., Frame]
+Take = Callable[..., RenderedFrame]
 
 
 @cache
@@ -43,7 +43,7 @@ def reader(activity: Activity) -> CardReader:
     return CardReader(activity.deck)
 
 
-def taken(marked: int, view: View = CLEAN, *, card: int = 17, seed: int = 5) -> Frame:
+def taken(marked: int, view: View = CLEAN, *, card: int = 17, seed: int = 5) -> RenderedFrame:
     random = np.random.default_rng(seed)
     return camera().take(card, camera().chips(random, marked), view, random)
 

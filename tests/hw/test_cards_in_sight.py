@@ -14,7 +14,7 @@ from tangy_hw.perception.cards.tags import is_printed, tags_in
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Box
 from tangy_sim.rendering.card_backgrounds import background
-from tangy_sim.rendering.card_frames import CardCamera, Frame, View
+from tangy_sim.rendering.card_frames import CardCamera, RenderedFrame, View
 
 VIEW = View(pixels=30, noise=2, quality=92, size=(620, 700))
 WHOLE = Box(-3, -3, WIDTH + 3, HEIGHT + 3)
@@ -32,12 +32,12 @@ def camera(activity: Activity) -> CardCamera:
     return CardCamera(activity.deck, title=activity.title)
 
 
-def taken(camera: CardCamera, card: int, seed: int = 1, view: View = VIEW) -> Frame:
+def taken(camera: CardCamera, card: int, seed: int = 1, view: View = VIEW) -> RenderedFrame:
     random = np.random.default_rng([seed, card])
     return camera.take(card, camera.chips(random, 0b10000_00100_01010), view, random)
 
 
-def covered(camera: CardCamera, frame: Frame, *boxes: Box) -> Frame:
+def covered(camera: CardCamera, frame: RenderedFrame, *boxes: Box) -> RenderedFrame:
     """Lay a sleeve on parts of a card, in mm."""
     grid = camera.face.grid
     ends = [(grid.left, grid.top), (grid.right, grid.top)]
@@ -52,7 +52,7 @@ def covered(camera: CardCamera, frame: Frame, *boxes: Box) -> Frame:
     return replace(frame, picture=picture)
 
 
-def beside(*frames: Frame) -> np.ndarray:
+def beside(*frames: RenderedFrame) -> np.ndarray:
     return np.hstack([frame.picture for frame in frames])
 
 

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, Pose, Twist
 from tangy_hw.navigation.clearance import REACH, Seen, guarded, room_ahead, speed_in
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import between
 from tests.hw.raycast import driven
 
-LIMITS = Limits()
+LIMITS = MotionLimits()
 CLOSE = (
     LIMITS.radius + LIMITS.torso
 )  # metres from the robot's middle to legs whose torso it touches

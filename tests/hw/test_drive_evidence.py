@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from tangy_hw.navigation.navigator_protocol import Wayfinder
-from tangy_hw.robot_process.drive_monitor import KEPT_SECONDS, DriveEvidence
+from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
+from tangy_hw.robot_process.drive_monitor import KEPT_SECONDS, DriveMonitor
 from tangy_profiles.health import Fact, Reading
 
 
@@ -30,7 +30,7 @@ class Navigator:
 
 def test_that_it_was_lost_is_kept_until_it_has_looked_round() -> None:
     navigator, now = Navigator(), [0.0]
-    evidence = DriveEvidence(cast(Wayfinder, navigator), lambda: now[0])
+    evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told |= {"fit": 0.7, "spread": 1.5}
     evidence.note()
     navigator.told |= {"fit": 1.0, "spread": 0.1}
@@ -47,7 +47,7 @@ def test_that_it_was_lost_is_kept_until_it_has_looked_round() -> None:
 
 def test_where_wheels_slipped_that_is_why_it_is_lost() -> None:
     navigator, now = Navigator(), [0.0]
-    evidence = DriveEvidence(cast(Wayfinder, navigator), lambda: now[0])
+    evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told |= {"slip": 0.8, "fit": 0.7, "spread": 1.5}
     evidence.note()
     evidence.keep()
@@ -60,7 +60,7 @@ def test_where_wheels_slipped_that_is_why_it_is_lost() -> None:
 
 def test_a_drive_is_told_of_for_a_moment() -> None:
     navigator, now = Navigator(), [0.0]
-    evidence = DriveEvidence(cast(Wayfinder, navigator), lambda: now[0])
+    evidence = DriveMonitor(cast(NavigatorProtocol, navigator), lambda: now[0])
     navigator.told["still"] = 2.0
     evidence.note()
     evidence.keep()

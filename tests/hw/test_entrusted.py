@@ -22,13 +22,13 @@ from tangy_hw.device_protocols import (
 from tangy_hw.drivers.ros_navigator import RosNavigator
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.navigation import external_navigator
-from tangy_hw.navigation.external_navigator import Entrusted
+from tangy_hw.navigation.external_navigator import ExternalNavigator
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot_process import controller as robots
-from tangy_hw.robot_process.assembly import wire
+from tangy_hw.robot_process.assembly import assemble
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.self_test import try_robot
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import STALE
@@ -65,7 +65,7 @@ async def living(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Living]:
     navigation = RosNavigator(bridge)
     satisfied: OwnNavigation = navigation
     robot = LiveRobot(
-        load_robot(), parts.body(bridge, navigation), Entrusted(satisfied), MachineClock()
+        load_robot(), parts.body(bridge, navigation), ExternalNavigator(satisfied), MachineClock()
     )
     await robot.start()
     assert await bridge.wait_connected(SOON)
@@ -109,11 +109,11 @@ async def test_a_robot_that_must_not_drive_hands_nothing_over(
 ) -> None:
     async with living(monkeypatch) as one:
         await one.robot.stop("not yet")
-        with pytest.raises(BrokenOff, match="not yet"):
+        with pytest.raises(Preempted, match="not yet"):
             await soon(one.robot.go(GOAL))
         one.robot.release()
         one.parts.laser.age = 1.0
-        with pytest.raises(BrokenOff, match="laser"):
+        with pytest.raises(Preempted, match="laser"):
             await soon(one.robot.go(GOAL))
         one.parts.laser.age = 0.0
         navigator = one.robot.navigator
@@ -163,7 +163,7 @@ async def test_a_stop_stops_the_base_until_the_goal_is_known_to_be_over(
         await one.robot.stop("a hand was in the way")
         assert one.parts.told[0] == "stop"
         await until(lambda: one.base.cancelled == list(one.base.goals))
-        with pytest.raises(BrokenOff, match="a hand"):
+        with pytest.raises(Preempted, match="a hand"):
             await soon(going)
         told = len(one.parts.told)
         await until(lambda: len(one.parts.told) > told + 2)
@@ -198,7 +198,7 @@ async def test_a_device_that_stays_silent_ends_the_drive(monkeypatch: pytest.Mon
         one.parts.laser.age = 1.0
         await until(lambda: one.base.cancelled)
         one.base.end(2)
-        with pytest.raises(BrokenOff, match="laser scanner says nothing"):
+        with pytest.raises(Preempted, match="laser scanner says nothing"):
             await soon(going)
         assert len(one.base.goals) == 1
 
@@ -211,7 +211,7 @@ async def test_a_navigation_that_falls_silent_ends_the_drive(
         await until(lambda: one.base.goals)
         one.living.cancel()
         one.base.feed(START)
-        with pytest.raises(BrokenOff, match="says nothing"):
+        with pytest.raises(Preempted, match="says nothing"):
             await soon(going)
         assert one.base.cancelled and "stop" in one.parts.told
 
@@ -258,12 +258,12 @@ async def test_without_a_link_the_drive_is_over() -> None:
 
 
 @asynccontextmanager
-async def living_silent() -> AsyncIterator[tuple[Entrusted, Rosbridge]]:
+async def living_silent() -> AsyncIterator[tuple[ExternalNavigator, Rosbridge]]:
     bridge = Rosbridge("ws://127.0.0.1:9")
     navigation = RosNavigator(bridge)
     await navigation.start()
     try:
-        yield Entrusted(navigation), bridge
+        yield ExternalNavigator(navigation), bridge
     finally:
         await navigation.close()
         await bridge.close()
@@ -293,20 +293,20 @@ def robot_file(folder: Path, navigator: str) -> Path:
 class TestProfiles:
     def test_a_profile_names_it_and_where_its_map_lies(self, tmp_path: Path) -> None:
         path = robot_file(tmp_path, ', ros = 2, origin = "10, 20, 1.57", place = "/pose"')
-        wired = wire(RobotSetup(str(path), "bingo", ("user1",)))
-        assert isinstance(wired.robot.navigator, Entrusted)
+        wired = assemble(RobotSetup(str(path), "bingo", ("user1",)))
+        assert isinstance(wired.robot.navigator, ExternalNavigator)
 
     def test_on_a_bench_that_has_another_base_it_is_left_out(self, tmp_path: Path) -> None:
         path = robot_file(tmp_path, "")
         base = {"base": {"kind": "rosbridge", "at": "ws://127.0.0.1:10"}}
-        wired = wire(RobotSetup(str(path), "bingo", ("user1",), drivers=base))
+        wired = assemble(RobotSetup(str(path), "bingo", ("user1",), drivers=base))
         assert isinstance(wired.robot.navigator, Navigator)
 
     @pytest.mark.parametrize("origin", ["1, 2", "a, b, c", "1, 2, nan", "1, 2, 3, 4"])
     def test_a_place_of_the_map_that_is_none_is_refused(self, tmp_path: Path, origin: str) -> None:
         path = robot_file(tmp_path, f', origin = "{origin}"')
         with pytest.raises(DeviceError, match=r"navigator \(rosbridge\): origin must be X, Y"):
-            wire(RobotSetup(str(path), "bingo", ("user1",)))
+            assemble(RobotSetup(str(path), "bingo", ("user1",)))
 
     async def test_a_robot_without_one_misses_nothing(self, tmp_path: Path) -> None:
         path = robot_file(tmp_path, "")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.audio.player import NullPlayer, Player, PlayerError, ProgramPlayer
+from tangy_hw.audio.player import NullPlayer, PlayerError, ProgramPlayer, SoundPlayer
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.espeak_voice import SpokenVoice
 from tangy_profiles.activity import load_activity
@@ -29,7 +29,7 @@ class Scene:
         self.gate: list[str] = []
         self.made: list[SpokenVoice] = []
 
-    async def voice(self, player: Player | None = None) -> SpokenVoice:
+    async def voice(self, player: SoundPlayer | None = None) -> SpokenVoice:
         """Make a voice, and start it."""
         voice = SpokenVoice(
             player=player or NullPlayer(self.clock.sleep),

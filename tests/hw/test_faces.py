@@ -27,8 +27,8 @@ from tangy_hw.perception.faces.face_store import (
     read_faces,
 )
 from tangy_hw.perception.faces.face_votes import vote
-from tangy_hw.perception.faces.gallery import AHEAD, ENOUGH, Gallery, Match, decide
-from tangy_hw.perception.faces.reader import Face, HaarReader
+from tangy_hw.perception.faces.gallery import AHEAD, ENOUGH, FaceMatch, Gallery, decide
+from tangy_hw.perception.faces.reader import FaceReading, HaarReader
 from tangy_profiles.store import Store
 from tangy_sim.rendering.faces import drawn_face
 
@@ -111,7 +111,7 @@ class TestComparing:
         assert decide({"a": 1.0, "b": 1.0 - AHEAD / 2}).person is None
         assert decide({"a": 1.0, "b": 1.0 - 2 * AHEAD}).person == "a"
         assert decide({"a": ENOUGH - 0.01}).person is None
-        assert decide({}) == Match(None, None, 0.0)
+        assert decide({}) == FaceMatch(None, None, 0.0)
 
     def test_nobody_is_known_where_nobody_is_enrolled(self) -> None:
         assert Gallery({}).compare(rows(1)[0]).person is None
@@ -124,7 +124,7 @@ class TestComparing:
 
     @given(st.lists(st.sampled_from(["a", "b", None]), max_size=9))
     def test_a_vote_needs_three_in_five(self, cast: list[str | None]) -> None:
-        counted = vote(Match(one, one, 0.5, {"a": 0.5, "b": 0.4}) for one in cast)
+        counted = vote(FaceMatch(one, one, 0.5, {"a": 0.5, "b": 0.4}) for one in cast)
         most = max((cast.count(one) for one in ("a", "b")), default=0)
         if counted.person is not None:
             assert counted.votes == most == cast.count(counted.person)
@@ -142,8 +142,8 @@ class _Reader:
     def __init__(self, *seen: Any) -> None:
         self.seen = list(seen)
 
-    def read(self, picture: Any) -> list[Face]:
-        return [Face((0, 0, 90, 90), "", None, self.seen.pop(0))]
+    def read(self, picture: Any) -> list[FaceReading]:
+        return [FaceReading((0, 0, 90, 90), "", None, self.seen.pop(0))]
 
 
 class TestEnrolling:
@@ -163,10 +163,13 @@ class TestEnrolling:
 
     def test_of_two_faces_the_one_that_is_meant_must_be_clear(self) -> None:
         vector = rows(1)[0]
-        near, far = Face((0, 0, 100, 100), "", None, vector), Face((0, 0, 30, 30), "", None, vector)
+        near, far = (
+            FaceReading((0, 0, 100, 100), "", None, vector),
+            FaceReading((0, 0, 30, 30), "", None, vector),
+        )
         assert one_face([near, far]) == ("", vector)
         assert one_face([near, near])[0] == "more than one face is seen"
-        blurred = Face((0, 0, 110, 110), "blurred")
+        blurred = FaceReading((0, 0, 110, 110), "blurred")
         assert one_face([blurred, near])[1] is vector
         assert one_face([blurred, far]) == ("blurred", None)
 

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, Scan, Stamped, Twist
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot_process.hand_drive import HOLDS_SECONDS, HandDrive
 from tangy_hw.robot_process.wheels import Wheels
@@ -24,7 +24,7 @@ from tests.hw.live_bodies import ToldBody
 from tests.hw.ros_links import soon
 from tests.hw.test_robot_lines import Spoken, spoken
 
-LIMITS = Limits()
+LIMITS = MotionLimits()
 BEAMS, FIRST = 271, -math.radians(135)
 
 

@@ -17,7 +17,7 @@ from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.robot_process import controller as robots
 from tangy_hw.robot_process import performer
 from tangy_hw.robot_process.controller import LiveRobot
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
@@ -47,7 +47,7 @@ class TestStop:
             parts.told.clear()
             await robot.stop("a hand was in the way")
             assert parts.told == ["stop", "hold", "hush"]
-            with pytest.raises(BrokenOff, match="a hand"):
+            with pytest.raises(Preempted, match="a hand"):
                 await soon(doing)
             assert robot.hazard == "a hand was in the way"
 
@@ -73,7 +73,7 @@ class TestStop:
         async with living() as (robot, parts):
             doing = asyncio.create_task(robot.perform(posture=POSTURE))
             stopping = asyncio.create_task(robot.stop("enough"))
-            with pytest.raises(BrokenOff):
+            with pytest.raises(Preempted):
                 await soon(doing)
             await stopping
             assert parts.told[:3] == ["stop", "hold", "hush"] and "pose" not in parts.told
@@ -138,7 +138,7 @@ class TestLeftAlone:
                 robot.alone = lambda: "nobody is there"
                 await asyncio.sleep(0.1)
                 assert not doing.done() and "hold" not in parts.told  # it may be for a moment
-                with pytest.raises(BrokenOff, match="nobody is there"):
+                with pytest.raises(Preempted, match="nobody is there"):
                     await soon(doing)
                 await until(lambda: "hush" in parts.told)
                 await asyncio.sleep(0.3)

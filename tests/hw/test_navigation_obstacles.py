@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.device_protocols import STILL, Pose
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import seat_feet, table_legs, with_feet
 from tests.bench.people_drives import MAP, ROOM, drives
@@ -104,7 +104,7 @@ class TestPeople:
 
     def test_before_somebody_who_stepped_in_it_drives_slowly(self) -> None:
         (drive,) = drives("steps in", 1, seed=11)
-        assert drive.near and np.median(drive.near) <= Limits().careful
+        assert drive.near and np.median(drive.near) <= MotionLimits().careful
 
     def test_without_anybody_nothing_slows_it_down(self) -> None:
         """It takes as long as it took before it kept away from people."""

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import free_ahead
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.occupancy import FREE, map_of_room
 from tangy_hw.navigation.planning import (
     BESIDE,
@@ -34,7 +34,7 @@ ROOM = load_room()
 MAP = map_of_room(ROOM)
 COSTS = inflate(MAP)
 EMPTY = Scan(-2.0, 0.1, np.full(41, inf), 30.0)
-LIMITS = Limits()
+LIMITS = MotionLimits()
 
 
 class TestPlanning:

@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 import pytest
 
 from tangy_hw.device_protocols import DeviceError
-from tangy_hw.robot_process.control_loop import AT_REST, ON_THE_WAY, TICK, PassingTime
+from tangy_hw.robot_process.control_loop import AT_REST, ON_THE_WAY, TICK, ControlLoop
 
 TURNS = 50
 """Turns of the loop in which a time that does not stand still would have come far."""
@@ -35,7 +35,7 @@ class HandClock:
 
 
 @asynccontextmanager
-async def passing(time: PassingTime) -> AsyncIterator[None]:
+async def passing(time: ControlLoop) -> AsyncIterator[None]:
     task = asyncio.create_task(time.run())
     try:
         yield
@@ -51,7 +51,7 @@ async def turns() -> None:
 
 async def test_time_stands_still_while_nobody_waits_for_it() -> None:
     clock = HandClock()
-    time = PassingTime(clock, lambda: False, stepped=True)
+    time = ControlLoop(clock, lambda: False, stepped=True)
     async with passing(time):
         await turns()
         assert clock.slept == []
@@ -64,7 +64,7 @@ async def test_time_stands_still_while_nobody_waits_for_it() -> None:
 
 async def test_it_stands_still_again_when_whoever_waited_has_given_up() -> None:
     clock = HandClock()
-    time = PassingTime(clock, lambda: False, stepped=True)
+    time = ControlLoop(clock, lambda: False, stepped=True)
     async with passing(time):
         waits = asyncio.create_task(time.sleep(1e9))
         await turns()
@@ -79,7 +79,7 @@ async def test_it_stands_still_again_when_whoever_waited_has_given_up() -> None:
 
 async def test_what_is_waited_for_ends_the_wait() -> None:
     clock = HandClock()
-    time = PassingTime(clock, lambda: True, stepped=True)
+    time = ControlLoop(clock, lambda: True, stepped=True)
     async with passing(time):
         assert await time.until(lambda: clock.time > 3, 100)
         assert 3 < clock.time < 3 + 2 * ON_THE_WAY
@@ -90,7 +90,7 @@ async def test_what_is_waited_for_ends_the_wait() -> None:
 
 async def test_what_holds_already_takes_no_time() -> None:
     clock = HandClock()
-    time = PassingTime(clock, lambda: True, stepped=True)
+    time = ControlLoop(clock, lambda: True, stepped=True)
     async with passing(time):
         assert await time.until(lambda: True, 100)
     assert clock.slept == []
@@ -98,7 +98,7 @@ async def test_what_holds_already_takes_no_time() -> None:
 
 async def test_steps_are_small_while_the_robot_moves_and_larger_at_rest() -> None:
     clock, moves = HandClock(), [True]
-    time = PassingTime(clock, lambda: moves[0], stepped=True)
+    time = ControlLoop(clock, lambda: moves[0], stepped=True)
     async with passing(time):
         await time.sleep(1.0)
         assert set(clock.slept[1:]) == {ON_THE_WAY}
@@ -110,7 +110,7 @@ async def test_steps_are_small_while_the_robot_moves_and_larger_at_rest() -> Non
 
 async def test_two_who_wait_share_the_time() -> None:
     clock, woke = HandClock(), {}
-    time = PassingTime(clock, lambda: False, stepped=True)
+    time = ControlLoop(clock, lambda: False, stepped=True)
 
     async def sleeper(seconds: float) -> None:
         await time.sleep(seconds)
@@ -123,7 +123,7 @@ async def test_two_who_wait_share_the_time() -> None:
 
 async def test_who_waits_again_at_once_misses_nothing_that_passes_for_another() -> None:
     clock, seen = HandClock(), []
-    time = PassingTime(clock, lambda: True, stepped=True)
+    time = ControlLoop(clock, lambda: True, stepped=True)
 
     async def looks() -> None:
         while clock.time < 5:
@@ -143,7 +143,7 @@ async def test_nobody_sees_half_a_step() -> None:
         ticks.append(clock.time)
         return False
 
-    time = PassingTime(clock, tick, stepped=True)
+    time = ControlLoop(clock, tick, stepped=True)
     async with passing(time):
         clock.free.clear()
         waits = asyncio.create_task(time.sleep(TICK / 2))
@@ -165,7 +165,7 @@ async def test_on_the_clock_of_a_machine_ticks_come_by_themselves() -> None:
             ticks.set()
         return True
 
-    time = PassingTime(clock, tick)
+    time = ControlLoop(clock, tick)
     async with passing(time), asyncio.timeout(5):
         await ticks.wait()
         assert not time.still.locked()  # there, looking waits for nothing
@@ -181,7 +181,7 @@ async def test_who_waits_is_told_when_time_has_ended(stepped: bool) -> None:
             raise OSError("the base is gone")
         return False
 
-    time = PassingTime(clock, tick, stepped=stepped)
+    time = ControlLoop(clock, tick, stepped=stepped)
     async with passing(time), asyncio.timeout(5):
         with pytest.raises(DeviceError, match=r"time stands still .*the base is gone"):
             await time.sleep(100)

@@ -8,8 +8,8 @@ import pytest
 from tangy_hw.device_protocols import MachineClock
 from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.robot_process.device_diagnostics import reports_of
-from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.robot_process.device_diagnostics import device_diagnostics
+from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.watchdogs import Watchdogs
 from tangy_profiles.activity import load_activity
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
@@ -30,8 +30,10 @@ class Link(ToldDevice):
 
 
 def watched(*links: Link) -> Watchdogs:
-    evidence = DriveEvidence(Navigator(MAP, np.random.default_rng(1)), lambda: 0.0)
-    return Watchdogs(ROBOT, reports_of(ROBOT, ToldBody().body(*links), evidence, lambda: 0.0))
+    evidence = DriveMonitor(Navigator(MAP, np.random.default_rng(1)), lambda: 0.0)
+    return Watchdogs(
+        ROBOT, device_diagnostics(ROBOT, ToldBody().body(*links), evidence, lambda: 0.0)
+    )
 
 
 def told(*links: Link) -> Reading:

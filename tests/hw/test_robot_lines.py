@@ -20,7 +20,7 @@ from tangy_hw.rate_estimator import FIRST
 from tangy_hw.robot_client.client import RobotState
 from tangy_hw.robot_process import controller as robots
 from tangy_hw.robot_process import process
-from tangy_hw.robot_process.assembly import Wired
+from tangy_hw.robot_process.assembly import RobotRuntime
 from tangy_hw.robot_process.control_loop import TICK
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
@@ -39,7 +39,7 @@ class Spoken:
         navigator = Navigator(MAP, np.random.default_rng(1), HERE)
         self.robot = LiveRobot(load_robot(), self.parts.body(), navigator, MachineClock())
         self.said: list[dict[str, Any]] = []
-        wired = Wired(self.robot, cast(Any, None), cast(Any, None))
+        wired = RobotRuntime(self.robot, cast(Any, None), cast(Any, None))
         self.process = RobotProcess(wired, self.said.append, stepped=False)
 
     async def take(self, **line: Any) -> None:

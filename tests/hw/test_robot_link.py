@@ -18,9 +18,9 @@ from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client import client
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.write_queue import Outbox
+from tangy_hw.write_queue import WriteQueue
 
 SETUP = RobotSetup("tangy", "bingo", ("user1",))
 PIPE = 1 << 16  # bytes that wait in one
@@ -47,7 +47,7 @@ class Pipe:
 
     def __init__(self) -> None:
         self.out, into = os.pipe()
-        self.outbox = Outbox(os.fdopen(into, "wb"))
+        self.outbox = WriteQueue(os.fdopen(into, "wb"))
         self.thread = threading.Thread(target=self.outbox.run, daemon=True)
         self.thread.start()
 
@@ -132,7 +132,7 @@ class TestEnd:
                 asked.append(link.ask("spin"))
             asked.append(link.ask("spin"))
             for one in asked:
-                with pytest.raises(BrokenOff, match="has ended"):
+                with pytest.raises(Preempted, match="has ended"):
                     one.result(5)
             link.close()
 

@@ -10,7 +10,7 @@ import pytest
 
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_process import startup
-from tangy_hw.robot_process.assembly import Wired
+from tangy_hw.robot_process.assembly import RobotRuntime
 from tangy_hw.robot_process.startup import switched_on
 
 
@@ -65,7 +65,7 @@ def lines(*said: bytes, end: bool = False) -> asyncio.StreamReader:
 
 
 def opening(robot: Slow, said: asyncio.StreamReader) -> Any:
-    return switched_on(cast(Wired, robot), said)
+    return switched_on(cast(RobotRuntime, robot), said)
 
 
 async def test_a_program_that_has_gone_gets_nothing_switched_on(armed: list[float]) -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tangy_hw.audio.player import NullPlayer, Player, PlayerError, ProgramPlayer
+from tangy_hw.audio.player import NullPlayer, PlayerError, ProgramPlayer, SoundPlayer
 from tangy_hw.audio.synthesis import ABSENT, Synthesiser
-from tangy_hw.audio.voice import Voice
+from tangy_hw.audio.voice import SpeechVoice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.hw.speakers import Clock, Speaker, program
@@ -41,18 +41,18 @@ class Scene:
         self.synthesiser = Synthesiser(folder / "cache", which=self.speaker.which)
         self.gate: list[str] = []
         self.told: list[str] = []
-        self.voices: list[Voice] = []
+        self.voices: list[SpeechVoice] = []
 
     def voice(
         self,
-        player: Player | None = None,
+        player: SoundPlayer | None = None,
         *,
         synthesiser: Synthesiser | None = None,
         on_begin: Callable[[], None] | None = None,
         on_end: Callable[[], None] | None = None,
-    ) -> Voice:
+    ) -> SpeechVoice:
         """Make a voice."""
-        voice = Voice(
+        voice = SpeechVoice(
             synthesiser or self.synthesiser,
             player or NullPlayer(self.clock.sleep),
             deck=load_activity("bingo").deck,

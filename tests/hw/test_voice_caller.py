@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangy_hw.audio.number_reader import Piece, as_called, calls, in_words, marked_up
+from tangy_hw.audio.number_reader import SpokenPiece, as_called, calls, in_words, marked_up
 from tangy_profiles.activity import Activity, load_activity
 
 DECK = load_activity("bingo").deck
@@ -46,12 +46,12 @@ def test_a_call_is_said_twice_and_then_digit_by_digit(text: str, said: str) -> N
     ],
 )
 def test_what_is_no_call_of_the_deck_is_left_as_it_is(text: str) -> None:
-    assert as_called(text, DECK) == (Piece(text),)
+    assert as_called(text, DECK) == (SpokenPiece(text),)
 
 
 def test_the_letters_come_from_the_deck(lanterns: Activity) -> None:
     assert in_words(as_called("K-15 B-5", lanterns.deck)) == "K, 15. K, 1 5. B-5"
-    assert as_called("K-15", None) == (Piece("K-15"),)
+    assert as_called("K-15", None) == (SpokenPiece("K-15"),)
 
 
 def test_only_the_call_is_slow_and_has_pauses() -> None:
@@ -64,7 +64,7 @@ def test_only_the_call_is_slow_and_has_pauses() -> None:
 
 
 def test_nobody_waits_before_or_after_a_call_that_is_all() -> None:
-    assert "<break" not in marked_up((Piece("B, 5.", call=True),))
+    assert "<break" not in marked_up((SpokenPiece("B, 5.", call=True),))
 
 
 def test_there_is_nothing_to_say_of_nothing() -> None:

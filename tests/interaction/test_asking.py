@@ -30,7 +30,7 @@ from tangy_tui.interaction.facilitation import (
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.online_learning import Answers
+from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policies import POLICY, load_policy
 from tangy_tui.learning.policy import PAPER, SURE, Policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
@@ -51,7 +51,7 @@ def asking(store: Store, activity: Activity, policy: Policy, seed: int = 1) -> F
         store,
         names={"user1": "Rosa"},
         seed=seed,
-        answers=Answers(store, activity),
+        answers=OnlineLearning(store, activity),
     )
 
 

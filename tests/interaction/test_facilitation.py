@@ -20,11 +20,11 @@ from tangy_tui.interaction import facilitation as room
 from tangy_tui.interaction.facilitation import (
     ENDED,
     Acted,
+    BeliefUpdated,
     Facilitation,
     GameBegun,
     GameEnded,
     GameEvent,
-    Learnt,
 )
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.policy import Policy, learn_policy
@@ -98,7 +98,7 @@ def test_each_response_updates_the_belief_in_the_strategy_that_was_used(facilita
     for event in play(facilitation, 8):
         if isinstance(event, Acted):
             acted = event
-        if isinstance(event, Learnt):
+        if isinstance(event, BeliefUpdated):
             assert acted is not None
             response = event.response
             assert acted.choice is not None
@@ -177,7 +177,7 @@ def test_after_the_end_there_are_no_steps_until_the_next_game(facilitate: Make) 
 @pytest.mark.parametrize("users", range(1, 5))
 def test_the_same_seed_plays_the_same_games(users: int, facilitate: Make, store: Store) -> None:
     def told(events: list[GameEvent]) -> list[object]:
-        return [e for e in events if isinstance(e, Acted | Learnt)]
+        return [e for e in events if isinstance(e, Acted | BeliefUpdated)]
 
     one = facilitate(13, users=users)
     other = facilitate(13, users=users)
@@ -193,7 +193,7 @@ def test_a_made_up_activity_is_facilitated_by_the_same_code(
     assert all(act.right for act in acts(events))
     endings = [event for event in events if isinstance(event, GameEnded)]
     assert [ending.stopped for ending in endings] == [None] * 10
-    assert any(isinstance(event, Learnt) for event in events)
+    assert any(isinstance(event, BeliefUpdated) for event in events)
 
 
 def test_people_who_play_without_a_mistake_are_only_celebrated(
@@ -203,7 +203,7 @@ def test_people_who_play_without_a_mistake_are_only_celebrated(
     world = SimulatedWorld(activity, ids, seed=1, users=perfect)
     persuasion = Persuasion(ids, tuple(activity.strategies), Random(1))
     events = play(Facilitation(world, policy, persuasion, store, names={}, seed=1), 3)
-    assert not any(isinstance(event, Learnt) for event in events)
+    assert not any(isinstance(event, BeliefUpdated) for event in events)
 
 
 def test_what_the_world_could_not_carry_out_is_no_success(

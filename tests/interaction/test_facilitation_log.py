@@ -14,9 +14,9 @@ from tangy_tui.interaction.facilitation import (
     RESPONSE,
     STEP,
     Acted,
+    BeliefUpdated,
     Facilitation,
     GameEnded,
-    Learnt,
 )
 from tangy_tui.learning.policy import Policy
 from tests.interaction.conftest import acts, play
@@ -27,7 +27,7 @@ Make = Callable[..., Facilitation]
 def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: Store) -> None:
     facilitation = facilitate(6)
     facilitation.begin()
-    kinds = {Acted: STEP, Learnt: RESPONSE, GameEnded: ENDED}
+    kinds = {Acted: STEP, BeliefUpdated: RESPONSE, GameEnded: ENDED}
     told: list[str] = [BEGUN]
     while not facilitation.over:
         told += [kinds[type(event)] for event in facilitation.step()]

@@ -16,16 +16,16 @@ from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.errors import TangyError
-from tangy_profiles.persuading import PAPER, Persuading
+from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.interaction.feedback import AWAITED, Feedback
-from tangy_tui.interaction.memory import Memory
+from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.persuasion import Persuasion
 
 STRATEGIES = ("plain", "warm", "brisk")
-FORGETFUL = Persuading(forgetting=0.9)
-DAILY = Persuading("bayes-ucb", "people", 0.9, "day")
+FORGETFUL = PersuasionConfig(forgetting=0.9)
+DAILY = PersuasionConfig("bayes-ucb", "people", 0.9, "day")
 
 fresh = (f"p{number}" for number in count())
 """A person for each example: they share a log, and must not disturb each other."""
@@ -154,7 +154,7 @@ def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedba
     log: Store, told: list[tuple[str, str | int, bool]]
 ) -> None:
     person, model = next(fresh), Model()
-    memory = Memory(log, STRATEGIES)
+    memory = PersonModels(log, STRATEGIES)
     live = Persuasion([person], STRATEGIES, Random(1), memory=memory)
     with log.transaction():
         for what, which, yes in told:
@@ -176,12 +176,12 @@ def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedba
 
 
 @examples(max_examples=30)
-@given(moves, st.sampled_from([FORGETFUL, DAILY, Persuading("bayes-ucb", "people")]))
+@given(moves, st.sampled_from([FORGETFUL, DAILY, PersuasionConfig("bayes-ucb", "people")]))
 def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_recalled_ones(
-    log: Store, clock: Clock, told: list[tuple[str, str | int, bool]], chosen: Persuading
+    log: Store, clock: Clock, told: list[tuple[str, str | int, bool]], chosen: PersuasionConfig
 ) -> None:
     person, model = next(fresh), Model()
-    memory = Memory(log, STRATEGIES, chosen)
+    memory = PersonModels(log, STRATEGIES, chosen)
     with log.transaction():
         live = Persuasion([person], STRATEGIES, Random(1), memory=memory)
         for hours, (what, which, yes) in enumerate(told):
@@ -210,7 +210,7 @@ def test_late_feedback_comes_to_the_same_in_whatever_order_it_arrives(
 ) -> None:
     """Also where beliefs fade: an answer counts from when its request was put."""
     in_time, late = next(fresh), next(fresh)
-    memory = Memory(log, STRATEGIES, Persuading(forgetting=0.9))
+    memory = PersonModels(log, STRATEGIES, PersuasionConfig(forgetting=0.9))
     with log.transaction():
         waiting = []
         for strategy, complied in told:
@@ -282,7 +282,7 @@ def test_undo_goes_back_one_change_at_a_time_and_person_by_person(store: Store) 
 
 
 def test_a_strategy_that_is_switched_off_is_never_chosen_and_one_always_stays(store: Store) -> None:
-    memory = Memory(store, STRATEGIES)
+    memory = PersonModels(store, STRATEGIES)
     feedback = memory.feedback
     for strategy in ("warm", "brisk"):
         feedback.switch("p", strategy, False, STRATEGIES)
@@ -301,12 +301,12 @@ def test_a_strategy_that_is_switched_off_is_never_chosen_and_one_always_stays(st
 def test_of_an_activity_none_of_whose_strategies_is_on_all_can_be_used(store: Store) -> None:
     feedback = Feedback(store)
     feedback.switch("p", "warm", False, STRATEGIES)
-    other = Persuasion(["p"], ("warm",), Random(1), memory=Memory(store, ("warm",)))
+    other = Persuasion(["p"], ("warm",), Random(1), memory=PersonModels(store, ("warm",)))
     assert other.choose("p").strategy == "warm"
 
 
 def test_a_method_of_ones_own_comes_before_the_activitys(store: Store) -> None:
-    memory = Memory(store, STRATEGIES, FORGETFUL)
+    memory = PersonModels(store, STRATEGIES, FORGETFUL)
     assert (memory.recall("p").chosen, memory.recall("p").own) == (FORGETFUL, False)
     memory.feedback.choose_method("p", PAPER)
     assert (memory.recall("p").chosen, memory.recall("p").own) == (PAPER, True)
@@ -318,7 +318,7 @@ def test_a_method_of_ones_own_comes_before_the_activitys(store: Store) -> None:
 
 
 def test_a_prior_from_earlier_people_leaves_out_what_is_void(store: Store) -> None:
-    memory = Memory(store, STRATEGIES, Persuading(prior="people"))
+    memory = PersonModels(store, STRATEGIES, PersuasionConfig(prior="people"))
     for person in ("a", "b", "c", "d"):
         for _ in range(5):
             respond(store, person, "warm", True)
@@ -331,7 +331,7 @@ def test_a_prior_from_earlier_people_leaves_out_what_is_void(store: Store) -> No
 
 def test_days_pass_for_who_forgets_by_the_day(log: Store, clock: Clock) -> None:
     person = next(fresh)
-    memory = Memory(log, STRATEGIES, Persuading(forgetting=0.5, forgetting_per="day"))
+    memory = PersonModels(log, STRATEGIES, PersuasionConfig(forgetting=0.5, forgetting_per="day"))
     for _ in range(4):
         respond(log, person, "warm", True)
     live = Persuasion([person], STRATEGIES, Random(1), memory=memory)
@@ -345,6 +345,6 @@ def test_days_pass_for_who_forgets_by_the_day(log: Store, clock: Clock) -> None:
 def test_the_log_can_be_read_where_it_cannot_be_written(tmp_path: Path) -> None:
     with Store.open(tmp_path / "none", write=False) as nothing:
         assert Feedback(nothing).history("p") == []
-        assert Memory(nothing, STRATEGIES).recall("p").beliefs["warm"] == Beta()
+        assert PersonModels(nothing, STRATEGIES).recall("p").beliefs["warm"] == Beta()
         with pytest.raises(TangyError):
             Feedback(nothing).switch("p", "warm", False, STRATEGIES)

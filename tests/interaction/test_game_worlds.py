@@ -17,11 +17,11 @@ from tangy_profiles.game_world import (
     read_game_world,
 )
 from tangy_profiles.person import Person
-from tangy_profiles.persuading import Persuading
+from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_worlds import GameWorlds
-from tangy_tui.interaction.memory import Memory
+from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.record import read_records
 
 STATE = ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()).to_json()
@@ -38,7 +38,7 @@ def game(store: Store, id: str, world: GameWorld | None, complied: int, refused:
 
 
 def believed(store: Store, world: GameWorld | None = None) -> tuple[float, float]:
-    belief = Memory(store, STRATEGIES, world=world).recall("p").beliefs["praise"]
+    belief = PersonModels(store, STRATEGIES, world=world).recall("p").beliefs["praise"]
     return belief.alpha, belief.beta
 
 
@@ -74,30 +74,30 @@ def test_the_world_of_the_last_game_is_shown_unless_another_is_asked_for(tmp_pat
 
 
 def test_a_method_that_forgets_learns_from_its_own_world_alone(tmp_path: Path) -> None:
-    forgetting = Persuading("thompson", "uniform", 0.9, "interaction")
+    forgetting = PersuasionConfig("thompson", "uniform", 0.9, "interaction")
     with Store.open(tmp_path) as store:
         game(store, "l", LIVE, 3)
-        before = Memory(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs
+        before = PersonModels(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs
         game(store, "s", SIMULATED, 0, 9)
-        assert Memory(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs == before
+        assert PersonModels(store, STRATEGIES, forgetting, world=LIVE).recall("p").beliefs == before
 
 
 def test_what_worked_with_others_is_taken_from_the_same_world(tmp_path: Path) -> None:
-    people = Persuading("thompson", "people")
+    people = PersuasionConfig("thompson", "people")
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 9)
-        fresh = Memory(store, STRATEGIES, people, world=LIVE).recall("q").prior
+        fresh = PersonModels(store, STRATEGIES, people, world=LIVE).recall("q").prior
         game(store, "t", SIMULATED, 9)
-        assert Memory(store, STRATEGIES, people, world=LIVE).recall("q").prior == fresh
+        assert PersonModels(store, STRATEGIES, people, world=LIVE).recall("q").prior == fresh
 
 
 def test_what_staff_saw_without_a_game_belongs_to_the_world_they_look_at(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "s", SIMULATED, 1)
-        Memory(store, STRATEGIES, world=LIVE).feedback.give("p", "praise", True)
+        PersonModels(store, STRATEGIES, world=LIVE).feedback.give("p", "praise", True)
         assert believed(store, LIVE) == (2, 1)
         assert believed(store, SIMULATED) == (2, 1)
-        Memory(store, STRATEGIES, world=SIMULATED).feedback.give("p", "praise", False)
+        PersonModels(store, STRATEGIES, world=SIMULATED).feedback.give("p", "praise", False)
         assert believed(store, LIVE) == (2, 1)
         assert believed(store, SIMULATED) == (2, 2)
 
@@ -105,7 +105,7 @@ def test_what_staff_saw_without_a_game_belongs_to_the_world_they_look_at(tmp_pat
 def test_a_response_that_is_void_counts_in_no_world(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         game(store, "l", LIVE, 2)
-        memory = Memory(store, STRATEGIES, world=LIVE)
+        memory = PersonModels(store, STRATEGIES, world=LIVE)
         memory.feedback.void("p", memory.history("p")[0].seq)
         assert believed(store, LIVE) == (2, 1)
         assert believed(store, SIMULATED) == (1, 1)
@@ -116,9 +116,9 @@ def test_a_record_tells_of_one_world_with_the_numbers_of_the_whole_log(tmp_path:
         game(store, "s", SIMULATED, 2)
         game(store, "l", LIVE, 1)
         person = Person("p", "Rosa")
-        (live,) = read_records(store, Memory(store, STRATEGIES, world=LIVE), [person])
+        (live,) = read_records(store, PersonModels(store, STRATEGIES, world=LIVE), [person])
         assert (live.world, [entry.number for entry in live.history]) == (LIVE, [3])
-        (bench,) = read_records(store, Memory(store, STRATEGIES, world=BENCH), [person])
+        (bench,) = read_records(store, PersonModels(store, STRATEGIES, world=BENCH), [person])
         assert (bench.history, bench.seen) == ((), None)
 
 

@@ -17,7 +17,7 @@ from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import (
     METHODS,
     PAPER,
-    Persuading,
+    PersuasionConfig,
     read_persuading,
     spoken_persuading,
 )
@@ -44,7 +44,7 @@ responses = st.lists(st.tuples(st.sampled_from(STRATEGIES), st.booleans()), max_
 methods: st.SearchStrategy[Method] = st.builds(
     method_of,
     st.builds(
-        Persuading,
+        PersuasionConfig,
         st.sampled_from(["thompson", "bayes-ucb"]),
         st.sampled_from(["uniform", "people"]),
         st.sampled_from([1.0, 0.98, 0.6]),
@@ -286,15 +286,15 @@ def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
     ("words", "chosen"),
     [
         ("thompson", PAPER),
-        ("bayes-ucb", Persuading("bayes-ucb")),
-        ("people", Persuading(prior="people")),
-        ("day 0.9 people Bayes-UCB", Persuading("bayes-ucb", "people", 0.9, "day")),
-        (".98", Persuading(forgetting=0.98)),
+        ("bayes-ucb", PersuasionConfig("bayes-ucb")),
+        ("people", PersuasionConfig(prior="people")),
+        ("day 0.9 people Bayes-UCB", PersuasionConfig("bayes-ucb", "people", 0.9, "day")),
+        (".98", PersuasionConfig(forgetting=0.98)),
     ],
 )
-def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: Persuading) -> None:
+def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: PersuasionConfig) -> None:
     assert spoken_persuading(words.split()) == chosen
-    assert Persuading.from_json(chosen.to_json()) == chosen
+    assert PersuasionConfig.from_json(chosen.to_json()) == chosen
 
 
 @pytest.mark.parametrize(
@@ -316,7 +316,9 @@ def test_other_words_are_refused_in_a_sentence(words: str, said: str) -> None:
 def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
     assert read_persuading(Table({}, "x.toml")) == PAPER
     table = {"method": "bayes-ucb", "prior": "people", "forgetting": 0.9, "forgetting_per": "day"}
-    assert read_persuading(Table(table, "x.toml")) == Persuading("bayes-ucb", "people", 0.9, "day")
+    assert read_persuading(Table(table, "x.toml")) == PersuasionConfig(
+        "bayes-ucb", "people", 0.9, "day"
+    )
     with pytest.raises(ProfileError, match=r"x\.toml: persuasion\.method = 'tomson'.*'thompson'"):
         read_persuading(Table({"method": "tomson"}, "x.toml", "persuasion."))
     with pytest.raises(ProfileError, match="is not a key here; did you mean 'forgetting'"):
@@ -327,7 +329,7 @@ def test_each_method_can_be_made_and_has_words_for_people() -> None:
     from tangy_tui.ui.dialogs import method as dialog
 
     assert set(dialog.METHODS) == set(METHODS)
-    assert {method_of(Persuading(name)).words for name in METHODS} == {
+    assert {method_of(PersuasionConfig(name)).words for name in METHODS} == {
         "Thompson sampling",
         "Bayes-UCB",
     }
@@ -335,4 +337,4 @@ def test_each_method_can_be_made_and_has_words_for_people() -> None:
 
 def test_a_method_that_is_not_known_is_refused_and_not_taken_for_another() -> None:
     with pytest.raises(ProfileError, match="There is no method 'thomson': did you mean"):
-        Persuading.from_json({"method": "thomson"})
+        PersuasionConfig.from_json({"method": "thomson"})

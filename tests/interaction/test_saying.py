@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
-from tangy_tui.interaction.memory import Known, Memory
+from tangy_tui.interaction.memory import PersonModel, PersonModels
 from tangy_tui.interaction.methods import Thompson
 from tangy_tui.interaction.record import (
     Record,
@@ -43,7 +43,7 @@ def noted(tmp_path: Path) -> Callable[..., Record]:
                     store.append(
                         "response", {}, person="user1", strategy=strategy, complied=complied
                     )
-            memory = Memory(store, strategies)
+            memory = PersonModels(store, strategies)
             for strategy in off:
                 memory.feedback.switch("user1", strategy, False, strategies)
             (record,) = read_records(store, memory, [Person("user1", "Rosa")])
@@ -94,7 +94,7 @@ def test_it_works_only_where_somebody_complied_and_there_was_a_choice(
     counts: list[tuple[int, int]], off: set[str]
 ) -> None:
     beliefs = {n: Beta(1 + yes, 1 + no) for n, (yes, no) in zip(NAMES, counts, strict=False)}
-    known = Known(Thompson(), beliefs, beliefs, frozenset(off & set(beliefs)))
+    known = PersonModel(Thompson(), beliefs, beliefs, frozenset(off & set(beliefs)))
     best, on = best_of_those_on(beliefs, known.off), on_of(beliefs, known.off)
     settled = settled_of(on, best)
     record = Record(Person("user1", "Rosa"), known, best, settled, (), (), None, NOW)

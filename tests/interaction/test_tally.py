@@ -9,7 +9,7 @@ import pytest
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beta, uniform_beliefs
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response, Situation
-from tangy_tui.interaction.facilitation import Acted, GameBegun, GameEnded, Learnt
+from tangy_tui.interaction.facilitation import Acted, BeliefUpdated, GameBegun, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Decision
 
@@ -30,7 +30,7 @@ def acted(activity: Activity, situation: Situation, behaviour: str, right: bool 
 @pytest.fixture
 def tally(activity: Activity) -> Tally:
     counted = Tally()
-    learnt = Learnt(Response("a", "praise", True, True, 3.0), Beta(2, 1))
+    learnt = BeliefUpdated(Response("a", "praise", True, True, 3.0), Beta(2, 1))
     counted.add([GameBegun("g", 1, ActivityState(0, START, FRONT, None, ()))])
     counted.add([acted(activity, ODD, "joke"), acted(activity, CALL, "call number"), learnt])
     counted.add([acted(activity, CALL, "call number"), acted(activity, CALL, "joke", False)])

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tangy_hw.audio.wav import RATE
-from tangy_tui.speech.evidence import Evidence, Expecting, Wanted
+from tangy_tui.speech.evidence import AcousticEvidence, Expecting, Wanted
 from tangy_tui.speech.understanding import NO, YES
 
 PATIENCE = 10.0
@@ -96,7 +96,7 @@ class FakeRecogniser:
 
     async def hear(
         self, chunks: asyncio.Queue[bytes], expecting: Expecting, *, endpoint: bool
-    ) -> Evidence:
+    ) -> AcousticEvidence:
         pcm = b""
         self.left = b""
         while chunk := await chunks.get():
@@ -111,13 +111,13 @@ class FakeRecogniser:
                 break
         return await self._evidence(pcm.strip(b"\0") if endpoint else pcm, expecting)
 
-    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         return await self._evidence(pcm, expecting)
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
         return [piece for piece in pcm.split(sound(" ", 0.5)) if piece]
 
-    async def _evidence(self, pcm: bytes, expecting: Expecting) -> Evidence:
+    async def _evidence(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         await self.decoding.wait()
         self.said = pcm
         self.heard.append((pcm, expecting))
@@ -126,7 +126,7 @@ class FakeRecogniser:
         letter = Counter(pcm.decode()).most_common(1)[0][0] if pcm else ""
         words = WORDS.get(letter, "")
         phrase = words if words in (*YES, *NO) else ""
-        return Evidence(words, phrase, 0.0, 1.0, len(pcm) / 2 / RATE)
+        return AcousticEvidence(words, phrase, 0.0, 1.0, len(pcm) / 2 / RATE)
 
 
 WORKER = r"""

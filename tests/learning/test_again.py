@@ -15,52 +15,54 @@ from hypothesis import strategies as st
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import learn_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Again, Begun, Executed, Redo, StepUndone, Undo
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Refused, Reply, Say
 
 YES = Reply(yes=True)
 
 
 @contextmanager
-def opened(folder: Path, users: int = 4) -> Iterator[House]:
-    house = House(folder, users=users)
+def opened(folder: Path, users: int = 4) -> Iterator[Workspace]:
+    workspace = Workspace(folder, users=users)
     try:
-        with house.store.transaction():  # wait for the disk only once
-            yield house
+        with workspace.store.transaction():  # wait for the disk only once
+            yield workspace
     finally:
-        house.close()
+        workspace.close()
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with an empty data folder."""
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    """A workspace with an empty data folder."""
     with opened(tmp_path / "data") as made:
         yield made
 
 
-def begun(house: House, teacher: str = "Ada", again: Again | None = None) -> Teaching:
-    teaching = house.teaching(teacher, None, again=again)
+def begun(
+    workspace: Workspace, teacher: str = "Ada", again: Again | None = None
+) -> TeachingSession:
+    teaching = workspace.teaching(teacher, None, again=again)
     teaching.begin()
     return teaching
 
 
-def steps(teaching: Teaching, count: int) -> None:
+def steps(teaching: TeachingSession, count: int) -> None:
     teacher = ScriptedTeacher(teaching)
     while len(teaching.demonstration.steps) < count:
         teaching.apply(teacher.command())
 
 
-def kept(house: House, id: str) -> Demonstration:
-    return read_library(house.store, house.activity.name).entries[id].demonstration
+def kept(workspace: Workspace, id: str) -> Demonstration:
+    return read_library(workspace.store, workspace.activity.name).entries[id].demonstration
 
 
-def test_what_was_undone_is_done_again_just_as_it_was(house: House) -> None:
-    teaching = begun(house)
+def test_what_was_undone_is_done_again_just_as_it_was(workspace: Workspace) -> None:
+    teaching = begun(workspace)
     steps(teaching, 5)
     before = teaching.demonstration
     teaching.apply(Undo())
@@ -70,45 +72,45 @@ def test_what_was_undone_is_done_again_just_as_it_was(house: House) -> None:
     assert isinstance(done, Executed)
     assert done.step == before.steps[3]
     teaching.apply(Redo())
-    assert teaching.demonstration == before == kept(house, before.id)
+    assert teaching.demonstration == before == kept(workspace, before.id)
     assert [s.id for s in teaching.demonstration.steps] == [s.id for s in before.steps]
     assert isinstance(teaching.apply(Redo())[0], Refused)
 
 
-def test_a_new_step_ends_what_could_be_done_again(house: House) -> None:
-    teaching = begun(house)
+def test_a_new_step_ends_what_could_be_done_again(workspace: Workspace) -> None:
+    teaching = begun(workspace)
     steps(teaching, 3)
     teaching.apply(Undo())
     steps(teaching, 3)
     assert isinstance(teaching.apply(Redo())[0], Refused)
 
 
-def test_a_finished_game_is_finished_again_by_redo(house: House) -> None:
-    teaching = begun(house)
+def test_a_finished_game_is_finished_again_by_redo(workspace: Workspace) -> None:
+    teaching = begun(workspace)
     list(ScriptedTeacher(teaching).demonstrate())
     whole = teaching.demonstration
     teaching.apply(Undo())
-    assert not kept(house, whole.id).finished
+    assert not kept(workspace, whole.id).finished
     teaching.apply(Redo())
-    assert teaching.demonstration == whole == kept(house, whole.id)
+    assert teaching.demonstration == whole == kept(workspace, whole.id)
 
 
 def test_what_can_be_done_again_is_known_after_a_break(tmp_path: Path) -> None:
-    with opened(tmp_path / "data") as house:
-        teaching = begun(house)
+    with opened(tmp_path / "data") as workspace:
+        teaching = begun(workspace)
         steps(teaching, 4)
         whole = teaching.demonstration
         teaching.apply(Undo())
         teaching.apply(Undo())
-    with opened(tmp_path / "data") as house:
-        teaching = begun(house)
+    with opened(tmp_path / "data") as workspace:
+        teaching = begun(workspace)
         teaching.apply(Redo())
         teaching.apply(Redo())
         assert teaching.demonstration == whole
 
 
-def test_redo_waits_for_an_open_question(house: House) -> None:
-    teaching = begun(house)
+def test_redo_waits_for_an_open_question(workspace: Workspace) -> None:
+    teaching = begun(workspace)
     steps(teaching, 1)
     teaching.apply(Undo())
     teaching.apply(Say("greet everyone"))
@@ -117,8 +119,8 @@ def test_redo_waits_for_an_open_question(house: House) -> None:
     assert len(teaching.demonstration.steps) == 1
 
 
-def test_going_back_in_the_present_game_undoes_and_can_be_done_again(house: House) -> None:
-    teaching = begun(house)
+def test_going_back_in_the_present_game_undoes_and_can_be_done_again(workspace: Workspace) -> None:
+    teaching = begun(workspace)
     steps(teaching, 6)
     whole = teaching.demonstration
     events = teaching.apply(Again(whole.id, 2))
@@ -131,32 +133,32 @@ def test_going_back_in_the_present_game_undoes_and_can_be_done_again(house: Hous
 
 
 def test_a_game_shown_again_from_a_step_gives_way_when_the_new_one_is_complete(
-    house: House,
+    workspace: Workspace,
 ) -> None:
-    first = begun(house)
+    first = begun(workspace)
     list(ScriptedTeacher(first).demonstrate())
     old = first.demonstration
-    again = begun(house, "Bea", Again("1", 10))
+    again = begun(workspace, "Bea", Again("1", 10))
     assert again.demonstration.steps == old.steps[:10]
-    assert len(read_library(house.store, "bingo").entries) == 1  # looking in leaves nothing
+    assert len(read_library(workspace.store, "bingo").entries) == 1  # looking in leaves nothing
     list(ScriptedTeacher(again).demonstrate())
     new = again.demonstration
     assert (new.origin, new.of, new.teacher, new.seed) == ("again", (old.id,), "Bea", old.seed)
-    library = read_library(house.store, "bingo")
+    library = read_library(workspace.store, "bingo")
     assert library.finished == [new]
     assert library.entries[old.id].hidden == "shown again"
     again.apply(Undo())  # no longer complete
-    assert read_library(house.store, "bingo").finished == [old]
+    assert read_library(workspace.store, "bingo").finished == [old]
 
 
-def test_steps_of_the_old_game_can_be_undone_in_the_new_one(house: House) -> None:
-    first = begun(house)
+def test_steps_of_the_old_game_can_be_undone_in_the_new_one(workspace: Workspace) -> None:
+    first = begun(workspace)
     steps(first, 5)
-    again = begun(house, "Bea", Again("1", 3))
+    again = begun(workspace, "Bea", Again("1", 3))
     again.apply(Undo())
-    assert kept(house, again.demonstration.id).steps == first.demonstration.steps[:2]
-    assert kept(house, first.demonstration.id) == first.demonstration
-    resumed = house.teaching("Bea", None)
+    assert kept(workspace, again.demonstration.id).steps == first.demonstration.steps[:2]
+    assert kept(workspace, first.demonstration.id) == first.demonstration
+    resumed = workspace.teaching("Bea", None)
     (event,) = resumed.begin()
     assert isinstance(event, Begun)
     assert event.resumed
@@ -164,17 +166,19 @@ def test_steps_of_the_old_game_can_be_undone_in_the_new_one(house: House) -> Non
 
 
 @pytest.mark.parametrize("again", [Again("7", 1), Again("1", 99), Again("1", -1)])
-def test_what_cannot_be_shown_again_is_refused_in_a_sentence(again: Again, house: House) -> None:
-    steps(begun(house), 2)
+def test_what_cannot_be_shown_again_is_refused_in_a_sentence(
+    again: Again, workspace: Workspace
+) -> None:
+    steps(begun(workspace), 2)
     with pytest.raises(TangyError, match=r"demonstration|step"):
-        begun(house, "Bea", again)
+        begun(workspace, "Bea", again)
 
 
 def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    house = House(tmp_path / "data")
-    teaching = begun(house)
+    workspace = Workspace(tmp_path / "data")
+    teaching = begun(workspace)
     steps(teaching, 4)
     before, state = teaching.demonstration, teaching.world.observe()
     append, calls = Store.append, iter(range(3))
@@ -187,9 +191,9 @@ def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
     with monkeypatch.context() as patch, pytest.raises(StoreError):
         patch.setattr(Store, "append", failing)
         teaching.apply(Again(before.id, 1))
-    assert teaching.demonstration == before == kept(house, before.id)
+    assert teaching.demonstration == before == kept(workspace, before.id)
     assert teaching.world.observe() == state
-    house.close()
+    workspace.close()
 
 
 @given(st.lists(st.sampled_from(("step", "undo", "redo", "back")), max_size=14), st.integers(1, 9))
@@ -197,8 +201,8 @@ def test_an_undo_of_several_steps_that_cannot_be_kept_has_not_happened(
 def test_the_log_agrees_with_the_session_after_any_steps_undos_and_redos(
     commands: list[str], seed: int
 ) -> None:
-    with TemporaryDirectory() as folder, opened(Path(folder)) as house:
-        teaching = house.teaching("Ada", seed)
+    with TemporaryDirectory() as folder, opened(Path(folder)) as workspace:
+        teaching = workspace.teaching("Ada", seed)
         teaching.begin()
         trail: list[Demonstration] = []  # what redo must lead to
         for command in commands:
@@ -222,33 +226,33 @@ def test_the_log_agrees_with_the_session_after_any_steps_undos_and_redos(
                     ]
                     assert teaching.demonstration == shorter[0]
             if before.steps or teaching.demonstration.steps:
-                assert kept(house, teaching.demonstration.id) == teaching.demonstration
+                assert kept(workspace, teaching.demonstration.id) == teaching.demonstration
             if teaching.demonstration.steps:
                 assert teaching.world.observe() == teaching.demonstration.steps[-1].after
 
 
 @pytest.mark.parametrize("users", [1, 4, 8])
 def test_one_guided_game_teaches_the_whole_policy(users: int, tmp_path: Path) -> None:
-    with opened(tmp_path / "data", users) as house:
-        teaching = house.teaching("Ada", 5, guided=True)
+    with opened(tmp_path / "data", users) as workspace:
+        teaching = workspace.teaching("Ada", 5, guided=True)
         teaching.begin()
         list(ScriptedTeacher(teaching).demonstrate())
-        (shown,) = read_library(house.store, "bingo").finished
+        (shown,) = read_library(workspace.store, "bingo").finished
         assert shown.guided
-        policy = learn_policy(house.activity, [shown])
-        assert policy.exact(house.activity)
-        assert all(policy.decide(s).sure for s in house.activity.situations)
+        policy = learn_policy(workspace.activity, [shown])
+        assert policy.exact(workspace.activity)
+        assert all(policy.decide(s).sure for s in workspace.activity.situations)
 
 
 def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path: Path) -> None:
-    with opened(tmp_path / "data") as house:
-        teaching = house.teaching("Ada", 5, guided=True)
+    with opened(tmp_path / "data") as workspace:
+        teaching = workspace.teaching("Ada", 5, guided=True)
         teaching.begin()
         steps(teaching, 20)
         whole = teaching.demonstration
         teaching.apply(Undo())
-    with opened(tmp_path / "data") as house:
-        resumed = house.teaching("Ada", None)
+    with opened(tmp_path / "data") as workspace:
+        resumed = workspace.teaching("Ada", None)
         (event,) = resumed.begin()
         assert isinstance(event, Begun)
         assert event.resumed
@@ -257,32 +261,32 @@ def test_a_guided_game_is_undone_resumed_and_done_again_like_any_other(tmp_path:
 
 
 def test_a_guided_game_is_begun_beside_one_that_is_not_and_taken_up_before_it(
-    house: House,
+    workspace: Workspace,
 ) -> None:
-    steps(begun(house), 2)
-    guided = house.teaching("Ada", None, guided=True)
+    steps(begun(workspace), 2)
+    guided = workspace.teaching("Ada", None, guided=True)
     guided.begin()
     assert guided.demonstration.guided
     steps(guided, 2)
-    assert begun(house).demonstration == guided.demonstration
+    assert begun(workspace).demonstration == guided.demonstration
 
 
-def test_what_gave_way_is_not_shown_again_beside_what_took_its_place(house: House) -> None:
-    first = begun(house)
+def test_what_gave_way_is_not_shown_again_beside_what_took_its_place(workspace: Workspace) -> None:
+    first = begun(workspace)
     list(ScriptedTeacher(first).demonstrate())
-    list(ScriptedTeacher(begun(house, "Bea", Again("1", 10))).demonstrate())
+    list(ScriptedTeacher(begun(workspace, "Bea", Again("1", 10))).demonstrate())
     with pytest.raises(TangyError, match=r"not in use \(shown again\)"):
-        begun(house, "Cleo", Again("1", 5))
-    begun(house, "Cleo", Again("2", 5))
+        begun(workspace, "Cleo", Again("1", 5))
+    begun(workspace, "Cleo", Again("2", 5))
 
 
 def test_a_game_shown_again_whose_first_undo_fails_is_kept_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    house = House(tmp_path / "data")
-    with house.store.transaction():
-        list(ScriptedTeacher(begun(house)).demonstrate())
-    again = begun(house, "Bea", Again("1", 10))
+    workspace = Workspace(tmp_path / "data")
+    with workspace.store.transaction():
+        list(ScriptedTeacher(begun(workspace)).demonstrate())
+    again = begun(workspace, "Bea", Again("1", 10))
     append, calls = Store.append, iter(range(9))
 
     def failing(self: Store, *arguments: object, **options: object) -> int:
@@ -293,7 +297,7 @@ def test_a_game_shown_again_whose_first_undo_fails_is_kept_all_the_same(
     with monkeypatch.context() as patch, pytest.raises(StoreError):
         patch.setattr(Store, "append", failing)
         again.apply(Again(again.demonstration.id, 5))
-    with house.store.transaction():
+    with workspace.store.transaction():
         list(ScriptedTeacher(again).demonstrate())
-    assert kept(house, again.demonstration.id) == again.demonstration
-    house.close()
+    assert kept(workspace, again.demonstration.id) == again.demonstration
+    workspace.close()

@@ -24,31 +24,34 @@ from tangy_tui.speech.calibration import (
     SHIFTS,
     SURELY,
     WEIGHTS,
-    Asked,
+    CalibrationPrompt,
+    CalibrationScore,
     Chosen,
     Figures,
-    Score,
     choose,
     forget,
     keep,
     microphone,
     settings_for,
 )
-from tangy_tui.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
-from tangy_tui.speech.labels import Label
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
+from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.lexicon import Lexicon
-from tangy_tui.speech.microphone_check import Checked, MicrophoneCheck, to_say
+from tangy_tui.speech.microphone_check import CheckResult, MicrophoneCheck, to_say
 
-COMMAND, OTHER = Asked("call number", Label("call number")), Asked("tea", None)
+COMMAND, OTHER = (
+    CalibrationPrompt("call number", UtteranceLabel("call number")),
+    CalibrationPrompt("tea", None),
+)
 
 
-def scores(commands: list[float], others: list[float]) -> list[Score]:
+def scores(commands: list[float], others: list[float]) -> list[CalibrationScore]:
     """Commands that are understood right with these scores, and other sentences."""
-    said = [Score(told, COMMAND, True) for told in commands]
-    return said + [Score(told, OTHER, False) for told in others]
+    said = [CalibrationScore(told, COMMAND, True) for told in commands]
+    return said + [CalibrationScore(told, OTHER, False) for told in others]
 
 
-def everywhere(graded: list[Score]) -> dict[float, list[Score]]:
+def everywhere(graded: list[CalibrationScore]) -> dict[float, list[CalibrationScore]]:
     return dict.fromkeys(WEIGHTS, graded)
 
 
@@ -74,13 +77,13 @@ class TestChoosing:
         assert chosen.figures.understood == 6
 
     def test_the_weight_with_which_more_is_understood_is_taken(self) -> None:
-        lost = [*scores([3.5] * 3, [-6] * 3), *[Score(-6.0, COMMAND, False)] * 3]
+        lost = [*scores([3.5] * 3, [-6] * 3), *[CalibrationScore(-6.0, COMMAND, False)] * 3]
         chosen = choose(everywhere(lost) | {0.1: scores([3.5] * 6, [-6] * 3)})
         assert chosen.settings.garbage == 0.1
         assert (chosen.usual.understood, chosen.figures.understood) == (3, 6)
 
     def test_what_no_setting_parts_is_no_good(self) -> None:
-        nothing = [Score(-6.0, COMMAND, False)] * 6 + scores([], [-6.0] * 3)
+        nothing = [CalibrationScore(-6.0, COMMAND, False)] * 6 + scores([], [-6.0] * 3)
         chosen = choose(everywhere(nothing))
         assert not chosen.figures.parted
         assert abs(chosen.settings.shift) <= 0.5
@@ -94,7 +97,9 @@ class TestChoosing:
     def test_settings_stay_within_bounds_and_never_understand_less_for_nothing(
         self, said: list[tuple[float, bool]], others: list[float]
     ) -> None:
-        graded = [Score(told, COMMAND, right) for told, right in said] + scores([], others)
+        graded = [CalibrationScore(told, COMMAND, right) for told, right in said] + scores(
+            [], others
+        )
         chosen = choose(everywhere(graded))
         assert chosen.settings.garbage in WEIGHTS
         assert SHIFTS[0] <= chosen.settings.shift <= SHIFTS[-1]
@@ -107,12 +112,14 @@ class TestChoosing:
 
 
 class TestStore:
-    CHOSEN = Chosen(Settings("tiers", 0.9, -0.5), Figures(6, 6, 0, 3, 0), Figures(6, 4, 1, 3, 1))
+    CHOSEN = Chosen(
+        EvidenceSettings("tiers", 0.9, -0.5), Figures(6, 6, 0, 3, 0), Figures(6, 4, 1, 3, 1)
+    )
 
     def test_settings_are_kept_for_each_microphone(self, store: Store) -> None:
         keep(store, "arecord", self.CHOSEN)
-        assert settings_for(store, "arecord") == Settings("tiers", 0.9, -0.5)
-        assert settings_for(store, "arecord", "paper") == Settings("paper", 0.9, -0.5)
+        assert settings_for(store, "arecord") == EvidenceSettings("tiers", 0.9, -0.5)
+        assert settings_for(store, "arecord", "paper") == EvidenceSettings("paper", 0.9, -0.5)
         assert settings_for(store, "socket") == settings_for(store, None) == USUAL
 
     def test_the_last_check_counts_and_can_be_forgotten(self, store: Store) -> None:
@@ -164,16 +171,16 @@ class Hears:
         expecting: Expecting = "commands",
         *,
         endpoint: bool = False,
-    ) -> Evidence:
+    ) -> AcousticEvidence:
         while chunk := await sound.get():
             if any(chunk):
                 self.speaking()
                 self.said = chunk
-                return Evidence(seconds=1.0)
-        return Evidence()
+                return AcousticEvidence(seconds=1.0)
+        return AcousticEvidence()
 
-    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
-        return Evidence(self.texts[pcm[0] - 1], "", 0.5, 1.0, 1.0)
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
+        return AcousticEvidence(self.texts[pcm[0] - 1], "", 0.5, 1.0, 1.0)
 
     async def pieces(self, pcm: bytes) -> list[bytes]:
         return [pcm[place : place + 2] for place in range(0, len(pcm), 2)]
@@ -253,7 +260,7 @@ class Broken(Microphone):
 
 
 @pytest.fixture
-def asked(activity: Activity, people: tuple[Person, ...]) -> list[Asked]:
+def asked(activity: Activity, people: tuple[Person, ...]) -> list[CalibrationPrompt]:
     book = Phrasebook(activity, people)
     return to_say(book, Lexicon(book))
 
@@ -278,7 +285,7 @@ class TestChecking:
             assert not any(book.understand(a.text) for a in others)
 
     async def test_a_recording_is_taken_in_order(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         pcm = b"".join(bytes([number, 0]) for number in range(1, len(asked) + 1))
         checked = await self.check(Recording("a.wav", pcm), activity, people, asked)
@@ -287,7 +294,7 @@ class TestChecking:
         assert [words for _, words in checked.heard] == [a.text for a in asked]
 
     async def test_a_live_one_is_asked_again_once(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         microphone = Microphone([1, None, 2, *range(3, len(asked) + 1)])
         told: list[str] = []
@@ -298,7 +305,7 @@ class TestChecking:
         assert told[0] == "Please be quiet for 3 seconds."
 
     async def test_what_is_not_said_at_all_counts_as_not_understood(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         checked = await self.check(Recording("a.wav", b"\1\0\2\0"), activity, people, asked)
         assert checked.chosen.figures == Figures(6, 2, 0, 0, 0)
@@ -306,7 +313,7 @@ class TestChecking:
         assert checked.advice
 
     async def test_silence_changes_nothing(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         with pytest.raises(SoundError, match="nobody was heard"):
             await self.check(Recording("a.wav", b""), activity, people, asked)
@@ -315,7 +322,7 @@ class TestChecking:
         self,
         activity: Activity,
         people: tuple[Person, ...],
-        asked: list[Asked],
+        asked: list[CalibrationPrompt],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
         monkeypatch.setattr(microphone_check, "LOOK_SECONDS", 0.0)
@@ -326,7 +333,7 @@ class TestChecking:
         self,
         activity: Activity,
         people: tuple[Person, ...],
-        asked: list[Asked],
+        asked: list[CalibrationPrompt],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
         said: list[int | None] = [*range(1, len(asked) + 1)]
@@ -343,7 +350,7 @@ class TestChecking:
             await self.check(muted, activity, people, asked, patience=50.0)
 
     async def test_a_recording_is_told_what_it_should_hold(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         told: list[str] = []
         checked = await self.check(Recording("a.wav", b"\1\0"), activity, people, asked, told)
@@ -364,12 +371,12 @@ class TestChecking:
     )
     def test_why_nothing_is_stored_is_a_sentence(self, figures: Figures, why: str) -> None:
         chosen = Chosen(USUAL, figures, figures)
-        checked = Checked(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
+        checked = CheckResult(-60, -30, (), chosen, figures.parted and figures.others > 0, ())
         assert checked.parted is (not why)
         assert checked.reason == (f"Nothing was stored: {why}." if why else "")
 
     async def test_a_microphone_that_breaks_says_why(
-        self, activity: Activity, people: tuple[Person, ...], asked: list[Asked]
+        self, activity: Activity, people: tuple[Person, ...], asked: list[CalibrationPrompt]
     ) -> None:
         with pytest.raises(SoundError, match="unplugged"):
             await self.check(Broken([1, 2]), activity, people, asked)
@@ -379,10 +386,10 @@ class TestChecking:
         source: Source,
         activity: Activity,
         people: tuple[Person, ...],
-        asked: list[Asked],
+        asked: list[CalibrationPrompt],
         told: list[str] | None = None,
         patience: float = microphone_check.PATIENCE,
-    ) -> Checked:
+    ) -> CheckResult:
         def tell(sentence: str) -> None:
             if told is not None:
                 told.append(sentence)

@@ -14,7 +14,7 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import choices, compare, find_policy
 from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
@@ -217,9 +217,9 @@ def test_what_cannot_be_found_is_said_with_what_there_is(
 
 
 def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
-    house = House(taught, write=False)
+    workspace = Workspace(taught, write=False)
     try:
-        store, activity = house.store, house.activity
+        store, activity = workspace.store, workspace.activity
         (kept,) = kept_policies(store, activity.name)
         assert choices(store, activity) == [kept["name"], "scripted"]
         found = {name: find_policy(store, activity, name) for name in choices(store, activity)}
@@ -230,4 +230,4 @@ def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
         assert all(row.same for row in compare(activity, learnt, shown))
         assert learnt.exact(activity)
     finally:
-        house.close()
+        workspace.close()

@@ -12,8 +12,8 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.speech.evidence import USUAL, Evidence, Expecting, Settings, Wanted
-from tangy_tui.speech.labels import STOP, Label, Labels
+from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings, Expecting, Wanted
+from tangy_tui.speech.labels import STOP, Labels, UtteranceLabel
 from tangy_tui.speech.practice import Practice, practise
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.report import practice_lines
@@ -42,16 +42,16 @@ class Hears:
 
     def __init__(self, words: dict[int, str]) -> None:
         self.words = words
-        self.settings: list[Settings] = []
+        self.settings: list[EvidenceSettings] = []
 
     async def start(self, wanted: Wanted) -> None:
         self.settings.append(wanted.settings)
 
-    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> Evidence:
+    async def decode(self, pcm: bytes, expecting: Expecting = "commands") -> AcousticEvidence:
         words = self.words[int.from_bytes(pcm[:2], "little")]
         if words == BROKEN:
             raise SpeechUnavailable("It died twice.")
-        return Evidence(words, words, 0.5, 1.0, len(pcm) / 2 / RATE)
+        return AcousticEvidence(words, words, 0.5, 1.0, len(pcm) / 2 / RATE)
 
 
 async def heard(folder: Path, book: Phrasebook, said: dict[str, str]) -> Practice:
@@ -66,38 +66,41 @@ class TestNames:
     @pytest.mark.parametrize(
         ("name", "said"),
         [
-            ("call_number.wav", Label("call number")),
-            ("CALL-NUMBER 2.wav", Label("call number")),
-            ("Call.Number.rms.003.WAV", Label("call number")),
-            ("tell a joke-slt.wav", Label("joke")),
-            ("celebrate the winner_kal.wav", Label("celebrate")),
-            ("navigate to user-slt.wav", Label("navigate to user")),
-            ("navigate_to_user-user2-003.wav", Label("navigate to user", "user2")),
-            ("navigate_to_user-003.wav", Label("navigate to user")),
-            ("navigate_to_user_2.wav", Label("navigate to user", "user2")),
-            ("go to user two-rms-001.wav", Label("navigate to user", "user2")),
-            ("navigate_to_user-slt-user3.wav", Label("navigate to user", "user3")),
-            ("encourage-user3.wav", Label("encourage")),
-            ("stop.wav", Label(STOP)),
-            ("stop_now-4.wav", Label(STOP)),
-            ("slt/stop.wav", Label(STOP)),
-            ("call number/007.wav", Label("call number")),
-            ("call number/joke.wav", Label("call number")),
-            ("navigate-to-user-user2/20260101T101112-1.wav", Label("navigate to user", "user2")),
-            ("navigate_to_user/user4-1.wav", Label("navigate to user", "user4")),
-            ("navigate_to_user/2.wav", Label("navigate to user")),
-            ("call_number/slt/003.wav", Label("call number")),
-            ("none/call number.wav", Label(None)),
-            ("other speech/7.wav", Label(None)),
-            ("far_1/tea.wav", Label(None)),
-            ("noise-03.wav", Label(None)),
-            ("speech test/call number.wav", Label("call number")),
-            ("call nmber.wav", Label(None, named=False)),
-            ("017.wav", Label(None, named=False)),
+            ("call_number.wav", UtteranceLabel("call number")),
+            ("CALL-NUMBER 2.wav", UtteranceLabel("call number")),
+            ("Call.Number.rms.003.WAV", UtteranceLabel("call number")),
+            ("tell a joke-slt.wav", UtteranceLabel("joke")),
+            ("celebrate the winner_kal.wav", UtteranceLabel("celebrate")),
+            ("navigate to user-slt.wav", UtteranceLabel("navigate to user")),
+            ("navigate_to_user-user2-003.wav", UtteranceLabel("navigate to user", "user2")),
+            ("navigate_to_user-003.wav", UtteranceLabel("navigate to user")),
+            ("navigate_to_user_2.wav", UtteranceLabel("navigate to user", "user2")),
+            ("go to user two-rms-001.wav", UtteranceLabel("navigate to user", "user2")),
+            ("navigate_to_user-slt-user3.wav", UtteranceLabel("navigate to user", "user3")),
+            ("encourage-user3.wav", UtteranceLabel("encourage")),
+            ("stop.wav", UtteranceLabel(STOP)),
+            ("stop_now-4.wav", UtteranceLabel(STOP)),
+            ("slt/stop.wav", UtteranceLabel(STOP)),
+            ("call number/007.wav", UtteranceLabel("call number")),
+            ("call number/joke.wav", UtteranceLabel("call number")),
+            (
+                "navigate-to-user-user2/20260101T101112-1.wav",
+                UtteranceLabel("navigate to user", "user2"),
+            ),
+            ("navigate_to_user/user4-1.wav", UtteranceLabel("navigate to user", "user4")),
+            ("navigate_to_user/2.wav", UtteranceLabel("navigate to user")),
+            ("call_number/slt/003.wav", UtteranceLabel("call number")),
+            ("none/call number.wav", UtteranceLabel(None)),
+            ("other speech/7.wav", UtteranceLabel(None)),
+            ("far_1/tea.wav", UtteranceLabel(None)),
+            ("noise-03.wav", UtteranceLabel(None)),
+            ("speech test/call number.wav", UtteranceLabel("call number")),
+            ("call nmber.wav", UtteranceLabel(None, named=False)),
+            ("017.wav", UtteranceLabel(None, named=False)),
         ],
     )
     def test_say_what_was_said(
-        self, name: str, said: Label, book: Phrasebook, tmp_path: Path
+        self, name: str, said: UtteranceLabel, book: Phrasebook, tmp_path: Path
     ) -> None:
         assert Labels(book).of(tmp_path / name, tmp_path) == said
 
@@ -106,9 +109,9 @@ class TestNames:
     ) -> None:
         labels = Labels(book)
         for folder, name, said in (
-            ("joke", "1.wav", Label("joke")),
-            ("speech", "call number.wav", Label("call number")),
-            ("noise", "1.wav", Label(None, named=False)),
+            ("joke", "1.wav", UtteranceLabel("joke")),
+            ("speech", "call number.wav", UtteranceLabel("call number")),
+            ("noise", "1.wav", UtteranceLabel(None, named=False)),
         ):
             assert labels.of(tmp_path / folder / name, tmp_path / folder) == said
 
@@ -132,7 +135,7 @@ class TestFolders:
         (tmp_path / "loop").symlink_to(tmp_path)
         (tmp_path / "notes.txt").write_text("x")
         found = Labels(book).find(tmp_path)
-        assert found.recordings == ((Path("a/b/joke.wav"), Label("joke")),)
+        assert found.recordings == ((Path("a/b/joke.wav"), UtteranceLabel("joke")),)
         assert {str(file): why for file, why in found.left_out} == {
             "again.wav": "is a symbolic link",
             "loop": "is a symbolic link",

@@ -19,7 +19,7 @@ from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import Begun, StepUndone, TeachingEvent
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -27,7 +27,7 @@ from tangy_tui.learning.verification import (
     Rejected,
     Reply,
     Say,
-    Stop,
+    StopCommand,
 )
 from tangy_tui.speech.labels import Labels
 from tangy_tui.speech.recordings import (
@@ -61,9 +61,9 @@ def recorder(tmp_path: Path) -> Recorder:
 
 
 @pytest.fixture
-def teaching(activity: Activity, people: tuple[Person, ...], store: Store) -> Teaching:
+def teaching(activity: Activity, people: tuple[Person, ...], store: Store) -> TeachingSession:
     """A session that has begun."""
-    made = Teaching(
+    made = TeachingSession(
         activity,
         people,
         store,
@@ -174,7 +174,7 @@ class TestKeeping:
         recorder.follow([Rejected("tell a joke")])
         recorder.verified("joke", None)
         recorder.heard(SOUND, Say("banana", 0.0, ()))
-        recorder.heard(SOUND, Stop("stop"))
+        recorder.heard(SOUND, StopCommand("stop"))
         recorder.verified("joke", None)
         assert not recorder.folder.exists()
         recorder.heard(SOUND, spoken("tell a joke"))
@@ -218,7 +218,7 @@ class TestKeeping:
         assert kept(recorder) == []
 
     def test_an_answer_that_is_refused_keeps_what_was_said_for_the_next_one(
-        self, recorder: Recorder, book: Phrasebook, teaching: Teaching
+        self, recorder: Recorder, book: Phrasebook, teaching: TeachingSession
     ) -> None:
         commands = (*book.choices("tell a joke"), *book.choices("greet everyone"))
         for command in (
@@ -251,7 +251,7 @@ class TestKeeping:
         self,
         recorder: Recorder,
         spoken: Callable[[str], Say],
-        teaching: Teaching,
+        teaching: TeachingSession,
     ) -> None:
         for pcm, command in (
             (SOUND, spoken("greet everyone")),

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 
 from tangy_tui.speech import forked_worker as room
-from tangy_tui.speech.forked_worker import Beside
+from tangy_tui.speech.forked_worker import ForkedWorker
 
 
 def _who(asked: int) -> tuple[int, int]:
@@ -25,7 +25,7 @@ def two_processors(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def test_another_process_answers_one_question_after_the_other() -> None:
-    beside = Beside(_who)
+    beside = ForkedWorker(_who)
     answered = []
     for number in range(3):
         beside.ask(number)
@@ -37,14 +37,14 @@ def test_another_process_answers_one_question_after_the_other() -> None:
 
 def test_with_one_processor_the_answer_is_worked_out_here(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(room, "_processors", lambda: range(1))
-    beside = Beside(_who)
+    beside = ForkedWorker(_who)
     beside.ask(4)
     assert beside.answer() == (8, os.getpid())
 
 
 @pytest.mark.parametrize("asked_before", [True, False])
 def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
-    beside = Beside(_who)
+    beside = ForkedWorker(_who)
     beside.ask(1)
     _, pid = beside.answer()
     if asked_before:
@@ -60,7 +60,7 @@ def test_if_it_dies_the_answer_is_worked_out_here(asked_before: bool) -> None:
 
 
 def test_an_answer_that_nobody_waited_for_is_nobodys() -> None:
-    beside = Beside(_who)
+    beside = ForkedWorker(_who)
     for number in (1, 2, 3):
         beside.ask(number)
     assert beside.answer()[0] == 6
@@ -69,7 +69,7 @@ def test_an_answer_that_nobody_waited_for_is_nobodys() -> None:
 
 
 def test_closing_ends_it() -> None:
-    beside = Beside(_who)
+    beside = ForkedWorker(_who)
     beside.ask(1)
     _, pid = beside.answer()
     beside.close()

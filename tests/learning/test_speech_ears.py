@@ -13,9 +13,9 @@ from tangy_hw.audio.wav import RATE, SoundError
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import load_people
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import input as room
-from tangy_tui.speech.input import Ears, Heard
+from tangy_tui.speech.input import Heard, SpeechInput
 from tangy_tui.speech.recogniser import SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
 from tangy_tui.speech.utterance import LONGEST_TALK, MOST_WAITING
@@ -29,7 +29,7 @@ class Room:
 
     def __init__(self, source: FakeSource, **options: object) -> None:
         self.source = source
-        self.ears = Ears("socket", BOOK, **options)  # type: ignore[arg-type]
+        self.ears = SpeechInput("socket", BOOK, **options)  # type: ignore[arg-type]
         self.told: list[str] = []
         self.states: list[str] = []
         self.heard: list[Heard] = []
@@ -55,7 +55,7 @@ class Room:
 
     @property
     def words(self) -> list[str]:
-        return [heard.text for heard in self.heard if isinstance(heard, Say | Stop)]
+        return [heard.text for heard in self.heard if isinstance(heard, Say | StopCommand)]
 
     async def ready(self, state: str = "off") -> Room:
         await soon(lambda: self.state == state)
@@ -330,7 +330,7 @@ class TestAsking:
         here.ears.asking(True)
         for letter in "yncs":
             await here.say(sound(letter))
-        assert here.heard == [Reply(True), Reply(False), Stop("stop")]
+        assert here.heard == [Reply(True), Reply(False), StopCommand("stop")]
         assert [expecting for _, expecting in here.decoder.heard] == ["answers"] * 4
         here.ears.asking(False)
         await here.say(sound("c"))
@@ -341,7 +341,7 @@ class TestAsking:
         here.ears.asking(True)
         for letter in "yncs":
             await here.say(sound(letter))
-        assert here.heard == [Stop("stop")]
+        assert here.heard == [StopCommand("stop")]
 
     @pytest.mark.parametrize("asks", [True, False])
     async def test_what_was_said_before_a_question_is_no_answer_to_it(
@@ -385,7 +385,7 @@ class TestAsking:
         else:
             here.ears.shut()
         await soon(lambda: bool(here.heard))
-        assert here.heard == [Stop("stop")]
+        assert here.heard == [StopCommand("stop")]
 
     async def test_whoever_opens_the_microphone_opens_no_others(self, enter: Enter) -> None:
         here = await enter().ready()
@@ -399,7 +399,7 @@ class TestAsking:
     async def test_a_stop_is_heard_whatever_is_asked(self, enter: Enter) -> None:
         here = await enter().ready()
         await here.say(sound("s"))
-        assert here.heard == [Stop("stop")]
+        assert here.heard == [StopCommand("stop")]
 
 
 class TestTheEnd:
@@ -579,5 +579,5 @@ class TestRecordings:
         assert here.told[0] == "It died."
 
 
-async def _first(ears: Ears) -> Heard:
+async def _first(ears: SpeechInput) -> Heard:
     return await anext(ears)

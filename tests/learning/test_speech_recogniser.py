@@ -14,7 +14,7 @@ import pytest
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.worker_log import KEPT, MOST
 from tangy_tui.speech import recogniser as room
-from tangy_tui.speech.evidence import LONGEST, Evidence, Wanted
+from tangy_tui.speech.evidence import LONGEST, AcousticEvidence, Wanted
 from tangy_tui.speech.recogniser import END_SECONDS, Recogniser, SpeechUnavailable
 from tests.learning.speech_fakes import PATIENCE, Workers, soon
 
@@ -39,7 +39,7 @@ class Heard:
         for chunk in chunks:
             self.sound.put_nowait(chunk)
 
-    async def hear(self, *, endpoint: bool = False) -> Evidence:
+    async def hear(self, *, endpoint: bool = False) -> AcousticEvidence:
         async with asyncio.timeout(PATIENCE):
             return await self.recogniser.hear(self.sound, endpoint=endpoint)
 
@@ -86,7 +86,7 @@ class TestHearing:
             await heard.said(640 * number)
             assert not hearing.done()
         heard.say(b"")
-        assert await hearing == Evidence("call number", "", 0.0, 1.0, len(WHOLE) / 2 / RATE)
+        assert await hearing == AcousticEvidence("call number", "", 0.0, 1.0, len(WHOLE) / 2 / RATE)
         assert heard.partials == [f"{640 * number} bytes" for number in range(1, 9)]
         assert heard.recogniser.said == WHOLE
         assert (heard.workers.heard, heard.told) == ([WHOLE], [])

@@ -23,16 +23,16 @@ from tangy_profiles.person import load_people
 from tangy_profiles.phones import PHONES
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.language.stop_sentence import STOPS, stops
-from tangy_tui.learning.verification import Reply, Say, Stop
+from tangy_tui.learning.verification import Reply, Say, StopCommand
 from tangy_tui.speech import transcription
 from tangy_tui.speech import worker as room
 from tangy_tui.speech.evidence import (
     LONGEST,
     RATE,
     USUAL,
-    Evidence,
+    AcousticEvidence,
+    EvidenceSettings,
     Expecting,
-    Settings,
     Wanted,
 )
 from tangy_tui.speech.language import dictionary, grammar, open_model, phrase_model
@@ -63,8 +63,8 @@ SAID = st.lists(
 ).map(" ".join)
 
 
-def evidence(words: str, confidence: float = 1.0, margin: float = 0.0) -> Evidence:
-    return Evidence(words, "", margin, confidence, 1.0)
+def evidence(words: str, confidence: float = 1.0, margin: float = 0.0) -> AcousticEvidence:
+    return AcousticEvidence(words, "", margin, confidence, 1.0)
 
 
 class TestLanguage:
@@ -129,7 +129,9 @@ class TestLanguage:
             PHRASES.map(tuple),
             PHRASES.map(tuple),
             st.dictionaries(WORD, st.lists(ALL_PHONES, min_size=1, max_size=2).map(tuple)),
-            st.builds(Settings, st.sampled_from(["tiers", "paper"]), PROBABILITIES, PROBABILITIES),
+            st.builds(
+                EvidenceSettings, st.sampled_from(["tiers", "paper"]), PROBABILITIES, PROBABILITIES
+            ),
         )
     )
     def test_what_is_wanted_goes_to_the_worker_and_back(self, one: Wanted) -> None:
@@ -184,7 +186,7 @@ class TestUnderstanding:
     def test_words_are_taken_for_the_phrase_that_they_sound_like(
         self, words: str, phrase: str, margin: float, meant: str | None
     ) -> None:
-        found = best_words(Evidence(words, phrase, margin, 1.0, 1.0), BOOK)
+        found = best_words(AcousticEvidence(words, phrase, margin, 1.0, 1.0), BOOK)
         assert found[0] == (meant or words)
 
     @given(SAID, st.floats(-3, 0), st.floats(-3, 3))
@@ -258,11 +260,11 @@ class TestUnderstanding:
         ],
     )
     def test_what_stops_the_robot_does_so_in_every_mode(
-        self, words: str, settings: Settings
+        self, words: str, settings: EvidenceSettings
     ) -> None:
-        found = understand(Evidence(words, "", -9.0, 0.0, 0.3), BOOK, settings)
-        assert found == Stop(words)
-        assert answer(evidence(words), settings) == Stop(words)
+        found = understand(AcousticEvidence(words, "", -9.0, 0.0, 0.3), BOOK, settings)
+        assert found == StopCommand(words)
+        assert answer(evidence(words), settings) == StopCommand(words)
         assert stops(words)
 
     @pytest.mark.parametrize(
@@ -352,9 +354,9 @@ class LetterDecoder:
     def partial(self, pcm: bytes) -> str:
         return self._take(pcm) if self.broken != "decode" else ""
 
-    def decode(self, pcm: bytes, expecting: Expecting) -> Evidence:
+    def decode(self, pcm: bytes, expecting: Expecting) -> AcousticEvidence:
         self.so_far = []
-        return Evidence(self._take(pcm), "", 0.0, 1.0, len(pcm) / 2 / RATE)
+        return AcousticEvidence(self._take(pcm), "", 0.0, 1.0, len(pcm) / 2 / RATE)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.teaching import STOPPED, TeachingLines
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.learning.verification import (
@@ -24,7 +24,7 @@ from tangy_tui.learning.verification import (
     Rejected,
     Reply,
     Say,
-    Stop,
+    StopCommand,
     Verified,
     Verifier,
     answer_help,
@@ -176,11 +176,11 @@ class ScriptedEars:
 class Session:
     """A session by lines, in which somebody types and somebody speaks, each when it is time."""
 
-    def __init__(self, house: House, ears: ScriptedEars) -> None:
+    def __init__(self, workspace: Workspace, ears: ScriptedEars) -> None:
         self.ears = ears
         self.written: list[str] = []
         self.script: list[tuple[str, str | Heard | Exception]] = []
-        self.teaching = house.teaching("Ada", 1)
+        self.teaching = workspace.teaching("Ada", 1)
         self._typed: Iterator[str] = iter(())
 
     def run(self, *typed: str, scripted: bool = False) -> list[str]:
@@ -214,8 +214,8 @@ class Session:
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    opened = House(tmp_path / "data")
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    opened = Workspace(tmp_path / "data")
     yield opened
     opened.close()
 
@@ -224,8 +224,10 @@ GREET = Say("greet everyone", 0.9, (command("greeting"),))
 
 
 class TestBySpeech:
-    def test_a_spoken_command_is_asked_about_and_answered_by_key(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=True))
+    def test_a_spoken_command_is_asked_about_and_answered_by_key(
+        self, workspace: Workspace
+    ) -> None:
+        session = Session(workspace, ScriptedEars(live=True))
         session.script = [
             ("Now: start", GREET),
             ("Did you say", "y"),
@@ -236,8 +238,8 @@ class TestBySpeech:
         assert session.ears.closed == 1
         assert session.ears.asked[:2] == [True, False]
 
-    def test_a_choice_is_offered_and_answered_by_its_number(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=True))
+    def test_a_choice_is_offered_and_answered_by_its_number(self, workspace: Workspace) -> None:
+        session = Session(workspace, ScriptedEars(live=True))
         offer = Say("greet the group", 0.5, (command("joke"), command("greeting")), sure=False)
         session.script = [
             ("Now: start", offer),
@@ -253,12 +255,12 @@ class TestBySpeech:
         assert any("-> greeting" in line for line in written)
 
     def test_a_stop_is_heard_while_a_question_is_open_and_answers_it_with_no(
-        self, house: House
+        self, workspace: Workspace
     ) -> None:
-        session = Session(house, ScriptedEars(live=True))
+        session = Session(workspace, ScriptedEars(live=True))
         session.script = [
             ("Now: start", GREET),
-            ("Did you say", Stop("stop")),
+            ("Did you say", StopCommand("stop")),
             (STOPPED, "y"),
             (NO_QUESTION, "quit"),
         ]
@@ -266,9 +268,9 @@ class TestBySpeech:
 
     @pytest.mark.parametrize("yes", [True, False])
     def test_an_answer_can_be_spoken_where_that_is_switched_on(
-        self, house: House, yes: bool
+        self, workspace: Workspace, yes: bool
     ) -> None:
-        session = Session(house, ScriptedEars(live=True, answers=True))
+        session = Session(workspace, ScriptedEars(live=True, answers=True))
         session.script = [
             ("Now: start", GREET),
             ("Did you say", Reply(yes)),
@@ -277,8 +279,10 @@ class TestBySpeech:
         session.run()
         assert session.script == []
 
-    def test_a_command_that_was_spoken_too_early_waits_for_the_answer(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=True))
+    def test_a_command_that_was_spoken_too_early_waits_for_the_answer(
+        self, workspace: Workspace
+    ) -> None:
+        session = Session(workspace, ScriptedEars(live=True))
         later = Say("call number", 0.9, (command("call number"),))
         session.ears.hear(GREET, later)
         session.script = [
@@ -290,30 +294,32 @@ class TestBySpeech:
         session.run()
         assert session.script == []
 
-    def test_a_microphone_that_breaks_leaves_the_keys(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=True))
+    def test_a_microphone_that_breaks_leaves_the_keys(self, workspace: Workspace) -> None:
+        session = Session(workspace, ScriptedEars(live=True))
         session.ears.hear(TangyError("The cable is out."))
         session.script = [("The cable is out.", "greet everyone"), ("Did you say", "quit")]
         session.run()
         assert session.script == []
 
-    def test_a_recording_that_cannot_be_heard_ends_a_script(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=False))
+    def test_a_recording_that_cannot_be_heard_ends_a_script(self, workspace: Workspace) -> None:
+        session = Session(workspace, ScriptedEars(live=False))
         session.ears.hear(TangyError("Speech needs the package pocketsphinx."))
         with pytest.raises(TangyError, match="pocketsphinx"):
             session.run("quit")
         assert session.ears.closed == 1
 
-    def test_a_script_answers_a_recording(self, house: House) -> None:
-        session = Session(house, ScriptedEars(live=False))
-        session.ears.hear(GREET, Stop("stop"), None)
+    def test_a_script_answers_a_recording(self, workspace: Workspace) -> None:
+        session = Session(workspace, ScriptedEars(live=False))
+        session.ears.hear(GREET, StopCommand("stop"), None)
         written = session.run("y", "where")
         assert any("-> greeting" in line for line in written)
         assert STOPPED in written
 
     @pytest.mark.parametrize("live", [True, False])
-    def test_the_ears_end_with_the_session_whatever_they_do(self, house: House, live: bool) -> None:
-        session = Session(house, ScriptedEars(live=live))
+    def test_the_ears_end_with_the_session_whatever_they_do(
+        self, workspace: Workspace, live: bool
+    ) -> None:
+        session = Session(workspace, ScriptedEars(live=live))
         if not live:
             session.ears.hear(None)
         session.run("quit")

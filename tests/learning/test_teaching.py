@@ -16,7 +16,7 @@ from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Finished, Next, StepUndone, Undo
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Refused, Rejected, Reply, Say
 from tangy_tui.world import World
 
@@ -26,22 +26,22 @@ YES, NO = Reply(yes=True), Reply(yes=False)
 
 def session(
     store: Store, *, teacher: str = "Ada", seed: int = 1, users: int = 4, activity: Activity = BINGO
-) -> Teaching:
+) -> TeachingSession:
     def world(shown: Demonstration) -> World:
         return SimulatedWorld(
             activity, shown.people, seed=shown.seed, users=load_users().teaching()
         )
 
-    return Teaching(activity, load_people(users), store, world, teacher=teacher, seed=seed)
+    return TeachingSession(activity, load_people(users), store, world, teacher=teacher, seed=seed)
 
 
-def begun(store: Store, *, seed: int = 1, users: int = 4) -> Teaching:
+def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
     teaching = session(store, seed=seed, users=users)
     teaching.begin()
     return teaching
 
 
-def teach(teaching: Teaching, *phrases: str) -> list[Executed]:
+def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
     """Say each phrase, confirm it, and return what was executed."""
     done = []
     for phrase in phrases:
@@ -50,7 +50,7 @@ def teach(teaching: Teaching, *phrases: str) -> list[Executed]:
     return done
 
 
-def whole_game(teaching: Teaching) -> Demonstration:
+def whole_game(teaching: TeachingSession) -> Demonstration:
     list(ScriptedTeacher(teaching).demonstrate())
     return teaching.demonstration
 

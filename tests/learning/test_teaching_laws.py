@@ -22,7 +22,7 @@ from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.teaching_events import Executed, Next, StepUndone, TeacherCommand, Undo
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Refused, Reply, Say
 from tangy_tui.world import World
 
@@ -30,11 +30,11 @@ BINGO = load_activity("bingo")
 YES, NO = Reply(yes=True), Reply(yes=False)
 
 
-def begun(store: Store, *, seed: int = 1, users: int = 4) -> Teaching:
+def begun(store: Store, *, seed: int = 1, users: int = 4) -> TeachingSession:
     def world(shown: Demonstration) -> World:
         return SimulatedWorld(BINGO, shown.people, seed=shown.seed, users=load_users().teaching())
 
-    teaching = Teaching(BINGO, load_people(users), store, world, teacher="Ada", seed=seed)
+    teaching = TeachingSession(BINGO, load_people(users), store, world, teacher="Ada", seed=seed)
     teaching.begin()
     return teaching
 
@@ -46,7 +46,7 @@ def empty_store() -> Iterator[Store]:
         yield opened
 
 
-def teach(teaching: Teaching, *phrases: str) -> list[Executed]:
+def teach(teaching: TeachingSession, *phrases: str) -> list[Executed]:
     """Say each phrase, confirm it, and return what was executed."""
     done = []
     for phrase in phrases:
@@ -74,7 +74,7 @@ commands: st.SearchStrategy[TeacherCommand] = st.one_of(
 )
 
 
-def expected_phrase(teaching: Teaching) -> str:
+def expected_phrase(teaching: TeachingSession) -> str:
     name = BINGO.expected.get(teaching.world.observe().situation, "joke")
     return BINGO.behaviours[name].phrases[0]
 

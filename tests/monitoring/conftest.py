@@ -9,7 +9,7 @@ from shutil import copytree
 import pytest
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Acted, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy
@@ -69,27 +69,27 @@ def ended(events: Sequence[object]) -> GameEnded:
 @pytest.fixture(scope="session")
 def learnt(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
     """The policy of the taught folder, fitted once for all tests."""
-    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("learnt") / "data")))
+    workspace = Workspace(Path(copytree(_taught, tmp_path_factory.mktemp("learnt") / "data")))
     try:
-        return load_policy(house.store, house.activity)[0]
+        return load_policy(workspace.store, workspace.activity)[0]
     finally:
-        house.close()
+        workspace.close()
 
 
 @pytest.fixture
-def house(taught: Path) -> Iterator[House]:
-    """A house in which three demonstrations were given and learnt from."""
-    opened = House(taught)
+def workspace(taught: Path) -> Iterator[Workspace]:
+    """A workspace in which three demonstrations were given and learnt from."""
+    opened = Workspace(taught)
     yield opened
     opened.close()
 
 
 @pytest.fixture
-def supervise(house: House, learnt: Policy) -> Iterator[Supervise]:
+def supervise(workspace: Workspace, learnt: Policy) -> Iterator[Supervise]:
     """Make supervised games: (*injections, seed=1, asks=True) -> them; written in one go."""
 
     def make(*injections: str, seed: int = 1, asks: bool = True) -> Supervision:
-        return house.supervision(learnt, seed, asks=asks, injections=injections)
+        return workspace.supervision(learnt, seed, asks=asks, injections=injections)
 
-    with house.store.transaction():  # none of these tests is about the disk
+    with workspace.store.transaction():  # none of these tests is about the disk
         yield make

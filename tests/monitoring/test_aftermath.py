@@ -9,7 +9,7 @@ from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.health import ERROR, Health, Reading
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.devices import WELL
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
 from tangy_tui.monitoring.detection import device_evidence
@@ -106,8 +106,8 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> Robot:
 
 
 @pytest.fixture
-def game(house: House, learnt: Policy, robot: Robot) -> Supervision:
-    game = house.supervision(learnt, 3, live=robot.health)
+def game(workspace: Workspace, learnt: Policy, robot: Robot) -> Supervision:
+    game = workspace.supervision(learnt, 3, live=robot.health)
     game.begin()
     return game
 

@@ -21,7 +21,7 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import BODIES
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.doctor import examine
 from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.learning.demonstration_rows import heard_words, list_rows
@@ -76,42 +76,42 @@ def drop(folder: Path, seq: int, key: str) -> None:
 
 def read_all(folder: Path) -> None:
     """Read from a log all that the verbs read; what a person can mend may be said."""
-    house = House(folder, write=False)
+    workspace = Workspace(folder, write=False)
     try:
-        store, name = house.store, house.activity.name
-        library_document(house)
+        store, name = workspace.store, workspace.activity.name
+        library_document(workspace)
         library = read_library(store, name)
-        list_rows(house.activity, library)
+        list_rows(workspace.activity, library)
         for entry in library.entries.values():
             heard_words(store, entry.demonstration)
         for edit in (*library.done, *library.undone):
-            edit_words(house.activity, library, edit)
+            edit_words(workspace.activity, library, edit)
         games = read_games(store)
-        for replay in read_replays(store, games, BINGO, house.names):
-            list(replay_lines(replay, house.activity, house.name))
+        for replay in read_replays(store, games, BINGO, workspace.names):
+            list(replay_lines(replay, workspace.activity, workspace.name))
         if games:
-            session = read_session(store, games, BINGO, house.names)
+            session = read_session(store, games, BINGO, workspace.names)
             list(session_lines(session))
             session_page(session)
         uncleared(store)
-        for record in house.records():
+        for record in workspace.records():
             person_document(record)
             [entry_document(entry) for entry in record.history]
-        house.persuasion(Random(1))
-        house.game_seed(None)
+        workspace.persuasion(Random(1))
+        workspace.game_seed(None)
         Feedback(store).last_change()
         read_accepted(store, name)
         read_sheets(store)
         last_sheet(store)
         try:
-            policy, _ = load_policy(store, house.activity)
+            policy, _ = load_policy(store, workspace.activity)
             [changes(kept, policy) for kept in kept_policies(store, name)]
-            expected_effects(store, house.activity, policy)
+            expected_effects(store, workspace.activity, policy)
         except TangyError as error:
             assert str(error).endswith(".")  # a sentence
         log_problems(store)
     finally:
-        house.close()
+        workspace.close()
 
 
 # ------------------------------------------------------------------------------ any damage at all

@@ -14,7 +14,7 @@ from tangy_sim.worlds.devices import READINGS, WELL
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS, read_injection
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector, device_evidence, symptoms
@@ -22,8 +22,8 @@ from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until
 
 
 @pytest.fixture
-def detector(house: House) -> Detector:
-    return Detector(house.activity, house.robot, Effects({}))
+def detector(workspace: Workspace) -> Detector:
+    return Detector(workspace.activity, workspace.robot, Effects({}))
 
 
 def test_the_simulated_body_has_the_devices_of_the_robot() -> None:
@@ -59,16 +59,16 @@ def test_the_worst_state_names_its_cause(detector: Detector) -> None:
     assert detector.worst((silent, failed)) == ("ERROR", "voice")
 
 
-def test_games_without_faults_are_those_of_the_plain_world(house: House) -> None:
-    people = [person.id for person in house.people]
-    plain = SimulatedWorld(house.activity, people, seed=5)
-    faulty = FaultyWorld(house.activity, people, seed=5)
+def test_games_without_faults_are_those_of_the_plain_world(workspace: Workspace) -> None:
+    people = [person.id for person in workspace.people]
+    plain = SimulatedWorld(workspace.activity, people, seed=5)
+    faulty = FaultyWorld(workspace.activity, people, seed=5)
     for _ in range(3):
         while not plain.over:
             state = plain.observe()
             assert faulty.observe() == state
-            behaviour = house.activity.behaviours[house.activity.expected[state.situation]]
-            action = house.activity.action(behaviour, state.attended, None)
+            behaviour = workspace.activity.behaviours[workspace.activity.expected[state.situation]]
+            action = workspace.activity.action(behaviour, state.attended, None)
             assert faulty.execute(action) == plain.execute(action)
         plain.begin()
         faulty.begin()
@@ -128,7 +128,7 @@ def test_what_is_brought_about_by_hand_is_seen_at_the_next_look(supervise: Super
 
 
 def test_what_nobody_has_demonstrated_at_all_cannot_be_unexpected(
-    house: House, learnt: Policy, supervise: Supervise
+    workspace: Workspace, learnt: Policy, supervise: Supervise
 ) -> None:
     game = supervise(seed=2)
     game._detector.effects = Effects({})

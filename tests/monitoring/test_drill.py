@@ -27,7 +27,7 @@ from tangy_tui.console.drills import (
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.monitoring import drill_policy, drill_rounds
 from tangy_tui.monitoring.drill import NOTHING, Drill
-from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
+from tangy_tui.monitoring.drill_policy import DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import (
     CHOICES,
     QUIET,
@@ -41,7 +41,7 @@ from tangy_tui.monitoring.drill_rounds import (
 from tangy_tui.monitoring.drill_sheet import (
     DRILL,
     NOTHING_WRONG,
-    Answered,
+    AnsweredRound,
     Sheet,
     last_sheet,
     read_sheets,
@@ -62,14 +62,14 @@ class Clock:
 
 
 @pytest.fixture(scope="module")
-def learnt(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> Learnt:
+def learnt(tmp_path_factory: pytest.TempPathFactory, activity: Activity) -> DrillPolicy:
     """What a drill is played by where nothing was learnt."""
     with Store.open(tmp_path_factory.mktemp("nothing") / "data") as nothing:
         return policy_for_drill(nothing, activity)
 
 
 @pytest.fixture(scope="module")
-def table(learnt: Learnt, activity: Activity, people: tuple[Person, ...]) -> Tabletop:
+def table(learnt: DrillPolicy, activity: Activity, people: tuple[Person, ...]) -> Tabletop:
     """A table-top with the four sample people."""
     names = {person.id: person.name for person in people}
     return Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
@@ -239,7 +239,7 @@ def test_a_fresh_installation_is_taught_for_the_drill_and_nothing_of_it_is_kept(
 
 
 def test_a_policy_with_gaps_or_that_is_lost_is_not_drilled_with(
-    store: Store, activity: Activity, learnt: Learnt, monkeypatch: pytest.MonkeyPatch
+    store: Store, activity: Activity, learnt: DrillPolicy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep_policy(store, replace(learnt.policy, demonstrations=("gone",)))
     found = policy_for_drill(store, activity)
@@ -383,7 +383,7 @@ def test_what_the_same_person_had_the_last_time_is_told(table: Tabletop, store: 
 
 
 def test_no_name_of_a_person_gets_into_the_log(
-    learnt: Learnt, store: Store, activity: Activity
+    learnt: DrillPolicy, store: Store, activity: Activity
 ) -> None:
     names = {f"user{number}": f"Xaver{number}" for number in range(1, 5)}
     table = Tabletop(learnt.policy, learnt.effects, BOOK, load_robot(), activity, names)
@@ -402,10 +402,10 @@ SHEET = Sheet(
     3,
     2,
     (
-        Answered(
+        AnsweredRound(
             1, "mute", "Neither voice nor screen", "expert", ("Call.",), "mute", "user", 8.0, True
         ),
-        Answered(2, "", "Nothing was wrong", "continue", (), "", "continue", 4.0),
+        AnsweredRound(2, "", "Nothing was wrong", "continue", (), "", "continue", 4.0),
     ),
     "2026-03-01T09:00:00+00:00",
 )  # fmt: skip

@@ -6,7 +6,7 @@ import pytest
 
 from tangy_hw.drivers.camera_state import Sight
 from tangy_profiles.health import Health
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tests.monitoring.conftest import codes, moves, until
 
@@ -43,9 +43,9 @@ def camera(monkeypatch: pytest.MonkeyPatch) -> Camera:
     ],
 )
 def test_what_happens_to_a_real_camera_is_diagnosed_and_its_end_seen(
-    sight: Sight, code: str, halts: bool, house: House, learnt: Policy, camera: Camera
+    sight: Sight, code: str, halts: bool, workspace: Workspace, learnt: Policy, camera: Camera
 ) -> None:
-    game = house.supervision(learnt, 3, live=camera.health)
+    game = workspace.supervision(learnt, 3, live=camera.health)
     game.begin()
     until(game, lambda now: now.game.steps > 3)
     assert not game.faults
@@ -62,10 +62,10 @@ def test_what_happens_to_a_real_camera_is_diagnosed_and_its_end_seen(
 
 
 def test_devices_that_are_not_real_stay_simulated(
-    house: House, learnt: Policy, camera: Camera
+    workspace: Workspace, learnt: Policy, camera: Camera
 ) -> None:
-    game = house.supervision(learnt, 3, live=camera.health)
-    simulated = house.supervision(learnt, 3)
+    game = workspace.supervision(learnt, 3, live=camera.health)
+    simulated = workspace.supervision(learnt, 3)
     game.begin()
     simulated.begin()
     assert [r.device for r in game.world.health()] == [r.device for r in simulated.world.health()]
@@ -75,10 +75,10 @@ def test_devices_that_are_not_real_stay_simulated(
 
 
 def test_a_camera_is_not_asked_more_often_than_its_readings_change(
-    house: House, learnt: Policy, camera: Camera, monkeypatch: pytest.MonkeyPatch
+    workspace: Workspace, learnt: Policy, camera: Camera, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tangy_tui.app.partly_live_world.OLDEST", 60.0)
-    game = house.supervision(learnt, 3, live=camera.health)
+    game = workspace.supervision(learnt, 3, live=camera.health)
     game.begin()
     first = game.world.health()
     assert all(game.world.health() is first for _ in range(50))
@@ -86,9 +86,9 @@ def test_a_camera_is_not_asked_more_often_than_its_readings_change(
 
 
 def test_a_fault_of_another_device_can_still_be_brought_about(
-    house: House, learnt: Policy, camera: Camera
+    workspace: Workspace, learnt: Policy, camera: Camera
 ) -> None:
-    game = house.supervision(learnt, 3, live=camera.health, injections=["base-failed"])
+    game = workspace.supervision(learnt, 3, live=camera.health, injections=["base-failed"])
     game.begin()
     until(game, lambda now: now.halted)
     assert [fault.code for fault in game.faults] == ["base-failed"]

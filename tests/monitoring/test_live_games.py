@@ -7,7 +7,7 @@ from typing import cast
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.live_games import LiveGames
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.monitoring.supervision import Event
@@ -17,23 +17,23 @@ PEOPLE = ("user1", "user2", "user3", "user4")
 
 
 def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
-    house: House, learnt: Policy
+    workspace: Workspace, learnt: Policy
 ) -> None:
     link = FakeLink(PEOPLE)
     link.cards["user2"] = LaidCard(7)
     link.faces["user2"] = "user4"
     world = LiveWorld(
-        house.activity,
+        workspace.activity,
         PEOPLE,
         cast(RobotLink, link),
-        house.robot,
-        house.room,
+        workspace.robot,
+        workspace.room,
         seed=1,
-        names=house.names,
+        names=workspace.names,
         knows_faces=True,
     )
-    game = house.supervision(learnt, 1, world=world)
-    played = LiveGames(house, game)
+    game = workspace.supervision(learnt, 1, world=world)
+    played = LiveGames(workspace, game)
     lines: list[str] = []
 
     def tell(events: list[Event]) -> None:
@@ -49,21 +49,23 @@ def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
     assert said == ["User 4 sits at User 2's place: Tangy speaks to User 4."] * 2
 
 
-def test_what_is_not_judged_is_said_logged_and_counted(house: House, learnt: Policy) -> None:
+def test_what_is_not_judged_is_said_logged_and_counted(
+    workspace: Workspace, learnt: Policy
+) -> None:
     link = FakeLink(PEOPLE)
     link.cards["user2"] = LaidCard(7, marked=1, others=(9,))
     world = LiveWorld(
-        house.activity,
+        workspace.activity,
         PEOPLE,
         cast(RobotLink, link),
-        house.robot,
-        house.room,
+        workspace.robot,
+        workspace.room,
         seed=1,
-        names=house.names,
+        names=workspace.names,
     )
     world.cards.dealt.deal({"user2": 7})
-    game = house.supervision(learnt, 1, world=world)
-    played = LiveGames(house, game)
+    game = workspace.supervision(learnt, 1, world=world)
+    played = LiveGames(workspace, game)
     lines: list[str] = []
 
     def tell(events: list[Event]) -> None:
@@ -76,7 +78,7 @@ def test_what_is_not_judged_is_said_logged_and_counted(house: House, learnt: Pol
     played.play(range(1), expert=False, tell=tell)
     told = [line for line in lines if "two cards in front of User 2: 7 and 9" in line]
     assert len(told) == 1
-    notes = [event.body["what"] for event in house.store.events(STAFF)]
+    notes = [event.body["what"] for event in workspace.store.events(STAFF)]
     assert notes[:2] == ["cards: user2 has 7", "several cards before user2: 7, 9; not judged"]
     (doubt,) = played.document()["card_doubts"]
     assert (doubt["game"], doubt["person"], doubt["cards"]) == (1, "user2", [7, 9])

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, Taught
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
@@ -219,8 +219,10 @@ def test_while_a_teacher_is_asked_something_critical_takes_over(supervise: Super
 # ------------------------------------------------------------------------------ the teacher
 
 
-def test_a_teacher_says_what_to_do_and_the_game_goes_on(house: House, learnt: Policy) -> None:
-    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+def test_a_teacher_says_what_to_do_and_the_game_goes_on(
+    workspace: Workspace, learnt: Policy
+) -> None:
+    game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
     events = play(game)
     assert moves(events) == ["teacher asked", "taught"]
     assert any(isinstance(event, Taught) for event in events)
@@ -229,17 +231,17 @@ def test_a_teacher_says_what_to_do_and_the_game_goes_on(house: House, learnt: Po
 
 
 def test_a_teacher_says_that_it_is_all_right_and_it_is_expected_from_then_on(
-    house: House, learnt: Policy
+    workspace: Workspace, learnt: Policy
 ) -> None:
-    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
     game.begin()
     until(game, lambda now: now.question)
     assert game.acceptable
     assert moves(game.accept("Ada")) == ["accepted"]
     assert game.question is None
     assert game.policy.digest == learnt.digest
-    assert next(house.store.events(ACCEPTED)).body["by"] == "Ada"
-    again = house.supervision(learnt, 4, asks=True, injections=["no-effect@1"])
+    assert next(workspace.store.events(ACCEPTED)).body["by"] == "Ada"
+    again = workspace.supervision(learnt, 4, asks=True, injections=["no-effect@1"])
     assert not codes(play(again))
 
 
@@ -288,10 +290,10 @@ def check_log(store: Store) -> None:
 @pytest.fixture(scope="module")
 def small_policy(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Policy:
     """The same demonstrations, learnt by few trees: a teacher's answers are learnt at once."""
-    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("small") / "data")))
-    with closing(house):
-        shown = read_library(house.store, house.activity.name).finished
-        return learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
+    workspace = Workspace(Path(copytree(_taught, tmp_path_factory.mktemp("small") / "data")))
+    with closing(workspace):
+        shown = read_library(workspace.store, workspace.activity.name).finished
+        return learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
 
 
 injections = st.lists(
@@ -319,21 +321,21 @@ def test_whatever_goes_wrong_the_game_ends_and_nothing_moves_after_a_halt(
     asks: bool,
     expert: bool,
 ) -> None:
-    house = House(Path(copytree(_taught, tmp_path_factory.mktemp("law") / "data")))
+    workspace = Workspace(Path(copytree(_taught, tmp_path_factory.mktemp("law") / "data")))
     policy = small_policy
-    with closing(house), house.store.transaction():
-        game = house.supervision(policy, seed, asks=asks, injections=injected)
+    with closing(workspace), workspace.store.transaction():
+        game = workspace.supervision(policy, seed, asks=asks, injections=injected)
         events = play(game, expert=expert)
         stopped = ended(events).stopped
         last = acts(events)[-1].action.behaviour if acts(events) else None
         assert stopped or (last is not None and last.effect == "finish")
         told = [fault.document() for fault in game.faults]
-        kept = [f.document() for f in read_faults(house.store, game.game.game)]
+        kept = [f.document() for f in read_faults(workspace.store, game.game.game)]
         assert kept == told  # the log is the truth
-        check_log(house.store)
+        check_log(workspace.store)
 
 
-def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House) -> None:
+def test_twenty_games_full_of_faults_all_end(supervise: Supervise, workspace: Workspace) -> None:
     game: Supervision = supervise(*(f"{kind}~0.004" for kind in sorted(KINDS)), seed=8)
     faults = 0
     for _ in range(20):
@@ -341,7 +343,7 @@ def test_twenty_games_full_of_faults_all_end(supervise: Supervise, house: House)
         faults += len(codes(events))
         assert ended(events).stopped is None or "halted" in str(ended(events).stopped)
     assert faults >= 60
-    check_log(house.store)
+    check_log(workspace.store)
 
 
 def closing_step(supervise: Supervise) -> tuple[int, int]:

@@ -8,7 +8,7 @@ from typing import cast
 import pytest
 
 from tangy_profiles.state import ActivityState, Situation, UserState
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.observation import MOST_LOOKS, Observation
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World
@@ -71,11 +71,11 @@ def test_looks_that_never_agree_come_to_an_end() -> None:
 @pytest.mark.parametrize("odd", ODD)
 @pytest.mark.parametrize("kind", [OddCards, OddStates])
 def test_single_odd_looks_are_no_fault_no_accusation_and_no_request(
-    kind: type[OddWorld], odd: str, house: House, learnt: Policy
+    kind: type[OddWorld], odd: str, workspace: Workspace, learnt: Policy
 ) -> None:
-    world = kind(house.activity, list(house.names), seed=4, odd=odd, share=0.05)
-    game = house.supervision(learnt, 4, asks=True, world=world)
-    with house.store.transaction():
+    world = kind(workspace.activity, list(workspace.names), seed=4, odd=odd, share=0.05)
+    game = workspace.supervision(learnt, 4, asks=True, world=world)
+    with workspace.store.transaction():
         told = [event for _ in range(GAMES) for event in play(game)]
     assert world.odd_looks > 5  # or it says nothing
     assert (codes(told), moves(told), world.accused) == ([], [], 0)

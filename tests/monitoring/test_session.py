@@ -13,14 +13,14 @@ import pytest
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
 from tangy_tui.monitoring.fault_table import ROWS, fault_rows
 from tangy_tui.monitoring.games import BROKEN_OFF, find_game, find_games, read_games
-from tangy_tui.monitoring.replay import Answered, Done, Noted, Replay, read_replays
+from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted, read_replays
 from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
@@ -29,21 +29,24 @@ from tests.monitoring.conftest import Supervise, acts, play
 FAULTS = ("laser-disconnected@6", "path-blocked", "voice-dead@9", "request-stuck", "no-effect@20")
 
 
-def told(house: House, wanted: str = "all") -> Session:
-    games = find_games(read_games(house.store), wanted)
-    activities = {house.activity.name: house.activity}
-    return read_session(house.store, games, activities, house.names)
+def told(workspace: Workspace, wanted: str = "all") -> Session:
+    games = find_games(read_games(workspace.store), wanted)
+    activities = {workspace.activity.name: workspace.activity}
+    return read_session(workspace.store, games, activities, workspace.names)
 
 
 def without(body: Mapping[str, Any], *keys: str) -> dict[str, Any]:
     return {key: value for key, value in body.items() if key not in keys}
 
 
-def test_a_game_is_read_back_as_it_was_played(house: House, supervise: Supervise) -> None:
+def test_a_game_is_read_back_as_it_was_played(workspace: Workspace, supervise: Supervise) -> None:
     game = supervise(*FAULTS)
     events = play(game)
     (replay,) = read_replays(
-        house.store, read_games(house.store), {house.activity.name: house.activity}, house.names
+        workspace.store,
+        read_games(workspace.store),
+        {workspace.activity.name: workspace.activity},
+        workspace.names,
     )
     assert [done.behaviour for done in replay.done] == [
         act.action.behaviour.name for act in acts(events)
@@ -58,33 +61,33 @@ def test_a_game_is_read_back_as_it_was_played(house: House, supervise: Supervise
     assert [m.seconds for m in faults] == [
         pytest.approx(m.what.fault.seconds) for m in faults if isinstance(m.what, Diagnosed)
     ]
-    assert len(faults) == len(replay.faults) == len(read_faults(house.store))
+    assert len(faults) == len(replay.faults) == len(read_faults(workspace.store))
     assert sum(isinstance(m.what, Moved) for m in replay.moments) == sum(
         len(fault.moves) for fault in replay.faults
     )
 
 
 def test_the_rows_of_table_two_are_those_that_playing_counts(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     tally = Tally()
     game = supervise("path-blocked")
     for _ in range(2):
         tally.add(play(game))
-    session = told(house)
-    assert list(session.rows) == tally.rows(house.activity.situations)
+    session = told(workspace)
+    assert list(session.rows) == tally.rows(workspace.activity.situations)
     document = session.to_json()
-    assert document["rows"] == tally.to_json(house.activity.situations, {})["rows"]
+    assert document["rows"] == tally.to_json(workspace.activity.situations, {})["rows"]
     assert [game["number"] for game in document["games"]] == [1, 2]
 
 
 def test_the_four_rows_of_faults_are_there_in_the_papers_order(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     assert [(row["criticality"], row["recovery"]) for row in fault_rows([])] == list(ROWS)
     assert all(row["success"] is None and row["instances"] == 0 for row in fault_rows([]))
     play(supervise(*FAULTS))
-    session = told(house)
+    session = told(workspace)
     rows = session.to_json()["faults"]
     assert [(row["criticality"], row["recovery"]) for row in rows] == list(ROWS)
     assert sum(row["instances"] for row in rows) == len(session.faults)
@@ -94,10 +97,10 @@ def test_the_four_rows_of_faults_are_there_in_the_papers_order(
 
 
 def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise("base-failed@6", asks=False), expert=False)
-    session = told(house)
+    session = told(workspace)
     (row, *_) = fault_rows(session.faults)
     assert (row["instances"], row["success"]) == (1, 0.0)
     (fault,) = session.look_after
@@ -107,11 +110,11 @@ def test_a_fault_that_is_left_open_is_no_success_and_is_to_be_looked_after(
 
 
 def test_a_recovery_has_success_only_where_nothing_else_was_needed(
-    house: House, supervise: Supervise, monkeypatch: pytest.MonkeyPatch
+    workspace: Workspace, supervise: Supervise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
     play(supervise("path-blocked", seed=3))
-    (fault,) = told(house).faults
+    (fault,) = told(workspace).faults
     assert (fault.status, fault.ladder) == ("over", ("user", "expert"))
     assert [row["success"] for row in fault_rows([fault]) if row["instances"]] == [0.0]
     nobody = supervise("no-effect@12", asks=False)
@@ -123,10 +126,10 @@ def test_a_recovery_has_success_only_where_nothing_else_was_needed(
 
 
 def test_what_is_over_needs_no_care_and_what_is_borne_does(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise("path-blocked", "arm-failed@5"))
-    session = told(house)
+    session = told(workspace)
     assert {fault.code: fault.status for fault in session.faults} == {
         "path-blocked": "over", "arm-failed": "borne",
     }  # fmt: skip
@@ -134,34 +137,36 @@ def test_what_is_over_needs_no_care_and_what_is_borne_does(
 
 
 def test_beliefs_go_from_what_they_were_before_the_session_to_what_they_are(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     game = supervise()
     for _ in range(3):
         play(game)
-    first, second = told(house, "1"), told(house, "2")
-    for one, two, person in zip(first.people, second.people, house.people, strict=True):
-        known = house.memory().recall(person.id).beliefs
-        whole = next(p for p in told(house).people if p.id == person.id)
-        for strategy in house.activity.strategies:
+    first, second = told(workspace, "1"), told(workspace, "2")
+    for one, two, person in zip(first.people, second.people, workspace.people, strict=True):
+        known = workspace.memory().recall(person.id).beliefs
+        whole = next(p for p in told(workspace).people if p.id == person.id)
+        for strategy in workspace.activity.strategies:
             assert (one.strategies[strategy].before.trials) == 0
             assert one.strategies[strategy].after == two.strategies[strategy].before
             assert whole.strategies[strategy].after == known[strategy]
             assert whole.strategies[strategy].used == known[strategy].trials
-    asked = sum(person.interactions for person in told(house).people)
-    assert asked == sum(house.store.responses()[key][0] + house.store.responses()[key][1]
-                        for key in house.store.responses())  # fmt: skip
+    asked = sum(person.interactions for person in told(workspace).people)
+    assert asked == sum(workspace.store.responses()[key][0] + workspace.store.responses()[key][1]
+                        for key in workspace.store.responses())  # fmt: skip
 
 
 def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
-    (game,) = read_games(house.store)
-    (end,) = house.store.events("game ended")
-    house.store.append(AWAITED, {"game": game.id}, person=house.people[0].id, strategy="neutral")
-    house.store.append("game ended", {**end.body})
-    session = told(house)
+    (game,) = read_games(workspace.store)
+    (end,) = workspace.store.events("game ended")
+    workspace.store.append(
+        AWAITED, {"game": game.id}, person=workspace.people[0].id, strategy="neutral"
+    )
+    workspace.store.append("game ended", {**end.body})
+    session = told(workspace)
     person = session.people[0]
     assert person.total("awaited") == 1
     assert person.interactions == sum(person.total(what) for what, _ in RESULTS)
@@ -184,19 +189,19 @@ def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
 
 
 def test_of_many_games_only_those_with_faults_or_stops_are_told_one_by_one(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
     play(supervise("arm-failed@5", seed=2))
-    session = told(house)
+    session = told(workspace)
     smooth, bumpy = session.games
     stopped = replace(smooth, id="stopped", number=3, stopped="Somebody said stop.")
     games = [replace(smooth, id=f"game{n}", number=n) for n in range(4, 4 + MOST_TOLD)]
     some = replace(
-        session, replays=tuple(Replay(game) for game in (smooth, *games[: MOST_TOLD - 1]))
+        session, replays=tuple(GameReplay(game) for game in (smooth, *games[: MOST_TOLD - 1]))
     )
     assert sum(line.startswith("Game ") for line in session_lines(some)) == MOST_TOLD
-    all_of_them = tuple(Replay(game) for game in (smooth, bumpy, stopped, *games))
+    all_of_them = tuple(GameReplay(game) for game in (smooth, bumpy, stopped, *games))
     lines = list(session_lines(replace(session, replays=all_of_them)))
     told_of = [line.split(" ")[1] for line in lines if line.startswith("Game ")]
     assert told_of == [str(bumpy.number), "3"]
@@ -207,30 +212,30 @@ def test_of_many_games_only_those_with_faults_or_stops_are_told_one_by_one(
 
 
 def test_a_void_response_counts_in_no_belief_and_is_told(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
-    before = told(house)
+    before = told(workspace)
     person = next(p for p in before.people if p.interactions)
-    feedback = house.memory().feedback
+    feedback = workspace.memory().feedback
     entry = next(entry for entry in feedback.history(person.id) if entry.counts)
     feedback.void(person.id, entry.seq, "it was somebody else")
-    after = next(p for p in told(house).people if p.id == person.id)
+    after = next(p for p in told(workspace).people if p.id == person.id)
     assert after.total("void") == 1
     assert after.interactions == person.interactions
     assert after.strategies[entry.strategy].after.trials == (
         person.strategies[entry.strategy].after.trials - 1
     )
     feedback.give(person.id, entry.strategy, True, of=entry.seq)
-    again = next(p for p in told(house).people if p.id == person.id)
+    again = next(p for p in told(workspace).people if p.id == person.id)
     assert again.total("void") == 0
     assert again.interactions == person.interactions, "an answer that was mended counts once"
 
 
-def test_games_of_an_older_tangy_are_told_too(house: House, supervise: Supervise) -> None:
+def test_games_of_an_older_tangy_are_told_too(workspace: Workspace, supervise: Supervise) -> None:
     play(supervise())
-    with Store.open(house.store.folder.parent / "old") as old:
-        for event in house.store.events():
+    with Store.open(workspace.store.folder.parent / "old") as old:
+        for event in workspace.store.events():
             body = dict(event.body)
             if event.kind == "game step":
                 body = without(body, "seconds", "share", "draws", "teacher", "completed")
@@ -241,11 +246,11 @@ def test_games_of_an_older_tangy_are_told_too(house: House, supervise: Supervise
                 complied=event.complied,
             )  # fmt: skip
         games = read_games(old)
-        session = read_session(old, games, {house.activity.name: house.activity}, {})
+        session = read_session(old, games, {workspace.activity.name: workspace.activity}, {})
         assert not session.timed
         assert session.to_json()["seconds"] is None
         assert [(r.behaviour, r.instances) for r in session.rows] == [
-            (r.behaviour, r.instances) for r in told(house).rows
+            (r.behaviour, r.instances) for r in told(workspace).rows
         ]
         page = session_page(session)
         assert "An older Tangy kept no times" in page
@@ -253,36 +258,40 @@ def test_games_of_an_older_tangy_are_told_too(house: House, supervise: Supervise
 
 
 def test_a_game_whose_activity_is_gone_is_told_with_less(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise())
-    session = read_session(house.store, read_games(house.store), {}, house.names)
+    session = read_session(workspace.store, read_games(workspace.store), {}, workspace.names)
     assert "There is no activity" in session.notes[0]
     assert session.games[0].steps == sum(row.instances for row in session.rows)
-    assert [p.interactions for p in session.people] == [p.interactions for p in told(house).people]
+    assert [p.interactions for p in session.people] == [
+        p.interactions for p in told(workspace).people
+    ]
     assert session_page(session)
 
 
-def test_a_game_that_was_broken_off_says_so(house: House, supervise: Supervise) -> None:
+def test_a_game_that_was_broken_off_says_so(workspace: Workspace, supervise: Supervise) -> None:
     game = supervise()
     game.begin()
     for _ in range(5):
         game.step()
-    (found,) = read_games(house.store)
+    (found,) = read_games(workspace.store)
     assert (found.steps, found.ended, found.ending) == (5, None, BROKEN_OFF)
-    assert BROKEN_OFF[1:] in session_page(told(house))
+    assert BROKEN_OFF[1:] in session_page(told(workspace))
     play(supervise(seed=2))
-    assert [g.ended is None for g in read_games(house.store)] == [True, False]
-    assert told(house).games[0].steps == 5
+    assert [g.ended is None for g in read_games(workspace.store)] == [True, False]
+    assert told(workspace).games[0].steps == 5
 
 
-def test_a_game_is_found_by_number_id_day_and_last(house: House, supervise: Supervise) -> None:
+def test_a_game_is_found_by_number_id_day_and_last(
+    workspace: Workspace, supervise: Supervise
+) -> None:
     with pytest.raises(TangyError, match="No game was played yet"):
-        find_games(read_games(house.store), "last")
+        find_games(read_games(workspace.store), "last")
     game = supervise()
     for _ in range(3):
         play(game)
-    games = read_games(house.store)
+    games = read_games(workspace.store)
     day = games[0].at.astimezone().date()
     assert find_game(games, "2") is games[1]
     assert find_game(games, " LAST ") is games[2]
@@ -301,10 +310,10 @@ def test_a_game_is_found_by_number_id_day_and_last(house: House, supervise: Supe
 
 
 def test_a_page_stands_by_itself_and_tells_every_fault_and_move(
-    house: House, supervise: Supervise
+    workspace: Workspace, supervise: Supervise
 ) -> None:
     play(supervise(*FAULTS))
-    session = told(house)
+    session = told(workspace)
     page = session_page(session)
     root = ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
     assert not [word for word in ("http:", "https:", "src=", "@import", "<link", "<script")
@@ -321,41 +330,50 @@ def test_a_page_stands_by_itself_and_tells_every_fault_and_move(
             assert all(0 <= place <= width for place in places)
 
 
-def test_names_on_a_page_are_text_and_nothing_else(house: House, supervise: Supervise) -> None:
-    house.store.rename(house.people[0].id, "<b>&'\"Rosa")
-    names = {**house.names, house.people[0].id: "<b>&'\"Rosa"}
+def test_names_on_a_page_are_text_and_nothing_else(
+    workspace: Workspace, supervise: Supervise
+) -> None:
+    workspace.store.rename(workspace.people[0].id, "<b>&'\"Rosa")
+    names = {**workspace.names, workspace.people[0].id: "<b>&'\"Rosa"}
     play(supervise())
     session = read_session(
-        house.store, read_games(house.store), {house.activity.name: house.activity}, names
+        workspace.store,
+        read_games(workspace.store),
+        {workspace.activity.name: workspace.activity},
+        names,
     )
     page = session_page(session)
     assert "<b>" not in page
     ElementTree.fromstring(page.partition("\n")[2])  # noqa: S314 - our own page
 
 
-def test_everybody_who_was_asked_is_in_the_moments(house: House, supervise: Supervise) -> None:
+def test_everybody_who_was_asked_is_in_the_moments(
+    workspace: Workspace, supervise: Supervise
+) -> None:
     play(supervise())
-    (replay,) = told(house).replays
+    (replay,) = told(workspace).replays
     kinds = {type(moment.what) for moment in replay.moments}
-    assert {Done, Answered} <= kinds
+    assert {Done, AnsweredRequest} <= kinds
     assert all(datetime.fromisoformat(moment.at).tzinfo for moment in replay.moments)
     assert [moment.to_json()["kind"] for moment in replay.moments].count("step") == len(replay.done)
 
 
-def test_what_was_brought_about_on_purpose_is_told_as_that(house: House, learnt: Policy) -> None:
-    game = house.supervision(learnt, 3, injections=["voice-dead@2"])
+def test_what_was_brought_about_on_purpose_is_told_as_that(
+    workspace: Workspace, learnt: Policy
+) -> None:
+    game = workspace.supervision(learnt, 3, injections=["voice-dead@2"])
     game.begin()
     game.step()
     game.note("STOP", "Ada")
     game.leave()
-    played = read_games(house.store)[-1]
-    activities = {house.activity.name: house.activity}
-    (replay,) = read_replays(house.store, [played], activities, {})
+    played = read_games(workspace.store)[-1]
+    activities = {workspace.activity.name: workspace.activity}
+    (replay,) = read_replays(workspace.store, [played], activities, {})
     noted = [m.what for m in replay.moments if isinstance(m.what, Noted)]
     assert [note.what for note in noted] == [
         "faults are to be brought about: voice-dead@2",
         "STOP",
     ]
-    assert "*  STOP, by Ada." in "\n".join(replay_lines(replay, house.activity, str))
-    session = read_session(house.store, [played], activities, {})
+    assert "*  STOP, by Ada." in "\n".join(replay_lines(replay, workspace.activity, str))
+    session = read_session(workspace.store, [played], activities, {})
     assert any("voice-dead@2" in note for note in session.notes)

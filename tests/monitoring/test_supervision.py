@@ -14,7 +14,7 @@ from tangy_profiles.robot import load_robot
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import play_by_lines
 from tangy_tui.interaction.facilitation import ENDED, DoneOnce
 from tangy_tui.learning.policy import Policy
@@ -33,11 +33,11 @@ from tests.monitoring.conftest import (
 
 
 def test_no_name_of_a_person_gets_into_the_log(
-    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+    supervise: Supervise, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(faulty_world, "HELPS", 0.0)
-    for person in house.people:
-        house.rename(person, f"Zoe{person.id[-1]}")
+    for person in workspace.people:
+        workspace.rename(person, f"Zoe{person.id[-1]}")
     kinds = ("never-complies", "card-out-of-sight", "request-stuck", "path-blocked", "no-effect")
     game = supervise(*kinds, seed=2, asks=False)
     game._recovery._name = lambda person: f"Zoe{person[-1]}"
@@ -46,14 +46,14 @@ def test_no_name_of_a_person_gets_into_the_log(
         play(game, expert=expert)
         told += [f.console + "".join(m.speech for m in f.moves) for f in game.faults]
     assert any("Zoe" in words for words in told)
-    logged = "".join(str(event.body) for event in house.store.events())
+    logged = "".join(str(event.body) for event in workspace.store.events())
     assert "Zoe" not in logged
-    read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(house.store)]
+    read = [f.console + "".join(m.speech for m in f.moves) for f in read_faults(workspace.store)]
     assert read == told
 
 
 def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
-    supervise: Supervise, house: House, monkeypatch: pytest.MonkeyPatch
+    supervise: Supervise, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     game = supervise(seed=3)
     game.begin()
@@ -69,7 +69,7 @@ def test_a_log_that_cannot_be_written_does_not_keep_tangy_from_standing_still(
     monkeypatch.setattr(world, "recover", told)
     world.inject("emergency-stop")
     with monkeypatch.context() as full:
-        full.setattr(house.store, "append", Mock(side_effect=StoreError("The disk is full.")))
+        full.setattr(workspace.store, "append", Mock(side_effect=StoreError("The disk is full.")))
         for _ in range(2):
             with pytest.raises(StoreError):
                 game.step()
@@ -170,10 +170,12 @@ def test_only_what_nothing_explains_can_be_called_all_right(
     assert game.accept("Ada") == []
 
 
-def test_nothing_is_logged_of_a_game_after_its_end(supervise: Supervise, house: House) -> None:
+def test_nothing_is_logged_of_a_game_after_its_end(
+    supervise: Supervise, workspace: Workspace
+) -> None:
     length = len(acts(play(supervise(seed=3))))
     play(supervise(f"camera-frozen@{length}", f"voice-dead@{length}", seed=3))
-    last = list(house.store.events())[-1]
+    last = list(workspace.store.events())[-1]
     assert last.kind == ENDED
 
 
@@ -192,9 +194,9 @@ def test_what_stops_the_robot_breaks_off_what_it_does_and_is_seen_at_once(
 
 
 def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_once(
-    house: House, learnt: Policy
+    workspace: Workspace, learnt: Policy
 ) -> None:
-    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
     game.begin()
     until(game, lambda now: now.question)
     assert game.question is not None
@@ -207,21 +209,21 @@ def test_an_answer_about_a_fault_that_differs_from_what_was_shown_holds_this_onc
     assert game.policy.decide(game.world.observe().situation).sure
 
 
-def test_what_was_called_all_right_can_be_taken_back(house: House, learnt: Policy) -> None:
+def test_what_was_called_all_right_can_be_taken_back(workspace: Workspace, learnt: Policy) -> None:
     def unexpected() -> list[str]:
-        return codes(play(house.supervision(learnt, 4, asks=True, injections=["no-effect@1"])))
+        return codes(play(workspace.supervision(learnt, 4, asks=True, injections=["no-effect@1"])))
 
-    game = house.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
+    game = workspace.supervision(learnt, 3, asks=True, injections=["no-effect@1"])
     game.begin()
     until(game, lambda now: now.question)
     game.accept("Ada")
-    (one,) = read_accepted(house.store, house.activity.name)
+    (one,) = read_accepted(workspace.store, workspace.activity.name)
     assert (one.by, one.mismatches[0].variable) == ("Ada", "activity")
     assert unexpected() == []
     with pytest.raises(TangyError, match="choose from 1 to 1"):
-        take_back(house.store, house.activity.name, 2)
-    take_back(house.store, house.activity.name, 1)
-    assert read_accepted(house.store, house.activity.name) == []
+        take_back(workspace.store, workspace.activity.name, 2)
+    take_back(workspace.store, workspace.activity.name, 1)
+    assert read_accepted(workspace.store, workspace.activity.name) == []
     assert unexpected() == ["unexplained"]
 
 

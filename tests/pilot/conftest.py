@@ -39,7 +39,7 @@ from tangy_profiles.person import Person, load_people
 from tangy_profiles.room import Room, load_room
 from tangy_profiles.scene import Scene
 from tangy_profiles.state import FRONT
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.terminal import TerminalKind
@@ -252,15 +252,17 @@ def picture(
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    """A house with a data folder of its own, in which nothing was learnt yet."""
-    opened = House(tmp_path / "data")
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    """A workspace with a data folder of its own, in which nothing was learnt yet."""
+    opened = Workspace(tmp_path / "data")
     yield opened
     opened.close()
 
 
 @pytest.fixture
-def policy(house: House, cover: Callable[[str, int, int], tuple[Demonstration, ...]]) -> Policy:
+def policy(
+    workspace: Workspace, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
+) -> Policy:
     """A policy that knows all that comes about, learnt by few trees."""
     settings = ForestSettings(trees=5)
-    return learnt(house.store, house.activity, cover("bingo", 1, 4), settings)
+    return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), settings)

@@ -10,8 +10,8 @@ from typing import Any, cast
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.verification import Reply, Say, Stop
-from tangy_tui.speech.input import Ears
+from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.speech.input import SpeechInput
 
 
 @dataclass
@@ -22,8 +22,8 @@ class FakeMeter:
 
 
 class FakeEars:
-    """Stands in for `Ears`: a test says what is heard. As with those, an open question shuts out
-    commands, and answers are heard only if that is switched on.
+    """Stands in for `SpeechInput`: a test says what is heard. As with that, an open question shuts
+    out commands, and answers are heard only if that is switched on.
     """
 
     def __init__(
@@ -46,12 +46,12 @@ class FakeEars:
         self.followed: list[TeachingEvent] = []
         self.books: list[Phrasebook] = []
         self.pulled = 0
-        self._coming: asyncio.Queue[Say | Stop | Reply | None] = asyncio.Queue()
+        self._coming: asyncio.Queue[Say | StopCommand | Reply | None] = asyncio.Queue()
 
     @property
-    def ears(self) -> Ears:
+    def ears(self) -> SpeechInput:
         """Itself, for those who want real ears."""
-        return cast(Ears, self)
+        return cast(SpeechInput, self)
 
     def be(self, state: str, words: str = "", level: float = 0.0, trouble: str = "") -> None:
         """Be in another state."""
@@ -85,10 +85,12 @@ class FakeEars:
         """Take note of what can be said."""
         self.books.append(phrasebook)
 
-    def hear(self, *heard: Say | Stop | Reply) -> None:
+    def hear(self, *heard: Say | StopCommand | Reply) -> None:
         """Let this be heard, unless it cannot be because a question is open."""
         for one in heard:
-            wanted = isinstance(one, Stop) or (self.answers if isinstance(one, Reply) else True)
+            wanted = isinstance(one, StopCommand) or (
+                self.answers if isinstance(one, Reply) else True
+            )
             if not self.live or wanted:
                 self._coming.put_nowait(one)
 
@@ -106,7 +108,7 @@ class FakeEars:
     def __aiter__(self) -> FakeEars:
         return self
 
-    async def __anext__(self) -> Say | Stop | Reply:
+    async def __anext__(self) -> Say | StopCommand | Reply:
         self.pulled += 1
         heard = await self._coming.get()
         if heard is None:

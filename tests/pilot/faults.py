@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Fault
 from tangy_tui.monitoring.supervision import Supervision
@@ -23,7 +23,7 @@ MIDDLE = (120, 40)
 
 
 def playing(
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     *injections: str,
     speed: float = 1,
@@ -32,11 +32,13 @@ def playing(
     """Make the program with the playing screen open; at speed 1 only keys move the game."""
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True, injections=injections)
-        screen = PlayScreen(house, supervision, speed=speed, leave_after=leave_after, teacher="ann")
+        supervision = workspace.supervision(policy, 5, asks=True, injections=injections)
+        screen = PlayScreen(
+            workspace, supervision, speed=speed, leave_after=leave_after, teacher="ann"
+        )
         await program.push_screen(screen)
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 def game_of(pilot: TangyPilot) -> tuple[PlayScreen, Supervision, FaultyWorld]:

@@ -12,7 +12,7 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.health import OK, Fact, Reading
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.live import LiveScreen
@@ -79,31 +79,33 @@ class HeldLink(FakeLink):
         self.state = replace(self.state, health=FakeLink(PEOPLE).state.health, failed="")
 
 
-def live_world(house: House, link: HeldLink, kind: type[LiveWorld] = LiveWorld) -> LiveWorld:
+def live_world(
+    workspace: Workspace, link: HeldLink, kind: type[LiveWorld] = LiveWorld
+) -> LiveWorld:
     """Make the world of a robot."""
     return kind(
-        house.activity,
+        workspace.activity,
         PEOPLE,
         cast(RobotLink, link),
-        house.robot,
-        house.room,
+        workspace.robot,
+        workspace.room,
         seed=1,
-        names=house.names,
+        names=workspace.names,
         pace=0.0,  # its time stands still while nothing is done
     )
 
 
 def live_program(
-    house: House, world: LiveWorld, policy: Policy, ears: FakeEars | None = None
+    workspace: Workspace, world: LiveWorld, policy: Policy, ears: FakeEars | None = None
 ) -> Program:
     """Make a program that opens with the live screen, and with ears if it is given any."""
-    supervision = house.supervision(policy, 1, asks=True, world=world)
+    supervision = workspace.supervision(policy, 1, asks=True, world=world)
 
     async def start(program: Program) -> None:
-        await program.push_screen(LiveScreen(house, supervision, world, teacher="ann"))
+        await program.push_screen(LiveScreen(workspace, supervision, world, teacher="ann"))
 
     return Program(
-        house,
+        workspace,
         start,
         kind=TerminalKind(full_screen=True),
         clock=StillClock(),

@@ -10,7 +10,7 @@ import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app import robot_opening
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.learning.policy import Policy
@@ -23,8 +23,10 @@ from tests.pilot.live_games import HeldLink, live, live_world, until
 
 
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])
-async def test_a_key_that_comes_twice_opens_one_screen(keys: str, run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_a_key_that_comes_twice_opens_one_screen(
+    keys: str, run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         pilot.type(*keys)
         for _ in range(4):
             await pilot.pause(0.05)
@@ -32,8 +34,8 @@ async def test_a_key_that_comes_twice_opens_one_screen(keys: str, run: Run, hous
         assert len(pilot.app.screen_stack) == 2
 
 
-async def test_two_keys_make_one_demonstration(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_two_keys_make_one_demonstration(run: Run, workspace: Workspace) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         pilot.type("t", "t")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
@@ -41,13 +43,13 @@ async def test_two_keys_make_one_demonstration(run: Run, house: House) -> None:
         await pilot.pause()
         pilot.type("y")
         await pilot.pause()
-        assert len(read_library(house.store, "bingo").entries) <= 1
+        assert len(read_library(workspace.store, "bingo").entries) <= 1
 
 
 async def test_stop_at_home_says_that_nothing_moves(
-    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         said: list[str] = []
         monkeypatch.setattr(pilot.app, "say", lambda sentence, **more: said.append(sentence))
         await pilot.press("ctrl+x")
@@ -59,19 +61,19 @@ async def test_stop_at_home_says_that_nothing_moves(
 
 
 async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
-    run: Run, house: House, policy: Policy, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    keep_policy(house.store, policy)
+    keep_policy(workspace.store, policy)
     link, opened = HeldLink(), list[bool]()
 
     @contextmanager
-    def bench(_: House, **__: Any) -> Iterator[LiveWorld]:
+    def bench(_: Workspace, **__: Any) -> Iterator[LiveWorld]:
         opened.append(True)
-        yield live_world(house, link)
+        yield live_world(workspace, link)
         opened.append(False)
 
     monkeypatch.setattr(robot_opening, "open_bench", bench)
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await until(pilot, lambda: "no robot is named" in screen_text(pilot.app))
         for answer in ("n", "y"):
             assert opened == []
@@ -89,20 +91,20 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_v_needs_something_that_was_learnt(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("v")
         await until(pilot, lambda: "has not learnt" in screen_text(pilot.app))
 
 
-async def test_home_says_what_is_left_out_of_the_log(run: Run, house: House) -> None:
-    store = house.store
+async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Workspace) -> None:
+    store = workspace.store
     store.append("policy learnt", {**POLICY_BODY, "name": "lost"})
     db = store._file.db
     assert db is not None
     db.executescript("DROP TRIGGER unchanged; UPDATE event SET body = '{'")
     store.notices.append("tangy.db: events 5 to 9 had been kept and are gone.")
-    program = Program(house, clock=StillClock())
+    program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
         shown = program._notifications
         await until(pilot, lambda: len(shown) == 2)

@@ -12,7 +12,7 @@ from textual.app import App
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy
@@ -39,29 +39,29 @@ FEW = ForestSettings(trees=5)
 TINY = (60, 18)
 
 
-def gap(house: House) -> Situation:
+def gap(workspace: Workspace) -> Situation:
     """Return the situation that is left out: what comes first when a number is called."""
-    expected = house.activity.expected
-    return next(s for s in house.activity.situations if expected[s] == "call number")
+    expected = workspace.activity.expected
+    return next(s for s in workspace.activity.situations if expected[s] == "call number")
 
 
 @pytest.fixture
-def gappy(house: House, cover: Cover) -> Policy:
+def gappy(workspace: Workspace, cover: Cover) -> Policy:
     """A policy that was never shown one situation."""
-    shown = [without(d, gap(house)) for d in cover("bingo", 1, 4)]
-    return learnt(house.store, house.activity, shown, FEW)
+    shown = [without(d, gap(workspace)) for d in cover("bingo", 1, 4)]
+    return learnt(workspace.store, workspace.activity, shown, FEW)
 
 
 def playing(
-    house: House, policy: Policy, *, speed: float = 1000, clock: Clock | None = None
+    workspace: Workspace, policy: Policy, *, speed: float = 1000, clock: Clock | None = None
 ) -> Program:
     """Make the program with the playing screen open."""
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True)
-        await program.push_screen(PlayScreen(house, supervision, speed=speed, teacher="ann"))
+        supervision = workspace.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(workspace, supervision, speed=speed, teacher="ann"))
 
-    return Program(house, start, clock=clock or StillClock())
+    return Program(workspace, start, clock=clock or StillClock())
 
 
 async def asked(pilot: TangyPilot) -> PlayScreen:
@@ -97,9 +97,9 @@ async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
 
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
-    run: Run, house: House, gappy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, gappy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, gappy), size=size) as pilot:
+    async with run(app=playing(workspace, gappy), size=size) as pilot:
         screen = await asked(pilot)
         count = screen.query_one(Transcript).count
         seen = " ".join(screen_text(pilot.app).split())
@@ -114,16 +114,18 @@ async def test_tangy_asks_is_answered_in_place_and_plays_on_to_the_end(
         assert "Learnt from ann: " in said
         assert "earlier steps were gone through: nothing else changed." in said
         assert "The game is over" in said
-        words = house.activity.in_words(gap(house))
+        words = workspace.activity.in_words(gap(workspace))
         row = next(r for r in screen.query_one(PolicyTable).rows if r.situation == words)
         assert (row.behaviour, row.seen) == ("call number", 1)
         assert screen._tally.answers == 1
-    made = read_library(house.store, house.activity.name).finished[-1]
+    made = read_library(workspace.store, workspace.activity.name).finished[-1]
     assert (made.origin, made.teacher) == ("asked", "ann")
 
 
-async def test_what_was_learnt_is_said_in_a_message(run: Run, house: House, gappy: Policy) -> None:
-    async with run(app=playing(house, gappy, speed=1), notifications=True) as pilot:
+async def test_what_was_learnt_is_said_in_a_message(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
+    async with run(app=playing(workspace, gappy, speed=1), notifications=True) as pilot:
         await pilot.press("e")
         screen = await asked(pilot)
         screen._skipping = False
@@ -134,10 +136,10 @@ async def test_what_was_learnt_is_said_in_a_message(run: Run, house: House, gapp
         assert "else changed." in screen_text(pilot.app)
 
 
-async def test_nothing_happens_before_a_yes(run: Run, house: House, gappy: Policy) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gappy: Policy) -> None:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
-        before = list(house.store.events())
+        before = list(workspace.store.events())
         pilot.type(*"call number", "enter")
         await questioned(pilot)
         assert "Did you say: call number?" in screen_text(pilot.app)
@@ -149,12 +151,14 @@ async def test_nothing_happens_before_a_yes(run: Run, house: House, gappy: Polic
         await questioned(pilot)
         await pilot.press("escape")
         await pilot.pause()
-        assert list(house.store.events()) == before
+        assert list(workspace.store.events()) == before
         assert screen._supervision.question is not None
 
 
-async def test_keys_typed_ahead_answer_nothing(run: Run, house: House, gappy: Policy) -> None:
-    async with run(app=playing(house, gappy, speed=1)) as pilot:
+async def test_keys_typed_ahead_answer_nothing(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
+    async with run(app=playing(workspace, gappy, speed=1)) as pilot:
         await pilot.press("p")
         screen: Any = pilot.app.screen
         while screen.query_one(Transcript).count < 1:
@@ -169,9 +173,9 @@ async def test_keys_typed_ahead_answer_nothing(run: Run, house: House, gappy: Po
 
 
 async def test_words_that_mean_nothing_are_given_back(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         pilot.type(*"make some tea", "enter")
         await pilot.pause()
@@ -180,9 +184,9 @@ async def test_words_that_mean_nothing_are_given_back(
 
 
 async def test_why_it_asks_is_told_by_word_and_by_key(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         await asked(pilot)
         pilot.type(*"why", "enter")
         await pilot.pause()
@@ -197,9 +201,9 @@ async def test_why_it_asks_is_told_by_word_and_by_key(
 
 @pytest.mark.parametrize("way", ["word", "key"])
 async def test_the_game_is_given_up_on_purpose(
-    run: Run, house: House, gappy: Policy, way: str
+    run: Run, workspace: Workspace, gappy: Policy, way: str
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         if way == "word":
             pilot.type(*"quit", "enter")
@@ -218,7 +222,7 @@ async def test_the_game_is_given_up_on_purpose(
         await pilot.press("y")
         await over(pilot, screen)
         assert not screen.query(AskingPanel)
-        ended = house.store.last(ENDED)
+        ended = workspace.store.last(ENDED)
         assert ended is not None
         assert "Nobody has shown Tangy" in str(ended.body["stopped"])
         await pilot.press("escape")
@@ -227,15 +231,15 @@ async def test_the_game_is_given_up_on_purpose(
 
 
 async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         pilot.type(*"call number", "enter")
         await questioned(pilot)
         await pilot.press("ctrl+x")
         await pilot.pause()
-        before = list(house.store.events())
+        before = list(workspace.store.events())
         assert before[-1].body["what"] == "the robot was stopped"
         assert isinstance(pilot.app.screen, PlayScreen)
         assert "STOPPED" in screen_text(pilot.app)
@@ -243,7 +247,7 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         await pilot.press("n", "e")
         await pilot.press("colon", "enter")
         await pilot.pause()
-        assert list(house.store.events()) == before
+        assert list(workspace.store.events()) == before
         assert screen._supervision.question is not None
         await pilot.press("escape", "p")
         await pilot.pause()
@@ -257,9 +261,9 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
 
 @pytest.mark.parametrize("words", ["stop the robot", "Please stop the bingo game!"])
 async def test_a_stop_that_is_typed_for_an_answer_stops(
-    run: Run, house: House, gappy: Policy, words: str
+    run: Run, workspace: Workspace, gappy: Policy, words: str
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         pilot.type(*words, "enter")
         await pilot.pause()
@@ -268,9 +272,9 @@ async def test_a_stop_that_is_typed_for_an_answer_stops(
 
 
 async def test_pausing_while_tangy_asks_pauses_after_the_answer(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         await pilot.press("escape", "p", "e", "colon")
         assert "Tangy asks first" in screen.query_one(LogView).sentences[-1]
@@ -285,12 +289,12 @@ async def test_pausing_while_tangy_asks_pauses_after_the_answer(
 
 
 async def test_demonstrations_that_disagree_are_shown_with_the_question(
-    run: Run, house: House, cover: Cover
+    run: Run, workspace: Workspace, cover: Cover
 ) -> None:
     shown = cover("bingo", 1, 4)
-    other = otherwise(shown[0], gap(house), "joke", "ben")
-    contested = learnt(house.store, house.activity, [*shown, other], FEW)
-    async with run(app=playing(house, contested), size=LARGE) as pilot:
+    other = otherwise(shown[0], gap(workspace), "joke", "ben")
+    contested = learnt(workspace.store, workspace.activity, [*shown, other], FEW)
+    async with run(app=playing(workspace, contested), size=LARGE) as pilot:
         screen = await asked(pilot)
         seen = " ".join(screen_text(pilot.app).split())
         assert "Demonstrations disagree" in seen
@@ -302,8 +306,10 @@ async def test_demonstrations_that_disagree_are_shown_with_the_question(
                 await pilot.pause(0.02)
 
 
-async def test_an_answered_step_says_who_answered(run: Run, house: House, gappy: Policy) -> None:
-    async with run(app=playing(house, gappy), size=LARGE) as pilot:
+async def test_an_answered_step_says_who_answered(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
+    async with run(app=playing(workspace, gappy), size=LARGE) as pilot:
         screen = await asked(pilot)
         await pilot.press("escape", "p", "colon")
         await answer(pilot)
@@ -317,20 +323,20 @@ async def test_an_answered_step_says_who_answered(run: Run, house: House, gappy:
 
 
 async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
-    run: Run, house: House, gappy: Policy, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, gappy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    append = house.store.append
+    append = workspace.store.append
 
     def refuse(kind: str, *rest: object, **more: object) -> int:
         if kind == "policy learnt":
             raise TangyError("The log cannot be written: the disk is full.")
         return append(kind, *rest, **more)  # type: ignore[arg-type]
 
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
         policy = screen._supervision.policy
         with monkeypatch.context() as broken:
-            broken.setattr(house.store, "append", refuse)
+            broken.setattr(workspace.store, "append", refuse)
             await answer(pilot)
             while not isinstance(pilot.app.screen, MessageDialog):
                 await pilot.pause(0.02)
@@ -347,12 +353,12 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 
 
 async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy)) as pilot:
+    async with run(app=playing(workspace, gappy)) as pilot:
         await asked(pilot)
         await pilot.press("ctrl+q")
-    ended = house.store.last(ENDED)
+    ended = workspace.store.last(ENDED)
     assert ended is not None
     assert ended.body["stopped"] == "It was left before its end."
 
@@ -360,12 +366,12 @@ async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_asking_looks(
     run: Run,
-    house: House,
+    workspace: Workspace,
     gappy: Policy,
     size: tuple[int, int],
     picture: Callable[[App[None]], None],
 ) -> None:
-    async with run(app=playing(house, gappy), size=size) as pilot:
+    async with run(app=playing(workspace, gappy), size=size) as pilot:
         await asked(pilot)
         await pilot.pause()
         picture(pilot.app)

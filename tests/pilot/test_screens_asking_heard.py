@@ -8,9 +8,9 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import ForestSettings, Policy
-from tangy_tui.learning.verification import Reply, Stop
+from tangy_tui.learning.verification import Reply, StopCommand
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen
@@ -27,22 +27,26 @@ UNSURE = "call a joke number"
 
 
 @pytest.fixture
-def gappy(house: House, cover: Callable[[str, int, int], tuple[Demonstration, ...]]) -> Policy:
+def gappy(
+    workspace: Workspace, cover: Callable[[str, int, int], tuple[Demonstration, ...]]
+) -> Policy:
     """A policy that was never shown when to call a number."""
-    expected = house.activity.expected
-    gap = next(s for s in house.activity.situations if expected[s] == "call number")
+    expected = workspace.activity.expected
+    gap = next(s for s in workspace.activity.situations if expected[s] == "call number")
     shown = [without(d, gap) for d in cover("bingo", 1, 4)]
-    return learnt(house.store, house.activity, shown, ForestSettings(trees=5))
+    return learnt(workspace.store, workspace.activity, shown, ForestSettings(trees=5))
 
 
-def playing(house: House, policy: Policy, ears: FakeEars, *, speed: float = 1000) -> Program:
+def playing(
+    workspace: Workspace, policy: Policy, ears: FakeEars, *, speed: float = 1000
+) -> Program:
     """Make the program with ears and the playing screen open."""
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True)
-        await program.push_screen(PlayScreen(house, supervision, speed=speed, teacher="ann"))
+        supervision = workspace.supervision(policy, 5, asks=True)
+        await program.push_screen(PlayScreen(workspace, supervision, speed=speed, teacher="ann"))
 
-    return Program(house, start, clock=StillClock(), ears=ears.ears)
+    return Program(workspace, start, clock=StillClock(), ears=ears.ears)
 
 
 async def asked(pilot: TangyPilot) -> PlayScreen:
@@ -55,10 +59,10 @@ async def asked(pilot: TangyPilot) -> PlayScreen:
 
 
 async def test_an_answer_is_said_asked_about_and_learnt(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars()
-    async with run(app=playing(house, gappy, ears)) as pilot:
+    async with run(app=playing(workspace, gappy, ears)) as pilot:
         screen = await asked(pilot)
         assert "t talk" in pilot.lines()[-2]
         await pilot.press("t")
@@ -76,9 +80,11 @@ async def test_an_answer_is_said_asked_about_and_learnt(
             await pilot.pause(0.02)
 
 
-async def test_a_spoken_no_gives_the_words_back(run: Run, house: House, gappy: Policy) -> None:
+async def test_a_spoken_no_gives_the_words_back(
+    run: Run, workspace: Workspace, gappy: Policy
+) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=playing(house, gappy, ears)) as pilot:
+    async with run(app=playing(workspace, gappy, ears)) as pilot:
         screen = await asked(pilot)
         ears.hear(ears.say("call number"))
         await pilot.pause()
@@ -91,26 +97,26 @@ async def test_a_spoken_no_gives_the_words_back(run: Run, house: House, gappy: P
 
 
 async def test_while_nothing_is_asked_only_stop_is_heard(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=playing(house, gappy, ears, speed=1)) as pilot:
+    async with run(app=playing(workspace, gappy, ears, speed=1)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
         assert ears.asks
         assert "listening for stop" in screen.query_one(MicrophoneLine).text
-        ears.hear(Stop("stop"))
+        ears.hear(StopCommand("stop"))
         await pilot.pause()
         assert "STOPPED" in screen_text(pilot.app)
 
 
 async def test_after_a_stop_what_is_said_is_given_back(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=playing(house, gappy, ears)) as pilot:
+    async with run(app=playing(workspace, gappy, ears)) as pilot:
         screen = await asked(pilot)
-        ears.hear(Stop("stop"))
+        ears.hear(StopCommand("stop"))
         await pilot.pause()
         ears.hear(ears.say("call number"))
         await pilot.pause()
@@ -120,9 +126,9 @@ async def test_after_a_stop_what_is_said_is_given_back(
 
 
 async def test_the_phrases_are_shown_where_tangy_asks(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy, FakeEars())) as pilot:
+    async with run(app=playing(workspace, gappy, FakeEars())) as pilot:
         await asked(pilot)
         await pilot.press("colon", *"phrases", "enter")
         await pilot.pause()
@@ -132,13 +138,13 @@ async def test_the_phrases_are_shown_where_tangy_asks(
 @pytest.mark.parametrize("size", [(60, 18), (80, 24)], ids=["tiny", "small"])
 async def test_how_asking_with_ears_looks(
     run: Run,
-    house: House,
+    workspace: Workspace,
     gappy: Policy,
     size: tuple[int, int],
     picture: Callable[[App[None]], None],
 ) -> None:
     ears = FakeEars()
-    async with run(app=playing(house, gappy, ears), size=size) as pilot:
+    async with run(app=playing(workspace, gappy, ears), size=size) as pilot:
         await asked(pilot)
         ears.be("speaking", "call the", 0.4)
         await pilot.pause()

@@ -11,7 +11,7 @@ from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policies import POLICY, keep_policy, last_policy
 from tangy_tui.learning.policy import ForestSettings
 from tangy_tui.ui.dialogs.choose import ChooseDialog
@@ -30,16 +30,16 @@ FEW = ForestSettings(trees=5)
 TINY = (60, 18)
 
 
-def found(house: House, behaviour: str) -> Situation:
+def found(workspace: Workspace, behaviour: str) -> Situation:
     """Return the situation in which something is expected."""
-    expected = house.activity.expected
-    return next(s for s in house.activity.situations if expected[s] == behaviour)
+    expected = workspace.activity.expected
+    return next(s for s in workspace.activity.situations if expected[s] == behaviour)
 
 
 @pytest.fixture
-def house(tmp_path: Path, cover: Cover) -> Iterator[House]:
-    """A house with a policy that lacks a row, a later one that has it, and another teacher."""
-    opened = House(tmp_path / "data")
+def workspace(tmp_path: Path, cover: Cover) -> Iterator[Workspace]:
+    """A workspace with a policy that lacks a row, a later one that has it, and another teacher."""
+    opened = Workspace(tmp_path / "data")
     shown = cover("bingo", 1, 4)
     gap = found(opened, "call number")
     keep_policy(
@@ -76,13 +76,13 @@ async def compare_teachers(pilot: TangyPilot) -> CompareScreen:
 
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_teacher_is_compared_with_teacher(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+    async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
         screen = await compare_teachers(pilot)
         assert "They differ in 1 of 11 situations." in " ".join(screen_text(pilot.app).split())
         first = screen.rows[0]
-        assert (first.situation, first.same) == (found(house, "call number"), False)
+        assert (first.situation, first.same) == (found(workspace, "call number"), False)
         assert {first.a.behaviour, first.b.behaviour} == {"call number", "joke"}
         assert "A call number 100%" in screen_text(pilot.app)
         await pilot.press("d")
@@ -102,12 +102,12 @@ async def test_teacher_is_compared_with_teacher(
 
 
 async def test_the_policy_screen_tells_why_and_says_what_is_contested(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=Program(house, clock=StillClock()), size=LARGE) as pilot:
+    async with run(app=Program(workspace, clock=StillClock()), size=LARGE) as pilot:
         await pilot.press("o")
         screen = await shown(pilot, PolicyScreen)
-        digest = str((last_policy(house.store, house.activity.name) or {})["digest"])
+        digest = str((last_policy(workspace.store, workspace.activity.name) or {})["digest"])
         assert digest[:8] in screen_text(pilot.app)
         assert "1 contested" in screen_text(pilot.app)
         assert "contested" in [row.behaviour for row in screen.query_one("#policy").rows]
@@ -120,8 +120,10 @@ async def test_the_policy_screen_tells_why_and_says_what_is_contested(
         assert isinstance(pilot.app.screen, WhyDialog)
 
 
-async def test_before_is_compared_with_after_from_the_policy_screen(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_before_is_compared_with_after_from_the_policy_screen(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o")
         await shown(pilot, PolicyScreen)
         await pilot.press("c")
@@ -132,8 +134,8 @@ async def test_before_is_compared_with_after_from_the_policy_screen(run: Run, ho
         assert "asks: contested" in screen_text(pilot.app)
 
 
-async def test_an_earlier_policy_can_be_looked_at(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o")
         last = await shown(pilot, PolicyScreen)
         await pilot.press("o")
@@ -145,22 +147,22 @@ async def test_an_earlier_policy_can_be_looked_at(run: Run, house: House) -> Non
         assert len(screen._policy.demonstrations) < len(last._policy.demonstrations)
 
 
-def spoil(house: House) -> None:
+def spoil(workspace: Workspace) -> None:
     """Keep the last policy as another version would have learnt it."""
-    kept = dict(last_policy(house.store, house.activity.name) or {})
+    kept = dict(last_policy(workspace.store, workspace.activity.name) or {})
     rows = [list(row) for row in kept["rows"]]
     rows[0][3] = "something else"
     versions = {**kept["versions"], "scikit-learn": "0.1"}
-    house.store.append(POLICY, {**kept, "digest": "0" * 64, "rows": rows, "versions": versions})
+    workspace.store.append(POLICY, {**kept, "digest": "0" * 64, "rows": rows, "versions": versions})
 
 
 @pytest.mark.parametrize(("key", "used", "kept"), [("n", 0, 0), ("y", 1, 0), ("k", 1, 1)])
 async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
-    run: Run, house: House, key: str, used: int, kept: int
+    run: Run, workspace: Workspace, key: str, used: int, kept: int
 ) -> None:
-    spoil(house)
-    before = sum(1 for _ in house.store.events(POLICY))
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    spoil(workspace)
+    before = sum(1 for _ in workspace.store.events(POLICY))
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o")
         dialog = await shown(pilot, DifferenceDialog)
         while dialog._keys._from is None:
@@ -174,23 +176,23 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
         assert pilot.app.screen is dialog
         await pilot.press(key)
         await shown(pilot, PolicyScreen if used else HomeScreen)
-        assert sum(1 for _ in house.store.events(POLICY)) == before + kept
+        assert sum(1 for _ in workspace.store.events(POLICY)) == before + kept
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_comparing_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+    async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
         await compare_teachers(pilot)
         picture(pilot.app)
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_a_policy_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=Program(house, clock=StillClock()), size=size) as pilot:
+    async with run(app=Program(workspace, clock=StillClock()), size=size) as pilot:
         await pilot.press("o")
         await shown(pilot, PolicyScreen)
         picture(pilot.app)

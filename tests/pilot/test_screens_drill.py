@@ -12,9 +12,9 @@ from textual.app import App
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.drill import Drill
-from tangy_tui.monitoring.drill_policy import Learnt, policy_for_drill
+from tangy_tui.monitoring.drill_policy import DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Tabletop
 from tangy_tui.monitoring.drill_sheet import last_sheet, read_sheets
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -34,20 +34,22 @@ SIZES = pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "smal
 
 
 @pytest.fixture(scope="module")
-def learnt(tmp_path_factory: pytest.TempPathFactory) -> Learnt:
+def learnt(tmp_path_factory: pytest.TempPathFactory) -> DrillPolicy:
     """What drills are played by where nothing was learnt, shown once for all tests."""
     folder = tmp_path_factory.mktemp("nothing") / "data"
-    house = House(folder)
+    workspace = Workspace(folder)
     try:
-        return policy_for_drill(house.store, house.activity)
+        return policy_for_drill(workspace.store, workspace.activity)
     finally:
-        house.close()
+        workspace.close()
 
 
 @pytest.fixture
-def make(house: House, learnt: Learnt, clock: StillClock) -> Callable[..., DrillScreen]:
+def make(
+    workspace: Workspace, learnt: DrillPolicy, clock: StillClock
+) -> Callable[..., DrillScreen]:
     """Make the screen of a drill: (rounds, seed) -> screen."""
-    rules = load_faults(house.robot).rules
+    rules = load_faults(workspace.robot).rules
     few = FaultBook(tuple(rule for rule in rules if rule.code in FEW), "few")
 
     def screen(rounds: int = 6, seed: int = 1, note: str = "") -> DrillScreen:
@@ -55,12 +57,12 @@ def make(house: House, learnt: Learnt, clock: StillClock) -> Callable[..., Drill
             learnt.policy,
             learnt.effects,
             few,
-            house.robot,
-            house.activity,
-            house.names,
+            workspace.robot,
+            workspace.activity,
+            workspace.names,
         )
         drill = Drill(
-            table, house.store, who="ada", seed=seed, rounds=rounds, clock=clock, note=note
+            table, workspace.store, who="ada", seed=seed, rounds=rounds, clock=clock, note=note
         )
         return DrillScreen(drill)
 
@@ -99,7 +101,7 @@ async def answer_round(pilot: TangyPilot, drill: Drill) -> None:
 
 @SIZES
 async def test_a_drill_is_walked_to_its_sheet(
-    run: Run, make: Callable[..., DrillScreen], house: House, size: tuple[int, int]
+    run: Run, make: Callable[..., DrillScreen], workspace: Workspace, size: tuple[int, int]
 ) -> None:
     screen = make(4)
     drill = drill_of(screen)
@@ -122,7 +124,7 @@ async def test_a_drill_is_walked_to_its_sheet(
         text = pilot.text()
         assert f"ada: {drill.sheet.points} of {drill.sheet.most} points." in text
         assert "The sheet is kept." in text
-    assert [sheet.finished for sheet in read_sheets(house.store)] == [True]
+    assert [sheet.finished for sheet in read_sheets(workspace.store)] == [True]
 
 
 @pytest.mark.parametrize(("seed", "wrong"), [(1, False), (1, True)], ids=["right", "wrong"])
@@ -154,7 +156,7 @@ async def test_rounds_as_they_look(
 
 
 async def test_leaving_half_way_is_asked_about_and_kept_unfinished(
-    run: Run, make: Callable[..., DrillScreen], house: House
+    run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
     drill = drill_of(screen)
@@ -179,13 +181,13 @@ async def test_leaving_half_way_is_asked_about_and_kept_unfinished(
         await pilot.pause()
         await pilot.pause()
         assert not on_top(pilot, screen)
-    kept = last_sheet(house.store)
+    kept = last_sheet(workspace.store)
     assert kept is not None
     assert (len(kept.answered), kept.finished) == (1, False)
 
 
 async def test_leaving_before_anything_was_answered_asks_nothing_and_keeps_nothing(
-    run: Run, make: Callable[..., DrillScreen], house: House
+    run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
     async with run() as pilot:
@@ -193,11 +195,11 @@ async def test_leaving_before_anything_was_answered_asks_nothing_and_keeps_nothi
         await pilot.press("enter", "1", "escape")
         await pilot.pause()
         assert not on_top(pilot, screen)
-    assert last_sheet(house.store) is None
+    assert last_sheet(workspace.store) is None
 
 
 async def test_the_program_that_ends_half_way_keeps_what_was_answered(
-    run: Run, make: Callable[..., DrillScreen], house: House
+    run: Run, make: Callable[..., DrillScreen], workspace: Workspace
 ) -> None:
     screen = make(4)
     async with run(screen) as pilot:
@@ -206,7 +208,7 @@ async def test_the_program_that_ends_half_way_keeps_what_was_answered(
         await answer_round(pilot, drill_of(screen))
         await pilot.press("ctrl+c")
         await pilot.pause()
-    kept = last_sheet(house.store)
+    kept = last_sheet(workspace.store)
     assert kept is not None
     assert len(kept.answered) == 1
 
@@ -264,8 +266,10 @@ async def test_a_note_is_told_before_it_begins(run: Run, make: Callable[..., Dri
         assert "Nothing was learnt [/] yet." in pilot.text()
 
 
-async def test_it_is_opened_from_home_and_its_score_is_told_there(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_it_is_opened_from_home_and_its_score_is_told_there(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         assert "what to do when things go wrong" in pilot.text()
         await pilot.press("r")
         while not isinstance(pilot.app.screen, DrillScreen):
@@ -286,7 +290,7 @@ async def test_it_is_opened_from_home_and_its_score_is_told_there(run: Run, hous
         assert f"last: {points} of {points} points" in pilot.text()
 
 
-def test_what_is_shown_for_a_drill_is_not_kept(house: House, learnt: Learnt) -> None:
+def test_what_is_shown_for_a_drill_is_not_kept(workspace: Workspace, learnt: DrillPolicy) -> None:
     assert learnt.note
-    store: Store = house.store
+    store: Store = workspace.store
     assert list(store.events()) == []

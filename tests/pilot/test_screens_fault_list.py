@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE
 from tangy_tui.ui.dialogs.critical import CriticalDialog
@@ -32,9 +32,9 @@ from tests.pilot.faults import (
 
 
 async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, speed=1000)) as pilot:
+    async with run(app=playing(workspace, policy, speed=1000)) as pilot:
         screen, game, world = game_of(pilot)
         banner = screen.query_one(FaultBanner)
         assert not banner.display
@@ -58,9 +58,9 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
 
 
 async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "camera-occluded@2")) as pilot:
+    async with run(app=playing(workspace, policy, "camera-occluded@2")) as pilot:
         screen, game, _ = game_of(pilot)
         await pilot.press("p")
         while not any("asked" in kinds_of(fault) for fault in game.faults):
@@ -75,9 +75,9 @@ async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
 
 @pytest.mark.parametrize("size", [TINY, SMALL, MIDDLE], ids=["tiny", "small", "middle"])
 async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
-    run: Run, house: House, policy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         screen, game, world = game_of(pilot)
         room = screen.query_one(RoomView)
         height = room.size.height
@@ -101,9 +101,9 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
 
 @pytest.mark.parametrize("size", [TINY, MIDDLE], ids=["tiny", "middle"])
 async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
-    run: Run, house: House, policy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy, speed=1000), size=size) as pilot:
+    async with run(app=playing(workspace, policy, speed=1000), size=size) as pilot:
         screen, game, world = game_of(pilot)
         for kind in ("arm-failed", "requests-silent"):
             world.inject(kind)
@@ -131,8 +131,8 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         assert len(faults._keys) == 2
 
 
-async def test_the_list_can_fill_the_screen(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy, speed=1000)) as pilot:
+async def test_the_list_can_fill_the_screen(run: Run, workspace: Workspace, policy: Policy) -> None:
+    async with run(app=playing(workspace, policy, speed=1000)) as pilot:
         screen, game, world = game_of(pilot)
         world.inject("arm-failed")
         await until(pilot, lambda: game.faults and game.faults[0].status == BORNE)
@@ -152,9 +152,9 @@ def test_the_list_says_what_was_done_last_at_every_width(width: int) -> None:
 
 
 async def test_the_timeline_has_times_evidence_and_steps_for_staff(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+    async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         await halting(pilot)
         await pilot.press("e", "c")
         await until(pilot, lambda: not isinstance(pilot.app.screen, CriticalDialog))
@@ -182,9 +182,9 @@ def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
 
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
-    run: Run, house: House, policy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         screen, game, world = game_of(pilot)
         await pilot.press("p", "f")
         await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
@@ -208,8 +208,10 @@ async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
         assert not world.present
 
 
-async def test_what_is_still_to_come_can_be_lifted(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+async def test_what_is_still_to_come_can_be_lifted(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         await pilot.press("p", "f")
         await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
@@ -235,9 +237,9 @@ async def test_all_kinds_can_be_chosen(run: Run) -> None:
 
 
 async def test_no_fault_can_be_brought_about_in_the_demo(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, leave_after=1000)) as pilot:
+    async with run(app=playing(workspace, policy, leave_after=1000)) as pilot:
         screen = game_of(pilot)[0]
         await pilot.press("f")
         await pilot.pause()

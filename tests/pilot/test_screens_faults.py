@@ -9,7 +9,7 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE, Diagnosed
 from tangy_tui.monitoring.supervision import Event
@@ -31,9 +31,9 @@ from tests.pilot.faults import (
 
 @pytest.mark.parametrize("at", ["playing", "paused"])
 async def test_a_fault_is_told_at_the_next_look(
-    run: Run, house: House, policy: Policy, at: str, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, policy: Policy, at: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         _, game, world = game_of(pilot)
         if at == "paused":
             await pilot.press("p")
@@ -54,9 +54,9 @@ async def test_a_fault_is_told_at_the_next_look(
 
 
 async def test_nothing_is_written_while_nothing_changes(
-    run: Run, house: House, policy: Policy, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = game_of(pilot)[0]
         await pilot.press("p")
         told: list[Any] = []
@@ -67,19 +67,19 @@ async def test_nothing_is_written_while_nothing_changes(
 
 
 async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tried_again(
-    run: Run, house: House, policy: Policy, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, policy: Policy, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    append = house.store.append
+    append = workspace.store.append
 
     def refuse(kind: str, *rest: object, **more: object) -> int:
         if kind == "fault":
             raise TangyError("The log cannot be written: the disk is full.")
         return append(kind, *rest, **more)  # type: ignore[arg-type]
 
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         with monkeypatch.context() as broken:
-            broken.setattr(house.store, "append", refuse)
+            broken.setattr(workspace.store, "append", refuse)
             world.inject("emergency-stop")
             await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
             count = screen.query_one(Transcript).count
@@ -97,12 +97,12 @@ async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tr
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_how_standing_still_looks(
     run: Run,
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     size: tuple[int, int],
     picture: Callable[[App[None]], None],
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         await halting(pilot, "laser-disconnected")
         await pilot.press("a")
         await pilot.pause()
@@ -112,12 +112,12 @@ async def test_how_standing_still_looks(
 @pytest.mark.parametrize("size", [SMALL, MIDDLE], ids=["small", "middle"])
 async def test_how_banner_and_list_look(
     run: Run,
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     size: tuple[int, int],
     picture: Callable[[App[None]], None],
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         game, world = game_of(pilot)[1:]
         await pilot.press("p")
         for kind in ("requests-silent", "arm-failed"):

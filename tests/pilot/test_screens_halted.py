@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import OVER, read_faults
 from tangy_tui.monitoring.games import uncleared
@@ -34,9 +34,9 @@ from tests.pilot.faults import (
 
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
 async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
-    run: Run, house: House, policy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         screen, game, _ = game_of(pilot)
         dialog = await halting(pilot)
         fault = dialog.fault
@@ -64,15 +64,15 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
         await pilot.press("p")
         await until(pilot, lambda: screen.query_one(Transcript).count > count)
         assert "robot OK" in seen(pilot)
-    kept = read_faults(house.store)
+    kept = read_faults(workspace.store)
     assert [kinds_of(fault) for fault in kept] == [kinds_of(fault)]
     assert {move.by for move in kept[0].moves} == {"", "ann"}
 
 
 async def test_the_dialog_says_what_was_expected_and_observed_and_when(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+    async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         await halting(pilot, "laser-disconnected")
         text = seen(pilot)
         assert "Still there: laser scanner: nothing comes from it (STALE)." in text
@@ -85,9 +85,9 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
 
 
 async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         _, _, world = game_of(pilot)
         dialog = await halting(pilot, "camera-frozen")
         assert "Still there: head camera" in seen(pilot)
@@ -102,9 +102,9 @@ async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
 
 
 async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         dialog = await halting(pilot)
         pilot.type("a", "e", "c", "g", "escape", at=0.0)
         await pilot.pause()
@@ -114,9 +114,9 @@ async def test_keys_typed_before_the_dialog_could_be_seen_do_nothing(
 
 @pytest.mark.parametrize("key", ["g", "escape"])
 async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
-    run: Run, house: House, policy: Policy, key: str
+    run: Run, workspace: Workspace, policy: Policy, key: str
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, game, _ = game_of(pilot)
         dialog = await halting(pilot)
         await pilot.press(key)
@@ -136,41 +136,41 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
         assert pilot.lines()[-1].strip().startswith("g plays again")
         assert "pause" not in pilot.lines()[-1]
         assert "[a] seen" not in pilot.text()
-        ended = house.store.last("game ended")
+        ended = workspace.store.last("game ended")
         assert ended is not None
         assert "Emergency stop pressed" in str(ended.body["stopped"])
 
 
 @pytest.mark.parametrize("key", ["y", "n"])
 async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
-    run: Run, house: House, policy: Policy, key: str
+    run: Run, workspace: Workspace, policy: Policy, key: str
 ) -> None:
-    before = house.supervision(policy, 5, asks=True, injections=("emergency-stop",))
+    before = workspace.supervision(policy, 5, asks=True, injections=("emergency-stop",))
     before.begin()
     while before.halted is None:
         before.step()
     before.give_up()
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.pause()
         assert "The last game ended with: Emergency stop pressed" in seen(pilot)
-        logged = house.store.last("game begun")
+        logged = workspace.store.last("game begun")
         await pilot.press(key)
         if key == "n":
             await until(
                 pilot, lambda: not any(isinstance(s, PlayScreen) for s in pilot.app.screen_stack)
             )
-            assert house.store.last("game begun") == logged
+            assert workspace.store.last("game begun") == logged
         else:
             game = game_of(pilot)[1]
             await until(pilot, lambda: not game.over)
-            assert uncleared(house.store) is None
+            assert uncleared(workspace.store) is None
 
 
 async def test_stop_works_inside_and_leaves_the_dialog(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         world.inject("emergency-stop")
         dialog = await halted(pilot)
@@ -196,9 +196,9 @@ async def test_stop_works_inside_and_leaves_the_dialog(
 
 
 async def test_two_critical_faults_are_cleared_one_after_the_other(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), size=MIDDLE) as pilot:
+    async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         screen, game, world = game_of(pilot)
         first = await halting(pilot)
         world.inject("camera-disconnected")
@@ -215,9 +215,9 @@ async def test_two_critical_faults_are_cleared_one_after_the_other(
 
 
 async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         await pilot.press("p", "question_mark")
         await pilot.pause()
@@ -231,20 +231,20 @@ async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
 
 
 async def test_leaving_the_program_while_it_is_halted_ends_the_game_in_thesentences(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         await halting(pilot)
         await pilot.press("ctrl+q")
-    ended = house.store.last("game ended")
+    ended = workspace.store.last("game ended")
     assert ended is not None
     assert ended.body["stopped"] == "It was left before its end."
 
 
 async def test_skipping_stops_where_tangy_stands_still(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "base-stuck")) as pilot:
+    async with run(app=playing(workspace, policy, "base-stuck")) as pilot:
         screen = game_of(pilot)[0]
         await pilot.press("e")
         dialog = await halted(pilot)
@@ -260,9 +260,9 @@ async def test_skipping_stops_where_tangy_stands_still(
 
 
 async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+    async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
         screen, _, world = game_of(pilot)
         first = await asked(pilot)
         pilot.type(*"call number", "enter")
@@ -278,9 +278,9 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
 
 
 async def test_what_was_not_expected_is_accepted_by_word(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+    async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
         screen, game, _ = game_of(pilot)
         await asked(pilot)
         assert "If all is well, type: all right" in seen(pilot)
@@ -288,15 +288,15 @@ async def test_what_was_not_expected_is_accepted_by_word(
         await until(pilot, lambda: kinds_of(game.faults[0])[-1] == "accepted")
         await pilot.press("e")
         await until(pilot, lambda: not screen.query(AskingPanel))
-    accepted = house.store.last("effect accepted")
+    accepted = workspace.store.last("effect accepted")
     assert accepted is not None
     assert accepted.body["by"] == "ann"
 
 
 async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "no-effect", speed=1000)) as pilot:
+    async with run(app=playing(workspace, policy, "no-effect", speed=1000)) as pilot:
         screen, game, _ = game_of(pilot)
         await asked(pilot)
         await pilot.press("escape")
@@ -316,9 +316,9 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
 
 
 async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         room = screen.query_one(RoomView)
         while room.going is None:
@@ -339,9 +339,9 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
 
 
 async def test_a_step_that_could_not_be_carried_out_is_marked(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, "base-stuck")) as pilot:
+    async with run(app=playing(workspace, policy, "base-stuck")) as pilot:
         screen, game, _ = game_of(pilot)
         await pilot.press("e")
         await halted(pilot)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import help_for
 from tangy_tui.ui.screens.home import HomeScreen
@@ -21,9 +21,11 @@ WRONG = "incorrectly marked"
 
 
 @pytest.fixture
-def house(tmp_path: Path, demonstrate: Callable[[str, int, int], Demonstration]) -> Iterator[House]:
-    """A house in which Ada and Bea disagree about wrong marks."""
-    opened = House(tmp_path / "data")
+def workspace(
+    tmp_path: Path, demonstrate: Callable[[str, int, int], Demonstration]
+) -> Iterator[Workspace]:
+    """A workspace in which Ada and Bea disagree about wrong marks."""
+    opened = Workspace(tmp_path / "data")
     games = (demonstrate("bingo", seed, 4) for seed in range(1, 40))
     wanted = (g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps))
     log_demonstration(opened.store, replace(next(wanted), id="aaaa", teacher="Ada"))
@@ -55,9 +57,9 @@ async def test_the_help_of_home_tells_no_key_that_does_nothing_there(run: Run) -
 
 
 async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("t")
         await pilot.pause()
         await pilot.press("escape")
@@ -71,9 +73,9 @@ async def test_the_help_of_a_screen_with_a_command_line_tells_of_both(
 
 
 async def test_when_all_conflicts_were_looked_at_the_keys_are_those_that_are_left(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("l")
         await pilot.pause()
         keys = pilot.lines()[-1]

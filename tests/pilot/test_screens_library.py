@@ -13,7 +13,7 @@ from textual.app import App
 from textual.widgets import Static
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import list_rows
 from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.policies import last_policy, load_policy
@@ -49,12 +49,12 @@ def _greenwich(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.fixture
-def house(
+def workspace(
     tmp_path: Path, demonstrate: Demonstrate, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[House]:
-    """A house in which Ada and Bea disagree about wrong marks, and Cem did not finish."""
+) -> Iterator[Workspace]:
+    """A workspace in which Ada and Bea disagree about wrong marks, and Cem did not finish."""
     monkeypatch.setenv("USER", "ann")
-    opened = House(tmp_path / "data")
+    opened = Workspace(tmp_path / "data")
     monkeypatch.setattr(opened.store, "_now", SlowClock())
     games = (demonstrate("bingo", seed, 4) for seed in range(1, 40))
     wanted = (g for g in games if any(s.state.situation.user_state == WRONG for s in g.steps))
@@ -68,18 +68,18 @@ def house(
     opened.close()
 
 
-def library_of(house: House) -> Library:
-    return read_library(house.store, house.activity.name)
+def library_of(workspace: Workspace) -> Library:
+    return read_library(workspace.store, workspace.activity.name)
 
 
-def states(house: House) -> list[str]:
+def states(workspace: Workspace) -> list[str]:
     """Return why each demonstration is not learnt from (empty: it is)."""
-    return [entry.hidden for entry in library_of(house).entries.values()]
+    return [entry.hidden for entry in library_of(workspace).entries.values()]
 
 
-def program(house: House, *keys: str) -> Program:
+def program(workspace: Workspace, *keys: str) -> Program:
     """Make the program at home."""
-    return Program(house, clock=StillClock())
+    return Program(workspace, clock=StillClock())
 
 
 async def press(pilot: TangyPilot, *keys: str) -> None:
@@ -107,9 +107,9 @@ async def wait_for(pilot: TangyPilot, kind: type[object]) -> None:
 
 
 async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         shown = pilot.text()
@@ -122,60 +122,64 @@ async def test_the_list_says_who_showed_what_and_what_is_to_be_known(
         assert "3: unfinished; not finished" in pilot.text()
 
 
-async def test_deleting_is_asked_about_and_restored_by_the_same_key(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_deleting_is_asked_about_and_restored_by_the_same_key(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "x")
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await press(pilot, "n")
-        assert states(house) == ["", "", ""]
+        assert states(workspace) == ["", "", ""]
         await press(pilot, "x", "y")
-        assert states(house) == ["deleted", "", ""]
+        assert states(workspace) == ["deleted", "", ""]
         assert "1 of 3 in use" in pilot.text()
         await press(pilot, "x")
-        assert states(house) == ["", "", ""]
+        assert states(workspace) == ["", "", ""]
 
 
-async def test_changes_are_undone_and_done_again_in_order(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_changes_are_undone_and_done_again_in_order(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "x", "y", "down", "x", "y")
-        assert states(house) == ["deleted", "deleted", ""]
+        assert states(workspace) == ["deleted", "deleted", ""]
         await press(pilot, "u")
-        assert states(house) == ["deleted", "", ""]
+        assert states(workspace) == ["deleted", "", ""]
         await press(pilot, "ctrl+z")
-        assert states(house) == ["", "", ""]
+        assert states(workspace) == ["", "", ""]
         await press(pilot, "u")
         assert "no change of the demonstrations to undo" in told(pilot)
         await press(pilot, "U", "ctrl+y")
-        assert states(house) == ["deleted", "deleted", ""]
+        assert states(workspace) == ["deleted", "deleted", ""]
 
 
-async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_marked_ones_are_merged_and_taken_apart_again(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "space", "g")
         assert "Mark two or more" in told(pilot)
         await press(pilot, "down", "space", "g")
         assert "Merge demonstrations 1 and 2?" in pilot.text()
         await press(pilot, "y")
-        assert states(house) == ["merged", "merged", "", ""]
-        assert len(library_of(house).find("4").demonstration.steps) == sum(
-            len(library_of(house).find(n).demonstration.steps) for n in "12"
+        assert states(workspace) == ["merged", "merged", "", ""]
+        assert len(library_of(workspace).find("4").demonstration.steps) == sum(
+            len(library_of(workspace).find(n).demonstration.steps) for n in "12"
         )
         await press(pilot, "u")
-        assert states(house)[:3] == ["", "", ""]
+        assert states(workspace)[:3] == ["", "", ""]
 
 
-async def test_one_is_split_after_the_chosen_step(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_one_is_split_after_the_chosen_step(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "slash")
         assert "Choose the step that ends the first part" in told(pilot)
         await press(pilot, "tab", "home", "down", "slash", "y")
-        assert states(house) == ["split", "", "", "", ""]
-        first = library_of(house).find("4").demonstration
+        assert states(workspace) == ["split", "", "", "", ""]
+        first = library_of(workspace).find("4").demonstration
         assert len(first.steps) == 2
 
 
-async def test_an_unfinished_one_cannot_be_merged_and_says_why(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_an_unfinished_one_cannot_be_merged_and_says_why(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "space", "down", "down", "space", "g")
         assert isinstance(pilot.app.screen, DemonstrationsScreen)
         refusal = "Demonstration 3 by Cem is not finished yet."
@@ -183,11 +187,11 @@ async def test_an_unfinished_one_cannot_be_merged_and_says_why(run: Run, house: 
         assert str(pilot.app.screen.query_one("#notes", Static).render()) == refusal
         await press(pilot, "up")
         assert "2: in use" in pilot.text()
-        assert states(house) == ["", "", ""]
+        assert states(workspace) == ["", "", ""]
 
 
-async def test_after_its_last_step_nothing_is_split_off(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_after_its_last_step_nothing_is_split_off(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "tab")
         steps = pilot.app.screen.query_one(Transcript)
         steps.point(steps.count)
@@ -196,18 +200,22 @@ async def test_after_its_last_step_nothing_is_split_off(run: Run, house: House) 
         assert "Nothing comes after step" in told(pilot)
 
 
-async def test_what_was_made_and_taken_back_is_not_in_the_list(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_what_was_made_and_taken_back_is_not_in_the_list(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "space", "down", "space", "g", "y", "u")
-        assert states(house) == ["", "", "", "undone"]
+        assert states(workspace) == ["", "", "", "undone"]
         assert "undone" not in pilot.text()
         assert "2 of 3 in use" in pilot.text()
         await press(pilot, "U", "down", "down")
         assert "merged from demonstrations 1 and 2" in pilot.text()
 
 
-async def test_a_screen_that_is_left_takes_its_messages_along(run: Run, house: House) -> None:
-    async with run(app=program(house), notifications=True) as pilot:
+async def test_a_screen_that_is_left_takes_its_messages_along(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace), notifications=True) as pilot:
         await press(pilot, "i", "x", "y")
         assert told(pilot)
         pilot.type("escape", "escape")  # the second comes when the screen has gone already
@@ -218,25 +226,25 @@ async def test_a_screen_that_is_left_takes_its_messages_along(run: Run, house: H
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL, LARGE])
 async def test_the_way_out_and_the_help_are_always_in_the_key_line(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i")
         assert pilot.lines()[-1].endswith("esc back  ? help")
         assert "x delete  a again" in pilot.lines()[-1]
 
 
-async def test_notes_end_inside_of_the_list(run: Run, house: House) -> None:
-    async with run(app=program(house), size=LARGE) as pilot:
+async def test_notes_end_inside_of_the_list(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), size=LARGE) as pilot:
         await press(pilot, "i")
         for width in range(85, 161, 5):
-            rows = list_rows(house.activity, library_of(house))
+            rows = list_rows(workspace.activity, library_of(workspace))
             lines = demonstration_lines(rows, (), width)
             assert max(cell_len("".join(t for t, _ in line.row)) for line in lines) <= width
 
 
-async def test_a_demonstration_opens_at_the_chosen_step(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_demonstration_opens_at_the_chosen_step(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "tab", "home", "down", "down", "enter")
         screen = pilot.app.screen
         assert isinstance(screen, DemonstrationScreen)
@@ -251,58 +259,58 @@ async def test_a_demonstration_opens_at_the_chosen_step(run: Run, house: House) 
 async def test_one_is_shown_again_from_a_step_in_its_own_game(run: Run, tmp_path: Path) -> None:
     from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 
-    house = House(tmp_path / "own")
+    workspace = Workspace(tmp_path / "own")
     try:
-        teaching = house.teaching("Ada", 1)
+        teaching = workspace.teaching("Ada", 1)
         teaching.begin()
         list(ScriptedTeacher(teaching).demonstrate())
-        async with run(app=program(house)) as pilot:
+        async with run(app=program(workspace)) as pilot:
             await press(pilot, "i", "tab", "home", "down", "down", "down", "a")
             assert "Show demonstration 1 again from step 4?" in pilot.text()
             await press(pilot, "n")
-            assert len(library_of(house).entries) == 1
+            assert len(library_of(workspace).entries) == 1
             await press(pilot, "a", "y")
             await wait_for(pilot, TeachScreen)
             assert pilot.app.screen.query_one(Transcript).count == 3
             assert "Show it again from step 4" in pilot.text()
             await press(pilot, *"call number", "enter", "y")
-            begun = library_of(house).find("2").demonstration
+            begun = library_of(workspace).find("2").demonstration
             assert (begun.origin, len(begun.steps)) == ("again", 4)
-            assert not library_of(house).find("1").hidden  # until the new one is complete
+            assert not library_of(workspace).find("1").hidden  # until the new one is complete
     finally:
-        house.close()
+        workspace.close()
 
 
 async def test_a_step_that_is_opened_while_teaching_goes_back_in_that_session(
     run: Run, tmp_path: Path
 ) -> None:
-    house = House(tmp_path / "own")
+    workspace = Workspace(tmp_path / "own")
     try:
-        async with run(app=program(house)) as pilot:
+        async with run(app=program(workspace)) as pilot:
             await press(pilot, "t", *"greet everyone", "enter", "y", *"call number", "enter", "y")
             teach = pilot.app.screen
-            id = library_of(house).find("1").demonstration.id
-            await pilot.app.push_screen(DemonstrationScreen(house, id, 2))
+            id = library_of(workspace).find("1").demonstration.id
+            await pilot.app.push_screen(DemonstrationScreen(workspace, id, 2))
             await press(pilot, "a", "y")
             await wait_for(pilot, ConfirmDialog)
             await press(pilot, "y")
             assert pilot.app.screen is teach
             assert teach.query_one(Transcript).count == 1
-            assert len(library_of(house).entries) == 1
+            assert len(library_of(workspace).entries) == 1
     finally:
-        house.close()
+        workspace.close()
 
 
 # ------------------------------------------------------------------------------ the conflicts
 
 
 async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_says(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "l")
         assert isinstance(pilot.app.screen, ConflictsScreen)
-        assert last_policy(house.store, "bingo") is None
+        assert last_policy(workspace.store, "bingo") is None
         shown = pilot.text()
         assert "help · wrong marks" in shown
         assert "remove markers" in shown and "encourage" in shown
@@ -311,48 +319,52 @@ async def test_learning_shows_the_conflict_first_and_learns_what_the_teacher_say
         assert "Settled: 1" in pilot.text()
         await press(pilot, "enter")
         await wait_for(pilot, PolicyScreen)
-        policy, _ = load_policy(house.store, house.activity)
-        (conflict,) = (s for s in house.activity.situations if s.user_state == WRONG)
-        right = library_of(house).resolutions[0].right
+        policy, _ = load_policy(workspace.store, workspace.activity)
+        (conflict,) = (s for s in workspace.activity.situations if s.user_state == WRONG)
+        right = library_of(workspace).resolutions[0].right
         assert (policy.decide(conflict).behaviour,) == right
         assert policy.decide(conflict).sure
 
 
-async def test_what_is_left_open_is_asked_about_in_games(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_what_is_left_open_is_asked_about_in_games(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "escape")
         assert "Left open: 1; Tangy will ask" in pilot.text()
         await press(pilot, "enter")
         await wait_for(pilot, PolicyScreen)
-        policy, _ = load_policy(house.store, house.activity)
-        contested = [s for s in house.activity.situations if policy.decide(s).contested]
+        policy, _ = load_policy(workspace.store, workspace.activity)
+        contested = [s for s in workspace.activity.situations if policy.decide(s).contested]
         assert [s.user_state for s in contested] == [WRONG]
 
 
-async def test_answers_are_taken_back_and_learning_can_be_left(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_answers_are_taken_back_and_learning_can_be_left(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "1")
-        assert len(library_of(house).resolutions) == 1
+        assert len(library_of(workspace).resolutions) == 1
         await press(pilot, "u")
-        assert library_of(house).resolutions == ()
+        assert library_of(workspace).resolutions == ()
         assert "Which is right?" in pilot.text()
         await press(pilot, "b")
-        assert len(library_of(house).resolutions[0].right) == 2
+        assert len(library_of(workspace).resolutions[0].right) == 2
         await press(pilot, "escape")
         assert isinstance(pilot.app.screen, HomeScreen)
-        assert last_policy(house.store, "bingo") is None
+        assert last_policy(workspace.store, "bingo") is None
 
 
-async def test_something_else_can_be_right(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_something_else_can_be_right(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "l", "o")
         assert isinstance(pilot.app.screen, WordsDialog)
         await press(pilot, "j", "enter")  # joke
-        assert library_of(house).resolutions[0].right == ("joke",)
+        assert library_of(workspace).resolutions[0].right == ("joke",)
 
 
-async def test_a_step_of_an_answer_opens_in_its_demonstration(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_step_of_an_answer_opens_in_its_demonstration(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "c", "tab", "enter")
         screen = pilot.app.screen
         assert isinstance(screen, DemonstrationScreen)
@@ -364,13 +376,13 @@ async def test_a_step_of_an_answer_opens_in_its_demonstration(run: Run, house: H
 
 
 async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "l")
         pilot.type("1", at=0.1)
         await pilot.pause()
-        assert library_of(house).resolutions == ()
+        assert library_of(workspace).resolutions == ()
         assert pilot.app.screen.query_one(LogView).sentences == ()
 
 
@@ -379,44 +391,44 @@ async def test_a_key_typed_before_the_conflict_was_seen_settles_nothing(
 
 @SIZES
 async def test_how_the_list_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "space", "down", "space")
         picture(pilot.app)
 
 
 @SIZES
 async def test_how_a_demonstration_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "tab", "home", "down", "enter")
         picture(pilot.app)
 
 
 @SIZES
 async def test_how_a_conflict_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await press(pilot, "i", "c")
         picture(pilot.app)
 
 
 async def test_how_settled_conflicts_look(
-    run: Run, house: House, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await press(pilot, "i", "c", "1")
         picture(pilot.app)
 
 
 @pytest.mark.parametrize("size", [(60, 18), SMALL])
 async def test_it_can_be_read_in_ascii_and_in_little_room(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    app = Program(house, clock=StillClock(), kind=TerminalKind(ascii=True, ansi=True))
+    app = Program(workspace, clock=StillClock(), kind=TerminalKind(ascii=True, ansi=True))
     async with run(app=app, size=size) as pilot:
         await press(pilot, "i")
         assert "Ada" in pilot.text()

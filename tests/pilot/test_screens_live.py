@@ -14,9 +14,9 @@ from textual.app import App
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.health import OK, Reading
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.learning.verification import Stop
+from tangy_tui.learning.verification import StopCommand
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
@@ -39,13 +39,13 @@ def link() -> HeldLink:
 
 
 @pytest.fixture
-def world(house: House, link: HeldLink) -> LiveWorld:
-    return live_world(house, link)
+def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
+    return live_world(workspace, link)
 
 
 @pytest.fixture
-def program(house: House, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(house, world, policy)
+def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
+    return live_program(workspace, world, policy)
 
 
 async def asked_about_the_next(pilot: TangyPilot) -> None:
@@ -125,10 +125,15 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
 
 @pytest.mark.parametrize("hands_free", [True, False])
 async def test_a_stop_that_is_said_goes_to_the_robot_itself(
-    run: Run, house: House, world: LiveWorld, link: HeldLink, policy: Policy, hands_free: bool
+    run: Run,
+    workspace: Workspace,
+    world: LiveWorld,
+    link: HeldLink,
+    policy: Policy,
+    hands_free: bool,
 ) -> None:
     ears = FakeEars(hands_free=hands_free)
-    async with run(app=live_program(house, world, policy, ears)) as pilot:
+    async with run(app=live_program(workspace, world, policy, ears)) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
         line = pilot.app.screen.query_one(MicrophoneLine)
         assert ears.asks and ("listening for stop" if hands_free else "t talk") in line.text
@@ -137,7 +142,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
         if not hands_free:
             await pilot.press("t")
             assert ears.state == "listening"
-        ears.hear(Stop("stop the robot"))
+        ears.hear(StopCommand("stop the robot"))
         await until(pilot, lambda: "stop: staff stopped it" in link.told)
         await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
         assert "Heard: stop the robot." in [told.message for told in pilot.app._notifications]
@@ -162,14 +167,14 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
 
 
 async def test_each_stop_is_logged_once_and_told_once(
-    run: Run, program: Program, house: House
+    run: Run, program: Program, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
         for count in (1, 2):
             await pilot.press("ctrl+x")
             await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
-            noted = [event.body["what"] for event in house.store.events(STAFF)]
+            noted = [event.body["what"] for event in workspace.store.events(STAFF)]
             assert noted.count("the robot was stopped") == count
             await pilot.press("p")
             await until(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
@@ -322,14 +327,14 @@ async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
 
 
 async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
-    run: Run, program: Program, link: HeldLink, house: House
+    run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
         await paused_after(pilot, link, 2)
         link.state = replace(link.state, frozen=5.0)
         await until(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
         await pilot.pause(0.5)
-        noted = [event.body["what"] for event in house.store.events(STAFF)]
+        noted = [event.body["what"] for event in workspace.store.events(STAFF)]
         assert noted.count("the robot process was frozen for 5.0 s") == 1
 
 
@@ -348,7 +353,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
 
 
 async def test_a_call_is_said_again_and_taken_back(
-    run: Run, program: Program, link: HeldLink, world: LiveWorld, house: House
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 3)
@@ -365,7 +370,7 @@ async def test_a_call_is_said_again_and_taken_back(
         await until(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("y")
         await until(pilot, lambda: len(world.called) == count - 1)
-        noted = [event.body["what"] for event in house.store.events(STAFF)]
+        noted = [event.body["what"] for event in workspace.store.events(STAFF)]
         again = "staff had the last number called again"
         assert noted == [again, f"staff took a call back: {label}"]
 

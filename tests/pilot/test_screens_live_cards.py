@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.choose import ChooseDialog
@@ -27,21 +27,21 @@ def link() -> HeldLink:
 
 
 @pytest.fixture
-def world(house: House, link: HeldLink) -> LiveWorld:
-    return live_world(house, link)
+def world(workspace: Workspace, link: HeldLink) -> LiveWorld:
+    return live_world(workspace, link)
 
 
 @pytest.fixture
-def program(house: House, world: LiveWorld, policy: Policy) -> Program:
-    return live_program(house, world, policy)
+def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
+    return live_program(workspace, world, policy)
 
 
 def told(pilot: TangyPilot) -> str:
     return " ".join(live(pilot).query_one(LogView).sentences)
 
 
-def notes(house: House) -> list[str]:
-    return [event.body["what"] for event in house.store.events(STAFF)]
+def notes(workspace: Workspace) -> list[str]:
+    return [event.body["what"] for event in workspace.store.events(STAFF)]
 
 
 async def shown(pilot: TangyPilot, text: str) -> None:
@@ -49,7 +49,7 @@ async def shown(pilot: TangyPilot, text: str) -> None:
 
 
 async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
-    run: Run, program: Program, link: HeldLink, house: House
+    run: Run, program: Program, link: HeldLink, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
@@ -57,21 +57,21 @@ async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
         link.sign(1)
         before = len(link.said)
         live(pilot)._going.set()
-        name = house.name("user1")
+        name = workspace.name("user1")
         await until(
             pilot, lambda: f"There are two cards in front of {name}: 17 and 31" in told(pilot)
         )
         assert "Tangy cannot tell which is theirs, and judges neither" in told(pilot)
         live(pilot)._going.clear()
         await until(pilot, lambda: not live(pilot)._working)
-        wrong = house.activity.behaviours["remove markers"].name
+        wrong = workspace.activity.behaviours["remove markers"].name
         assert not [said for said in link.said[before:] if wrong in said]
-        assert "several cards before user1: 17, 31; not judged" in notes(house)
-        assert name not in " ".join(notes(house))  # the log knows ids
+        assert "several cards before user1: 17, 31; not judged" in notes(workspace)
+        assert name not in " ".join(notes(workspace))  # the log knows ids
 
 
 async def test_staff_say_whose_a_card_is(
-    run: Run, program: Program, link: HeldLink, world: LiveWorld, house: House
+    run: Run, program: Program, link: HeldLink, world: LiveWorld, workspace: Workspace
 ) -> None:
     world.cards.dealt.deal({"user1": 17, "user2": 31})
     async with run(app=program) as pilot:
@@ -86,11 +86,11 @@ async def test_staff_say_whose_a_card_is(
         await until(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
         await shown(pilot, "has card 17")
         await pilot.press("enter")
-        await shown(pilot, f"Which card does {house.name('user1')} have?")
+        await shown(pilot, f"Which card does {workspace.name('user1')} have?")
         await pilot.press("enter")
         await until(pilot, lambda: world.cards.dealt.card_of("user1") == 31)
         assert world.cards.dealt.card_of("user2") is None
-        assert "staff said that user1 has card 31" in notes(house)
+        assert "staff said that user1 has card 31" in notes(workspace)
         world.cards.look("user1", [], person="user1")
         assert world.cards.doubt is None
 

@@ -11,7 +11,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import ERROR, STALE
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
@@ -37,8 +37,8 @@ def link() -> HeldLink:
 
 
 @pytest.fixture
-def program(house: House, link: HeldLink, policy: Policy) -> Program:
-    return live_program(house, live_world(house, link, HeldWorld), policy)
+def program(workspace: Workspace, link: HeldLink, policy: Policy) -> Program:
+    return live_program(workspace, live_world(workspace, link, HeldWorld), policy)
 
 
 def seen(pilot: TangyPilot) -> str:

@@ -16,7 +16,7 @@ from tangy_hw.drivers.camera_state import Sight
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import STALE
 from tangy_tui.app.sensing import LinkedSensors
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.screens.sensors import SensorsScreen
 from tangy_tui.ui.widgets.block_picture import BLOCK
@@ -82,15 +82,15 @@ def link() -> SeeingLink:
 
 
 @pytest.fixture
-def sensors(house: House, link: SeeingLink) -> LinkedSensors:
+def sensors(workspace: Workspace, link: SeeingLink) -> LinkedSensors:
     given: Any = link
-    return LinkedSensors(given, house.robot, house.activity.deck)
+    return LinkedSensors(given, workspace.robot, workspace.activity.deck)
 
 
 @pytest.fixture
-def make(house: House, sensors: LinkedSensors) -> Callable[[], SensorsScreen]:
+def make(workspace: Workspace, sensors: LinkedSensors) -> Callable[[], SensorsScreen]:
     return lambda: SensorsScreen(
-        house, sensors, health=sensors.health, live=True, where="on the bench"
+        workspace, sensors, health=sensors.health, live=True, where="on the bench"
     )
 
 
@@ -104,9 +104,9 @@ def row(pilot: TangyPilot, label: str) -> str:
 
 
 async def test_7_shows_the_devices_of_the_robot_and_none_as_simulated(
-    run: Run, house: House, policy: Policy, link: SeeingLink
+    run: Run, workspace: Workspace, policy: Policy, link: SeeingLink
 ) -> None:
-    program = live_program(house, live_world(house, link), policy)
+    program = live_program(workspace, live_world(workspace, link), policy)
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
         assert "TANGY live" in screen_text(pilot.app)
@@ -153,9 +153,9 @@ async def test_v_shows_what_its_camera_sees(
 
 
 async def test_the_last_card_is_drawn_as_the_robot_read_it(
-    run: Run, make: Callable[[], SensorsScreen], link: SeeingLink, house: House
+    run: Run, make: Callable[[], SensorsScreen], link: SeeingLink, workspace: Workspace
 ) -> None:
-    numbers = numbers_of(house.activity.deck, 17)
+    numbers = numbers_of(workspace.activity.deck, 17)
     async with run(make()) as pilot:
         assert "No card was read yet." in pilot.text()
         link.looked = link.read = {**READ, "age": 1.0}

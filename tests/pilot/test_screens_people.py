@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from textual.app import App
 
-from tangy_profiles.persuading import Persuading
+from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import AWAITED, Feedback
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -36,8 +36,8 @@ GAMES = (
 
 
 @pytest.fixture
-def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
-    """A house in which four games were played, the last one two days ago."""
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Workspace]:
+    """A workspace in which four games were played, the last one two days ago."""
     monkeypatch.setenv("TZ", "UTC")
     time.tzset()
     at = [NOW]
@@ -50,7 +50,7 @@ def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
                 for one in told.split():
                     at[0] += timedelta(minutes=7)
                     put(store, f"g{number}", person, one[:-1], one[-1])
-    opened = House(tmp_path / "data", now=lambda: NOW)
+    opened = Workspace(tmp_path / "data", now=lambda: NOW)
     yield opened
     opened.close()
     monkeypatch.undo()
@@ -63,9 +63,9 @@ def put(store: Store, game: str, person: str, strategy: str, came: str) -> None:
     store.append(kind, {"game": game}, person=person, strategy=strategy, complied=complied)
 
 
-def complied(house: House, person: str, strategy: str) -> tuple[int, int]:
+def complied(workspace: Workspace, person: str, strategy: str) -> tuple[int, int]:
     """Return how often a person complied with a strategy, of how many times, by the log."""
-    return house.store.responses().get((person, strategy), (0, 0))
+    return workspace.store.responses().get((person, strategy), (0, 0))
 
 
 def line_with(pilot: TangyPilot, *words: str) -> str:
@@ -75,8 +75,8 @@ def line_with(pilot: TangyPilot, *words: str) -> str:
 # ------------------------------------------------------------------------------ what it says
 
 
-async def test_it_says_in_words_what_works_with_whom(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_it_says_in_words_what_works_with_whom(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         text = pilot.text()
         assert "praise works with Rosa: 7 of 9, last seen 3 weeks ago" in text
         assert "suggestion may work best with User 2: 1 of 1 so far, last seen 2 days ago" in text
@@ -84,8 +84,10 @@ async def test_it_says_in_words_what_works_with_whom(run: Run, house: House) -> 
         assert "nothing is known of User 4 yet" in text
 
 
-async def test_it_shows_counts_mean_interval_best_and_settled(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_it_shows_counts_mean_interval_best_and_settled(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         praise = line_with(pilot, "praise", "7 of 9 ")
         assert "  .73 .49-.91" in praise  # Beta(8, 3)
         assert "settled" in praise
@@ -94,8 +96,10 @@ async def test_it_shows_counts_mean_interval_best_and_settled(run: Run, house: H
         assert "begins from nothing" in pilot.text()
 
 
-async def test_the_history_stands_game_by_game_with_its_times(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house), size=LARGE) as pilot:
+async def test_the_history_stands_game_by_game_with_its_times(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace), size=LARGE) as pilot:
         history = [line for line in pilot.lines() if "game of" in line]
         assert [line.split("game of ")[1].rstrip(" │┃█▅") for line in history] == [
             "1 May 2026 13:00", "30 Apr 2026 14:00", "28 Apr 2026 15:00",
@@ -105,8 +109,8 @@ async def test_the_history_stands_game_by_game_with_its_times(run: Run, house: H
         assert "no response yet" in line_with(pilot, "suggestion", "no response")
 
 
-async def test_another_person_is_chosen_with_the_arrows(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("down", "down", "down")
         await pilot.pause()
         assert "What works with User 4" in pilot.text()
@@ -117,28 +121,30 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, house: House) 
 # --------------------------------------------------------------------------- what it changes
 
 
-async def test_a_response_is_voided_and_taken_back(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_a_response_is_voided_and_taken_back(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("v")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await pilot.press("n")
-        assert complied(house, "user1", "suggestion") == (0, 2)
+        assert complied(workspace, "user1", "suggestion") == (0, 2)
         await pilot.press("v", "y")
         await pilot.pause()
-        assert complied(house, "user1", "suggestion") == (0, 1)
+        assert complied(workspace, "user1", "suggestion") == (0, 1)
         assert "void: that was not a refusal" in pilot.text()
         await pilot.press("u")
         await pilot.pause()
         assert "that a response to suggestion is void" in pilot.text()
         await pilot.press("y")
         await pilot.pause()
-        assert complied(house, "user1", "suggestion") == (0, 2)
+        assert complied(workspace, "user1", "suggestion") == (0, 2)
         assert "void:" not in pilot.text()
 
 
-async def test_what_is_void_does_not_void_again_and_can_be_answered(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house), notifications=True) as pilot:
+async def test_what_is_void_does_not_void_again_and_can_be_answered(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace), notifications=True) as pilot:
         await pilot.press("v", "y")
         await pilot.pause()
         await pilot.press("v")
@@ -149,49 +155,53 @@ async def test_what_is_void_does_not_void_again_and_can_be_answered(run: Run, ho
         assert isinstance(pilot.app.screen, AnswerDialog)
         await pilot.press("y")
         await pilot.pause()
-        assert complied(house, "user1", "suggestion") == (1, 1)
+        assert complied(workspace, "user1", "suggestion") == (1, 1)
         assert "said later" in pilot.text()
 
 
-async def test_a_request_without_a_response_is_answered_late(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_a_request_without_a_response_is_answered_late(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("down", "f")
         await pilot.pause()
         assert "Did User 2 comply?" in pilot.text()
         await pilot.press("escape")
         await pilot.pause()
-        assert complied(house, "user2", "suggestion") == (1, 0)
+        assert complied(workspace, "user2", "suggestion") == (1, 0)
         await pilot.press("f", "n")
         await pilot.pause()
-        assert complied(house, "user2", "suggestion") == (1, 1)
+        assert complied(workspace, "user2", "suggestion") == (1, 1)
         assert "answered later" in pilot.text()
 
 
-async def test_a_strategy_is_switched_off_and_on_again(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_a_strategy_is_switched_off_and_on_again(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "down", "down", "down", "x")
         await pilot.pause()
         assert "Switch scarcity off for Rosa?" in pilot.text()
         await pilot.press("y")
         await pilot.pause()
-        assert house.memory().recall("user1").off == {"scarcity"}
+        assert workspace.memory().recall("user1").off == {"scarcity"}
         assert line_with(pilot, "scarcity", "0 of 2").rstrip("│┃ ").endswith("off")
         await pilot.press("x", "y")
         await pilot.pause()
-        assert house.memory().recall("user1").off == frozenset()
+        assert workspace.memory().recall("user1").off == frozenset()
 
 
-async def test_the_last_strategy_stays_on(run: Run, house: House) -> None:
+async def test_the_last_strategy_stays_on(run: Run, workspace: Workspace) -> None:
     for strategy in ("praise", "suggestion", "scarcity"):
-        Feedback(house.store).switch("user1", strategy, False, house.activity.strategies)
-    async with run(PeopleScreen(house), notifications=True) as pilot:
+        Feedback(workspace.store).switch("user1", strategy, False, workspace.activity.strategies)
+    async with run(PeopleScreen(workspace), notifications=True) as pilot:
         await pilot.press("x", "y")
         await pilot.pause()
         assert "neutral is the last one left" in pilot.text()
 
 
-async def test_another_method_is_chosen_and_the_activitys_again(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_another_method_is_chosen_and_the_activitys_again(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("m")
         await pilot.pause()
         assert isinstance(pilot.app.screen, MethodDialog)
@@ -201,27 +211,31 @@ async def test_another_method_is_chosen_and_the_activitys_again(run: Run, house:
             assert words in pilot.text()
         await pilot.press("n")
         await pilot.pause()
-        assert house.memory().feedback.method("user1") is None
+        assert workspace.memory().feedback.method("user1") is None
         await pilot.press("m", "1", "2", "y")
         await pilot.pause()
-        assert house.memory().feedback.method("user1") == Persuading("bayes-ucb", "people")
+        assert workspace.memory().feedback.method("user1") == PersuasionConfig(
+            "bayes-ucb", "people"
+        )
         assert "Bayes-UCB from earlier people" in pilot.text()
         assert "(for this person)" in pilot.text()
         assert "begins with what earlier people lend" in pilot.text()
         await pilot.press("m", "d", "y")
         await pilot.pause()
-        assert house.memory().feedback.method("user1") is None
+        assert workspace.memory().feedback.method("user1") is None
 
 
-async def test_with_nothing_said_there_is_nothing_to_take_back(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house), notifications=True) as pilot:
+async def test_with_nothing_said_there_is_nothing_to_take_back(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(PeopleScreen(workspace), notifications=True) as pilot:
         await pilot.press("u")
         await pilot.pause()
         assert "nothing to take back" in " ".join(pilot.text().split())
 
 
-async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "tab", "down", "down")
         await pilot.pause()
         history = pilot.app.screen.query_one("#history", ChoiceList)
@@ -232,17 +246,20 @@ async def test_the_cursor_stays_where_it_was_after_a_change(run: Run, house: Hou
         assert pilot.app.screen.focused is history
 
 
-async def test_names_that_look_like_markup_are_only_names(run: Run, house: House) -> None:
-    house.store.rename("user1", "[/b] {x} [@click=quit]Jo")
-    house.people = (type(house.people[0])("user1", "[/b] {x} [@click=quit]Jo"), *house.people[1:])
-    async with run(PeopleScreen(house)) as pilot:
+async def test_names_that_look_like_markup_are_only_names(run: Run, workspace: Workspace) -> None:
+    workspace.store.rename("user1", "[/b] {x} [@click=quit]Jo")
+    workspace.people = (
+        type(workspace.people[0])("user1", "[/b] {x} [@click=quit]Jo"),
+        *workspace.people[1:],
+    )
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("tab", "x")
         await pilot.pause()
         assert "[@click=quit]Jo" in pilot.text()
 
 
-async def test_every_key_is_told_at_80_columns(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house), size=SMALL) as pilot:
+async def test_every_key_is_told_at_80_columns(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace), size=SMALL) as pilot:
         keys = pilot.lines()[-1]
         for key in ("tab", "v", "f", "x", "m", "u", "n", "esc", "?"):
             assert f" {key} " in keys
@@ -253,20 +270,20 @@ async def test_every_key_is_told_at_80_columns(run: Run, house: House) -> None:
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(PeopleScreen(house), size=size) as pilot:
+    async with run(PeopleScreen(workspace), size=size) as pilot:
         picture(pilot.app)
 
 
 async def test_how_it_looks_in_the_light_theme_with_a_prior(
-    run: Run, house: House, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
-    feedback = Feedback(house.store)
-    feedback.choose_method("user2", Persuading("bayes-ucb", "people", 0.98))
-    feedback.switch("user2", "scarcity", False, house.activity.strategies)
+    feedback = Feedback(workspace.store)
+    feedback.choose_method("user2", PersuasionConfig("bayes-ucb", "people", 0.98))
+    feedback.switch("user2", "scarcity", False, workspace.activity.strategies)
     feedback.void("user2", feedback.history("user2")[1].seq, "that was not compliance")
-    async with run(PeopleScreen(house)) as pilot:
+    async with run(PeopleScreen(workspace)) as pilot:
         pilot.app.theme = LIGHT.name
         await pilot.press("down")
         await pilot.pause()
@@ -274,46 +291,46 @@ async def test_how_it_looks_in_the_light_theme_with_a_prior(
 
 
 async def test_how_the_choice_of_a_method_looks(
-    run: Run, house: House, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press("m", "1")
         await pilot.pause()
         picture(pilot.app)
 
 
-async def test_in_ascii_every_line_is_ascii(run: Run, house: House) -> None:
-    async with run(PeopleScreen(house), kind=TerminalKind(ascii=True)) as pilot:
+async def test_in_ascii_every_line_is_ascii(run: Run, workspace: Workspace) -> None:
+    async with run(PeopleScreen(workspace), kind=TerminalKind(ascii=True)) as pilot:
         assert pilot.app._filters[-1].ascii  # type: ignore[attr-defined]
         assert "settled" in pilot.text()
 
 
 @pytest.mark.parametrize("keys", [("v",), ("down", "f"), ("x",)], ids=["void", "answer", "switch"])
 async def test_how_the_questions_look(
-    run: Run, house: House, keys: tuple[str, ...], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, keys: tuple[str, ...], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(PeopleScreen(house)) as pilot:
+    async with run(PeopleScreen(workspace)) as pilot:
         await pilot.press(*keys)
         await pilot.pause()
         picture(pilot.app)
 
 
 async def test_eight_people_are_reached_where_four_are_seen(run: Run, tmp_path: Path) -> None:
-    house = House(tmp_path / "eight", users=8, now=lambda: NOW)
-    async with run(PeopleScreen(house)) as pilot:
+    workspace = Workspace(tmp_path / "eight", users=8, now=lambda: NOW)
+    async with run(PeopleScreen(workspace)) as pilot:
         assert "User 8" not in pilot.text()
         await pilot.press("end")
         await pilot.pause()
         assert "nothing is known of User 8 yet" in pilot.text()
         assert "What works with User 8" in pilot.text()
-    house.close()
+    workspace.close()
 
 
 @pytest.mark.parametrize("size", [(60, 18), (100, 30), (200, 60)])
 async def test_at_every_size_the_chosen_person_is_told_of_in_full(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    async with run(PeopleScreen(house), size=size) as pilot:
+    async with run(PeopleScreen(workspace), size=size) as pilot:
         text = pilot.text()
         assert "praise works with Rosa: 7 of 9" in text
         for words in ("0 of 3", "★ settled", ".49-.91", "did not comply"):
@@ -324,7 +341,7 @@ async def test_at_every_size_the_chosen_person_is_told_of_in_full(
 
 
 async def test_a_name_is_heard_and_its_pronunciation_noted(
-    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     spoken: list[str] = []
 
@@ -332,7 +349,7 @@ async def test_a_name_is_heard_and_its_pronunciation_noted(
         spoken.append(phones)
 
     monkeypatch.setattr("tangy_tui.ui.screens.people.hear", say)
-    async with run(PeopleScreen(house)) as pilot:
+    async with run(PeopleScreen(workspace)) as pilot:
         pilot.type("n")
         await pilot.pause()
         dialog = pilot.app.screen
@@ -343,16 +360,16 @@ async def test_a_name_is_heard_and_its_pronunciation_noted(
         pilot.type("ctrl+l", "enter", at=1e9)
         await pilot.pause()
         assert spoken == ["R OW S AH"]
-        assert house.find_person("user1").pronunciation == "R OW S AH"
-        assert house.store.pronunciations() == {"user1": "R OW S AH"}
-        assert all("R OW S AH" not in str(event.body) for event in house.store.events())
+        assert workspace.find_person("user1").pronunciation == "R OW S AH"
+        assert workspace.store.pronunciations() == {"user1": "R OW S AH"}
+        assert all("R OW S AH" not in str(event.body) for event in workspace.store.events())
 
 
 async def test_a_pronunciation_that_is_anothers_is_told_and_the_line_stays(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    house.rename(house.find_person("user2"), "Ann")
-    async with run(PeopleScreen(house)) as pilot:
+    workspace.rename(workspace.find_person("user2"), "Ann")
+    async with run(PeopleScreen(workspace)) as pilot:
         pilot.type("n")
         await pilot.pause()
         dialog = pilot.app.screen
@@ -364,4 +381,4 @@ async def test_a_pronunciation_that_is_anothers_is_told_and_the_line_stays(
         assert pilot.app.screen is dialog
         assert "sounds like Ann (user2)" in pilot.text()
         assert dialog.query_one(PhonesInput).value == "AE N"
-        assert house.store.pronunciations() == {}
+        assert workspace.store.pronunciations() == {}

@@ -9,7 +9,7 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.dialogs.pronunciation import PhonesInput, PronunciationDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.phrases import PhrasesScreen
@@ -28,15 +28,15 @@ def spoken() -> list[str]:
 
 
 @pytest.fixture
-def screen(house: House, spoken: list[str]) -> PhrasesScreen:
-    """The screen, in a house with one name that the dictionary does not have."""
-    house.rename(house.people[0], "Rosa")
-    house.rename(house.people[1], NEW_NAME)
+def screen(workspace: Workspace, spoken: list[str]) -> PhrasesScreen:
+    """The screen, in a workspace with one name that the dictionary does not have."""
+    workspace.rename(workspace.people[0], "Rosa")
+    workspace.rename(workspace.people[1], NEW_NAME)
 
     async def say(phones: str) -> None:
         spoken.append(phones)
 
-    return PhrasesScreen(house, say)
+    return PhrasesScreen(workspace, say)
 
 
 async def looked_up(pilot: TangyPilot) -> None:
@@ -74,7 +74,7 @@ async def test_it_shows_behaviours_people_seats_and_words(run: Run, screen: Phra
 
 
 async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
-    run: Run, screen: PhrasesScreen, house: House
+    run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:
     async with run(screen) as pilot:
         await find(pilot, *"xanthippe")
@@ -86,7 +86,7 @@ async def test_it_says_what_cannot_be_heard_until_the_name_is_accepted(
         suggested = dialog.query_one(PhonesInput).value
         pilot.type("enter", at=1e9)
         await looked_up(pilot)
-        assert house.find_person("user2").pronunciation == suggested
+        assert workspace.find_person("user2").pronunciation == suggested
         assert "Cannot be heard, only typed" not in pilot.text()
         assert suggested in pilot.text()
 
@@ -114,9 +114,9 @@ async def test_entries_and_names_are_heard(
 
 
 async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
-    run: Run, screen: PhrasesScreen, house: House
+    run: Run, screen: PhrasesScreen, workspace: Workspace
 ) -> None:
-    house.pronounce(house.people[0], "R AO S AH")
+    workspace.pronounce(workspace.people[0], "R AO S AH")
     async with run(screen) as pilot:
         await find(pilot, *"rosa")
         pilot.type("e")
@@ -124,20 +124,20 @@ async def test_an_empty_line_drops_what_was_noted_and_esc_leaves_it(
         pilot.app.screen.query_one(PhonesInput).value = "R"
         pilot.type("escape", at=1e9)
         await pilot.pause()
-        assert house.find_person("user1").pronunciation == "R AO S AH"
+        assert workspace.find_person("user1").pronunciation == "R AO S AH"
         pilot.type("e")
         await pilot.pause()
         pilot.app.screen.query_one(PhonesInput).value = ""
         pilot.type("enter", at=1e9)
         await pilot.pause()
-        assert house.find_person("user1").pronunciation is None
+        assert workspace.find_person("user1").pronunciation is None
 
 
-async def test_what_cannot_be_said_aloud_is_told(run: Run, house: House) -> None:
+async def test_what_cannot_be_said_aloud_is_told(run: Run, workspace: Workspace) -> None:
     async def fails(phones: str) -> None:
         raise TangyError("No sound comes out here.")
 
-    async with run(PhrasesScreen(house, fails), notifications=True) as pilot:
+    async with run(PhrasesScreen(workspace, fails), notifications=True) as pilot:
         await looked_up(pilot)
         pilot.type("h")
         await pilot.pause()
@@ -155,8 +155,8 @@ async def test_at_the_smallest_size_it_is_drawn(
         picture(pilot.app)
 
 
-async def test_the_palette_leads_to_it_and_esc_back(run: Run, house: House) -> None:
-    program = Program(house, clock=StillClock())
+async def test_the_palette_leads_to_it_and_esc_back(run: Run, workspace: Workspace) -> None:
+    program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
         (command,) = [
             one for one in program.get_system_commands(program.screen) if one.title == "Phrases"

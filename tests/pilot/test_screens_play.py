@@ -8,7 +8,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.demo import learn
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import Policy
@@ -30,9 +30,9 @@ from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 
 @pytest.fixture
-def policy(house: House) -> Policy:
+def policy(workspace: Workspace) -> Policy:
     """A policy learnt from three scripted demonstrations."""
-    teaching = house.teaching(SCRIPTED, 1)
+    teaching = workspace.teaching(SCRIPTED, 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for number in range(3):
@@ -40,17 +40,17 @@ def policy(house: House) -> Policy:
             teaching.apply(teacher.command())
         for _ in teacher.demonstrate():
             pass
-    return learn(house)
+    return learn(workspace)
 
 
-def playing(house: House, policy: Policy, *, speed: float = 1, games: int = 1) -> Program:
+def playing(workspace: Workspace, policy: Policy, *, speed: float = 1, games: int = 1) -> Program:
     """Make the program with the playing screen open; at speed 1 only keys move the game."""
 
     async def start(started: Program) -> None:
-        supervision = house.supervision(policy, 5)
-        await started.push_screen(PlayScreen(house, supervision, games=games, speed=speed))
+        supervision = workspace.supervision(policy, 5)
+        await started.push_screen(PlayScreen(workspace, supervision, games=games, speed=speed))
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 async def pause_at_once(pilot: Pilot[None]) -> PlayScreen:
@@ -62,8 +62,8 @@ async def pause_at_once(pilot: Pilot[None]) -> PlayScreen:
     return screen
 
 
-async def test_one_step_is_one_step(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy), size=LARGE) as pilot:
+async def test_one_step_is_one_step(run: Run, workspace: Workspace, policy: Policy) -> None:
+    async with run(app=playing(workspace, policy), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         before = screen.query_one(Transcript).count
         for more in (1, 2, 3):
@@ -73,8 +73,10 @@ async def test_one_step_is_one_step(run: Run, house: House, policy: Policy) -> N
         assert screen.query_one(StatusLine).status.note == "paused"
 
 
-async def test_the_policy_row_in_use_is_marked(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy), size=LARGE) as pilot:
+async def test_the_policy_row_in_use_is_marked(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         for _ in range(3):
             await pilot.press("n")
@@ -84,8 +86,10 @@ async def test_the_policy_row_in_use_is_marked(run: Run, house: House, policy: P
         assert table.rows[table._now].behaviour == "call number"
 
 
-async def test_skipping_plays_the_game_to_its_end(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+async def test_skipping_plays_the_game_to_its_end(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
         while not screen._supervision.over:
@@ -93,16 +97,16 @@ async def test_skipping_plays_the_game_to_its_end(run: Run, house: House, policy
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
         assert screen.query_one(StatusLine).status.stage == "over"
-        assert house.store.last("game ended") is not None
+        assert workspace.store.last("game ended") is not None
         await pilot.press("g")
         await pilot.pause()
         assert screen.query_one(StatusLine).status.game == 2
 
 
 async def test_speed_goes_from_life_to_a_thousand_times(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = pilot.app.screen
         await pilot.press("p", "p")
         for _ in range(12):
@@ -118,9 +122,9 @@ async def test_speed_goes_from_life_to_a_thousand_times(
 
 
 async def test_stop_stops_and_only_a_person_lets_it_go_on(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = pilot.app.screen
         await pilot.press("ctrl+x")
         await pilot.pause()
@@ -140,9 +144,9 @@ async def test_stop_stops_and_only_a_person_lets_it_go_on(
 
 
 async def test_panels_are_chosen_by_number_where_there_is_no_room(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), size=SMALL) as pilot:
+    async with run(app=playing(workspace, policy), size=SMALL) as pilot:
         await pause_at_once(pilot)
         for key, title in (
             ("2", "Steps"),
@@ -157,9 +161,9 @@ async def test_panels_are_chosen_by_number_where_there_is_no_room(
 
 @pytest.mark.parametrize("size", [(80, 24), (80, 20)])
 async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
-    run: Run, house: House, policy: Policy, size: tuple[int, int]
+    run: Run, workspace: Workspace, policy: Policy, size: tuple[int, int]
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         screen = await pause_at_once(pilot)
         room, keys = screen.query_one("#room"), screen.query_one("#keys")
         beside = room.region.height
@@ -172,9 +176,9 @@ async def test_the_room_alone_leaves_nothing_of_the_screen_empty(
 
 
 async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    teaching = house.teaching("ann", 1)
+    teaching = workspace.teaching("ann", 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for _ in range(4):
@@ -182,8 +186,10 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
     from tangy_tui.learning.library import read_demonstrations
     from tangy_tui.learning.policy import learn_policy
 
-    poor = learn_policy(house.activity, read_demonstrations(house.store, house.activity.name))
-    async with run(app=playing(house, poor), size=LARGE) as pilot:
+    poor = learn_policy(
+        workspace.activity, read_demonstrations(workspace.store, workspace.activity.name)
+    )
+    async with run(app=playing(workspace, poor), size=LARGE) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
         while not isinstance(pilot.app.screen, MessageDialog):
@@ -196,12 +202,12 @@ async def test_a_situation_nobody_showed_ends_the_game_with_the_reason(
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_playing_looks(
     run: Run,
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     size: tuple[int, int],
     picture: Callable[[App[None]], None],
 ) -> None:
-    async with run(app=playing(house, policy), size=size) as pilot:
+    async with run(app=playing(workspace, policy), size=size) as pilot:
         await pause_at_once(pilot)
         for _ in range(12):
             await pilot.press("n")
@@ -209,21 +215,21 @@ async def test_how_playing_looks(
         picture(pilot.app)
 
 
-async def test_the_policy_screen_says_what_was_never_shown(run: Run, house: House) -> None:
-    teaching = house.teaching("ann", 1)
+async def test_the_policy_screen_says_what_was_never_shown(run: Run, workspace: Workspace) -> None:
+    teaching = workspace.teaching("ann", 1)
     teacher = ScriptedTeacher(teaching)
     teaching.begin()
     for _ in teacher.demonstrate():
         pass
-    policy = learn(house)
-    unseen = [row for row in policy_rows(house.activity, policy) if not row.seen]
+    policy = learn(workspace)
+    unseen = [row for row in policy_rows(workspace.activity, policy) if not row.seen]
     assert unseen, "this game was to leave something out"
 
     async def start(program: Program) -> None:
-        effects = effects_of(house.store, house.activity, policy)
-        await program.push_screen(PolicyScreen(house, policy, effects))
+        effects = effects_of(workspace.store, workspace.activity, policy)
+        await program.push_screen(PolicyScreen(workspace, policy, effects))
 
-    async with run(app=Program(house, start, clock=StillClock()), size=LARGE) as pilot:
+    async with run(app=Program(workspace, start, clock=StillClock()), size=LARGE) as pilot:
         shown = screen_text(pilot.app)
         assert f"{11 - len(unseen)} of 11 situations were shown" in shown
         assert "never shown" in shown
@@ -232,9 +238,11 @@ async def test_the_policy_screen_says_what_was_never_shown(run: Run, house: Hous
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_home_leads_everywhere_and_back(run: Run, house: House, policy: Policy) -> None:
+async def test_home_leads_everywhere_and_back(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
     ways = {"t": TeachScreen, "o": PolicyScreen, "e": PeopleScreen, "p": PlayScreen}
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         assert "3 demonstrations" in screen_text(pilot.app)
         for key, kind in ways.items():
             await pilot.press(key)
@@ -251,8 +259,10 @@ async def test_home_leads_everywhere_and_back(run: Run, house: House, policy: Po
             assert isinstance(pilot.app.screen, HomeScreen), key
 
 
-async def test_playing_before_learning_is_answered_with_what_to_do(run: Run, house: House) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_playing_before_learning_is_answered_with_what_to_do(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("p")
         while not isinstance(pilot.app.screen, MessageDialog):
             await pilot.pause(0.02)
@@ -262,16 +272,20 @@ async def test_playing_before_learning_is_answered_with_what_to_do(run: Run, hou
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_learning_from_home_shows_the_policy(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_learning_from_home_shows_the_policy(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("l")
         while not isinstance(pilot.app.screen, PolicyScreen):
             await pilot.pause(0.02)
         assert "Learnt from 3 demonstrations" in screen_text(pilot.app)
 
 
-async def test_two_letters_at_home_are_one_choice(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=Program(house, clock=StillClock())) as pilot:
+async def test_two_letters_at_home_are_one_choice(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o", "p", "l")
         while not isinstance(pilot.app.screen, PolicyScreen):
             await pilot.pause(0.02)
@@ -281,9 +295,9 @@ async def test_two_letters_at_home_are_one_choice(run: Run, house: House, policy
 
 
 async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
         while not any(ground.acted.choice for ground in screen._picture.grounds):
             await pilot.press("n")
@@ -314,9 +328,9 @@ async def test_why_is_told_of_the_last_step_and_of_the_chosen_one(
 
 
 async def test_leaving_in_mid_game_is_asked_and_logged(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         await pilot.press("escape")
         await pilot.pause()
         assert "Leave in the middle of the game?" in screen_text(pilot.app)
@@ -324,12 +338,12 @@ async def test_leaving_in_mid_game_is_asked_and_logged(
         await pilot.pause()
         assert isinstance(pilot.app.screen, PlayScreen)
         assert pilot.app.screen.query_one(StatusLine).status.note == "x1"
-        assert house.store.last("game ended") is None
+        assert workspace.store.last("game ended") is None
         await pilot.press("escape")
         await pilot.pause()
         await pilot.press("y")
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
-    ended = house.store.last("game ended")
+    ended = workspace.store.last("game ended")
     assert ended is not None
     assert ended.body["stopped"] == "It was left before its end."

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import effects_of
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -34,29 +34,31 @@ FEW = ForestSettings(trees=5)
 
 
 @pytest.fixture
-def policy(house: House, cover: Cover) -> Policy:
+def policy(workspace: Workspace, cover: Cover) -> Policy:
     """A policy that knows all that comes about."""
-    return learnt(house.store, house.activity, cover("bingo", 1, 4), FEW)
+    return learnt(workspace.store, workspace.activity, cover("bingo", 1, 4), FEW)
 
 
 @pytest.fixture
-def gappy(house: House, cover: Cover) -> Policy:
+def gappy(workspace: Workspace, cover: Cover) -> Policy:
     """A policy that was never shown two situations."""
     games = cover("bingo", 1, 4)
     last = games[0].steps[-1].state.situation
-    shown = [without(without(d, gap(house)), last) for d in games]
-    return learnt(house.store, house.activity, shown, FEW)
+    shown = [without(without(d, gap(workspace)), last) for d in games]
+    return learnt(workspace.store, workspace.activity, shown, FEW)
 
 
-def playing(house: House, policy: Policy, leave_after: float | None = None) -> Program:
+def playing(workspace: Workspace, policy: Policy, leave_after: float | None = None) -> Program:
     """Make the program with the playing screen open; what it leads to is kept in `results`."""
 
     async def start(program: Program) -> None:
-        supervision = house.supervision(policy, 5, asks=True)
-        screen = PlayScreen(house, supervision, speed=1000, leave_after=leave_after, teacher="ann")
+        supervision = workspace.supervision(policy, 5, asks=True)
+        screen = PlayScreen(
+            workspace, supervision, speed=1000, leave_after=leave_after, teacher="ann"
+        )
         program.results = [await program.push_screen_wait(screen)]  # type: ignore[attr-defined]
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 def told(pilot: TangyPilot) -> str:
@@ -79,9 +81,9 @@ async def over(pilot: TangyPilot) -> PlayScreen:
 
 
 async def test_a_game_that_ends_under_a_dialog_is_left_when_the_dialog_is(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy, leave_after=0.8)) as pilot:
+    async with run(app=playing(workspace, policy, leave_after=0.8)) as pilot:
         await over(pilot)
         await pilot.press("question_mark")
         await pilot.pause(1.2)
@@ -95,13 +97,13 @@ async def test_a_game_that_ends_under_a_dialog_is_left_when_the_dialog_is(
 
 
 async def test_a_policy_that_closes_by_itself_waits_for_the_dialog_over_it(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async def start(program: Program) -> None:
-        effects = effects_of(house.store, house.activity, policy)
-        await program.push_screen_wait(PolicyScreen(house, policy, effects, 0.8))
+        effects = effects_of(workspace.store, workspace.activity, policy)
+        await program.push_screen_wait(PolicyScreen(workspace, policy, effects, 0.8))
 
-    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
         await pilot.press("w")
         await pilot.pause(1.2)
         assert isinstance(pilot.app.screen, WhyDialog)
@@ -111,8 +113,10 @@ async def test_a_policy_that_closes_by_itself_waits_for_the_dialog_over_it(
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
-async def test_leaving_twice_at_once_leaves_once(run: Run, house: House, policy: Policy) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+async def test_leaving_twice_at_once_leaves_once(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = await over(pilot)
         screen.action_leave()
         screen.action_leave()
@@ -124,9 +128,9 @@ async def test_leaving_twice_at_once_leaves_once(run: Run, house: House, policy:
 
 
 async def test_another_game_in_mid_game_is_announced(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), notifications=True) as pilot:
+    async with run(app=playing(workspace, policy), notifications=True) as pilot:
         screen = pilot.app.screen
         await pilot.press("p", "g")
         await pilot.pause()
@@ -137,9 +141,9 @@ async def test_another_game_in_mid_game_is_announced(
 
 
 async def test_another_game_goes_on_though_the_last_one_was_paused(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         screen = await over(pilot)
         await pilot.press("p", "g")
         await pilot.pause(0.1)
@@ -154,9 +158,9 @@ async def test_another_game_goes_on_though_the_last_one_was_paused(
 
 @pytest.mark.parametrize("key", ["g", "n", "e"])
 async def test_what_waits_for_the_answer_says_so_in_the_panel(
-    run: Run, house: House, gappy: Policy, key: str
+    run: Run, workspace: Workspace, gappy: Policy, key: str
 ) -> None:
-    async with run(app=playing(house, gappy), notifications=True) as pilot:
+    async with run(app=playing(workspace, gappy), notifications=True) as pilot:
         screen = await asked(pilot)
         await pilot.press("escape", key)
         await pilot.pause()
@@ -166,9 +170,9 @@ async def test_what_waits_for_the_answer_says_so_in_the_panel(
 
 
 async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
-    run: Run, house: House, gappy: Policy
+    run: Run, workspace: Workspace, gappy: Policy
 ) -> None:
-    async with run(app=playing(house, gappy), notifications=True) as pilot:
+    async with run(app=playing(workspace, gappy), notifications=True) as pilot:
         screen = await asked(pilot)
         await pilot.press("escape")
         line = screen.query_one(CommandInput)
@@ -186,9 +190,9 @@ async def test_after_a_stop_the_keys_say_what_goes_on_and_what_does_not(
 
 
 async def test_the_keys_of_a_game_that_stands_still_say_so(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy), size=SMALL) as pilot:
+    async with run(app=playing(workspace, policy), size=SMALL) as pilot:
         await pilot.press("p")
         await pilot.pause()
         assert pilot.lines()[-1].strip().startswith("p go on")
@@ -198,9 +202,9 @@ async def test_the_keys_of_a_game_that_stands_still_say_so(
 
 
 async def test_nothing_lies_over_a_question(
-    run: Run, house: House, gappy: Policy, tmp_path: Path
+    run: Run, workspace: Workspace, gappy: Policy, tmp_path: Path
 ) -> None:
-    async with run(app=playing(house, gappy), notifications=True) as pilot:
+    async with run(app=playing(workspace, gappy), notifications=True) as pilot:
         screen = await asked(pilot)
         program: Any = pilot.app
         program.say("Saved in the meantime.")
@@ -219,9 +223,9 @@ async def test_nothing_lies_over_a_question(
 
 
 async def test_help_tells_of_the_panels_and_of_answering(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    async with run(app=playing(house, policy)) as pilot:
+    async with run(app=playing(workspace, policy)) as pilot:
         help = help_for(pilot.app.screen)
         assert {"1", "2", "3", "4", "5"} <= {key for key, _ in help.here}
         assert ": leads back to it" in help.paragraphs[0]
@@ -231,19 +235,19 @@ async def test_help_tells_of_the_panels_and_of_answering(
 
 
 async def test_what_follows_is_read_from_its_beginning(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     async def start(program: Program) -> None:
-        effects = effects_of(house.store, house.activity, policy)
-        await program.push_screen(PolicyScreen(house, policy, effects))
+        effects = effects_of(workspace.store, workspace.activity, policy)
+        await program.push_screen(PolicyScreen(workspace, policy, effects))
 
-    async with run(app=Program(house, start, clock=StillClock()), size=SMALL) as pilot:
+    async with run(app=Program(workspace, start, clock=StillClock()), size=SMALL) as pilot:
         effects = pilot.app.screen.query_one("#effects", LogView)
         assert effects.max_scroll_y > 0
         assert effects.scroll_offset.y == 0
 
 
-def test_one_demonstration_teaches(house: House, cover: Cover) -> None:
-    log_demonstration(house.store, cover("bingo", 1, 4)[0])
-    notes = [option.note for option in comparison_options(house.store, house.activity)]
+def test_one_demonstration_teaches(workspace: Workspace, cover: Cover) -> None:
+    log_demonstration(workspace.store, cover("bingo", 1, 4)[0])
+    notes = [option.note for option in comparison_options(workspace.store, workspace.activity)]
     assert "what 1 demonstration teaches" in notes

@@ -17,7 +17,7 @@ from tangy_hw.drivers.camera_state import Sight
 from tangy_hw.perception.camera_hub import CardSight, SeenCard
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.health import ERROR, OK, STALE, Health, Reading
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.home import HomeScreen
@@ -90,9 +90,9 @@ class FakeSensors:
             self.readers -= 1
 
 
-def card(house: House, hidden: int = 0b11000, stamp: float | None = None) -> SeenCard:
+def card(workspace: Workspace, hidden: int = 0b11000, stamp: float | None = None) -> SeenCard:
     """Card 17 with its first two numbers marked, read just now."""
-    deck = house.activity.deck
+    deck = workspace.activity.deck
     at = monotonic() if stamp is None else stamp
     return SeenCard(17, numbers_of(deck, 17), 0b11, hidden, deck.free, 5, at)
 
@@ -103,9 +103,9 @@ def sensors() -> FakeSensors:
 
 
 @pytest.fixture
-def make(house: House, sensors: FakeSensors) -> Callable[..., SensorsScreen]:
+def make(workspace: Workspace, sensors: FakeSensors) -> Callable[..., SensorsScreen]:
     given: Any = sensors
-    return lambda **more: SensorsScreen(house, given, **more)
+    return lambda **more: SensorsScreen(workspace, given, **more)
 
 
 async def later(pilot: TangyPilot) -> None:
@@ -276,30 +276,32 @@ async def test_only_what_has_changed_of_a_picture_is_drawn(run: Run) -> None:
 
 
 async def test_the_last_card_is_drawn_as_it_was_read(
-    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, house: House
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, workspace: Workspace
 ) -> None:
     async with run(make()) as pilot:
         assert "No card was read yet." in pilot.text()
-        sensors.cards = CardSight(card(house), "", monotonic())
+        sensors.cards = CardSight(card(workspace), "", monotonic())
         await later(pilot)
-        numbers = numbers_of(house.activity.deck, 17)
+        numbers = numbers_of(workspace.activity.deck, 17)
         assert "Card 17, 2 of its numbers" in pilot.text()
         assert f"[{numbers[0]}]" in pilot.text() and f"[{numbers[1]}]" in pilot.text()
         assert f"░{numbers[3]}░" in pilot.text() and f"░{numbers[4]}░" in pilot.text()
         assert f"[{numbers[3]}]" not in pilot.text()
         assert all(f" {number} " in pilot.text() for number in numbers[5:])
         assert "not seen" in pilot.text()
-        sensors.cards = CardSight(card(house, 0, monotonic() - 20), "no card in sight", monotonic())
+        sensors.cards = CardSight(
+            card(workspace, 0, monotonic() - 20), "no card in sight", monotonic()
+        )
         await later(pilot)
         assert "Card 17, read 20 s ago." in pilot.text()
         assert "Now: no card in sight." in pilot.text()
 
 
 async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
-    run: Run, house: House, sensors: FakeSensors
+    run: Run, workspace: Workspace, sensors: FakeSensors
 ) -> None:
     given: Any = sensors
-    async with run(app=Program(house, sensors=given)) as pilot:
+    async with run(app=Program(workspace, sensors=given)) as pilot:
         assert sensors.open == 0
         pilot.type("c")
         await pilot.pause()
@@ -314,8 +316,8 @@ async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
     assert sensors.open == 0
 
 
-async def test_without_a_camera_it_says_how_to_name_one(run: Run, house: House) -> None:
-    async with run(SensorsScreen(house)) as pilot:
+async def test_without_a_camera_it_says_how_to_name_one(run: Run, workspace: Workspace) -> None:
+    async with run(SensorsScreen(workspace)) as pilot:
         assert "camera=0" in pilot.text()
         pilot.type("v", "enter")
         await pilot.pause()
@@ -324,7 +326,7 @@ async def test_without_a_camera_it_says_how_to_name_one(run: Run, house: House) 
 
 async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
     run: Run,
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     sensors: FakeSensors,
     monkeypatch: pytest.MonkeyPatch,
@@ -336,7 +338,7 @@ async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
     given: Any = sensors
     clock = StillClock()
     app = Program(
-        house, lambda program: program.play(seed=3), sensors=given, live=True, clock=clock
+        workspace, lambda program: program.play(seed=3), sensors=given, live=True, clock=clock
     )
     async with run(app=app) as pilot:
         await until(pilot, lambda: "robot OK" in pilot.text())
@@ -364,11 +366,11 @@ async def test_how_it_looks(
     run: Run,
     make: Callable[..., SensorsScreen],
     sensors: FakeSensors,
-    house: House,
+    workspace: Workspace,
     picture: Callable[[App[Any]], None],
 ) -> None:
     sensors.now = replace(WELL, state="COVERED", why="Nothing can be seen in the picture.")
-    sensors.cards = CardSight(card(house, stamp=monotonic() + 9), "", monotonic())
+    sensors.cards = CardSight(card(workspace, stamp=monotonic() + 9), "", monotonic())
     health = (Reading("laser", 0.05, OK), Reading("link", 3.0))
     async with run(make(health=lambda: health), size) as pilot:
         pilot.type("v")
@@ -378,9 +380,9 @@ async def test_how_it_looks(
 
 
 async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
-    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, house: House
+    run: Run, make: Callable[..., SensorsScreen], sensors: FakeSensors, workspace: Workspace
 ) -> None:
-    sensors.cards = CardSight(card(house), "", monotonic())
+    sensors.cards = CardSight(card(workspace), "", monotonic())
     async with run(make(), (60, 18)) as pilot:
         assert "head camera" in pilot.text() and "Last card" not in pilot.text()
         pilot.type("v")

@@ -13,7 +13,7 @@ from textual.app import App
 from tangy_hw.cancellation import Cancellation
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.switching_on import SwitchingOnDialog
 from tangy_tui.ui.live_games import play_live
@@ -28,11 +28,11 @@ from tests.pilot.live_games import HeldLink, live_world, paused_after, until
 class Robot:
     """A robot whose devices answer when they are let."""
 
-    def __init__(self, house: House, wrong: str = "") -> None:
+    def __init__(self, workspace: Workspace, wrong: str = "") -> None:
         self.did: list[str] = []
         self.answers = threading.Event()
         self.link = HeldLink()
-        self._house = house
+        self._workspace = workspace
         self._wrong = wrong
 
     @contextmanager
@@ -45,17 +45,17 @@ class Robot:
             if self._wrong:
                 raise DeviceError(self._wrong)
             self.did.append("is on")
-            yield live_world(self._house, self.link)
+            yield live_world(self._workspace, self.link)
         finally:
             self.did.append("is off")
 
 
-def program(house: House, policy: Policy, robot: Robot) -> Program:
+def program(workspace: Workspace, policy: Policy, robot: Robot) -> Program:
     async def start(program: Program) -> None:
         await play_live(program, robot, policy, games=1, seed=1, teacher="ann")
         robot.did.append("over")
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 async def switching(pilot: TangyPilot, robot: Robot) -> None:
@@ -65,21 +65,23 @@ async def switching(pilot: TangyPilot, robot: Robot) -> None:
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_it_says_what_goes_on_and_how_to_leave_it_off(
     run: Run,
-    house: House,
+    workspace: Workspace,
     policy: Policy,
     picture: Callable[[App[Any]], None],
     size: tuple[int, int],
 ) -> None:
-    robot = Robot(house)
-    async with run(app=program(house, policy, robot), size=size) as pilot:
+    robot = Robot(workspace)
+    async with run(app=program(workspace, policy, robot), size=size) as pilot:
         await switching(pilot, robot)
         picture(pilot.app)
 
 
 @pytest.mark.parametrize("key", ["escape", "ctrl+x"])
-async def test_esc_and_stop_leave_it_off(run: Run, house: House, policy: Policy, key: str) -> None:
-    robot = Robot(house)
-    async with run(app=program(house, policy, robot)) as pilot:
+async def test_esc_and_stop_leave_it_off(
+    run: Run, workspace: Workspace, policy: Policy, key: str
+) -> None:
+    robot = Robot(workspace)
+    async with run(app=program(workspace, policy, robot)) as pilot:
         await switching(pilot, robot)
         await pilot.press(key)
         await until(pilot, lambda: robot.did == ["begins", "is off", "over"])
@@ -88,10 +90,10 @@ async def test_esc_and_stop_leave_it_off(run: Run, house: House, policy: Policy,
 
 @pytest.mark.parametrize("leave", [lambda p: p.leave(), lambda p: p.exit()], ids=["left", "ended"])
 async def test_leaving_the_program_leaves_it_off(
-    run: Run, house: House, policy: Policy, leave: Callable[[Program], None]
+    run: Run, workspace: Workspace, policy: Policy, leave: Callable[[Program], None]
 ) -> None:
-    robot, app = Robot(house), None
-    app = program(house, policy, robot)
+    robot, app = Robot(workspace), None
+    app = program(workspace, policy, robot)
     async with run(app=app) as pilot:
         await switching(pilot, robot)
         leave(app)
@@ -99,11 +101,11 @@ async def test_leaving_the_program_leaves_it_off(
 
 
 async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
     """A window that takes its time to come up is left before anything can be read in it."""
-    robot = Robot(house)
-    app = program(house, policy, robot)
+    robot = Robot(workspace)
+    app = program(workspace, policy, robot)
     async with run(app=app) as pilot:
         await until(pilot, lambda: isinstance(app.screen, SwitchingOnDialog))
         pilot.type("escape")
@@ -111,10 +113,10 @@ async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
 
 
 async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
-    run: Run, house: House, policy: Policy
+    run: Run, workspace: Workspace, policy: Policy
 ) -> None:
-    robot = Robot(house)
-    async with run(app=program(house, policy, robot)) as pilot:
+    robot = Robot(workspace)
+    async with run(app=program(workspace, policy, robot)) as pilot:
         await switching(pilot, robot)
         await pilot.press("question_mark")
         await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
@@ -124,10 +126,12 @@ async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
         await paused_after(pilot, robot.link, 1)
 
 
-async def test_what_is_wrong_with_the_robot_is_said(run: Run, house: House, policy: Policy) -> None:
-    robot = Robot(house, wrong="The arms have no cable.")
+async def test_what_is_wrong_with_the_robot_is_said(
+    run: Run, workspace: Workspace, policy: Policy
+) -> None:
+    robot = Robot(workspace, wrong="The arms have no cable.")
     robot.answers.set()
-    async with run(app=program(house, policy, robot)) as pilot:
+    async with run(app=program(workspace, policy, robot)) as pilot:
         await until(pilot, lambda: "The arms have no cable." in pilot.text())
         assert robot.did == ["begins", "is off"]
         await pilot.press("enter")

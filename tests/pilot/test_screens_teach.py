@@ -11,7 +11,7 @@ from textual.app import App
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -28,14 +28,14 @@ from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import LARGE, SMALL, Run, StillClock, screen_text
 
 
-def program(house: House, *, seed: int = 1, scripted: float | None = None) -> Program:
+def program(workspace: Workspace, *, seed: int = 1, scripted: float | None = None) -> Program:
     """Make the program with the teaching screen open."""
 
     async def start(started: Program) -> None:
-        teaching = house.teaching("ann", seed)
-        await started.push_screen(TeachScreen(house, teaching, scripted=scripted))
+        teaching = workspace.teaching("ann", seed)
+        await started.push_screen(TeachScreen(workspace, teaching, scripted=scripted))
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 async def say(pilot: Pilot[None], words: str, answer: str = "y") -> None:
@@ -47,36 +47,40 @@ async def say(pilot: Pilot[None], words: str, answer: str = "y") -> None:
     await pilot.pause()
 
 
-def steps(house: House) -> list[str]:
+def steps(workspace: Workspace) -> list[str]:
     """Return the behaviours that the log has of the last demonstration."""
-    return [s.behaviour for s in read_demonstrations(house.store, house.activity.name)[-1].steps]
+    return [
+        s.behaviour for s in read_demonstrations(workspace.store, workspace.activity.name)[-1].steps
+    ]
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE])
 async def test_a_confirmed_command_is_a_step_on_the_screen_and_in_the_log(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await say(pilot, "greet everyone")
         shown = screen_text(pilot.app)
         assert "1 start · nobody asks -> greeting" in shown
         assert "Hello, everybody" in shown
         assert "stage FACILITATE" in shown
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
 
 
-async def test_a_rejected_command_changes_nothing_and_comes_back(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_rejected_command_changes_nothing_and_comes_back(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await say(pilot, "call a number", "n")
         assert pilot.app.screen.query_one(CommandBar).text == "call a number"
         assert pilot.app.screen.query_one(Transcript).count == 0
-        assert not read_demonstrations(house.store, house.activity.name)
+        assert not read_demonstrations(workspace.store, workspace.activity.name)
 
 
 async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press(*"greet evryone", "enter")
         await pilot.pause()
         first = pilot.app.screen
@@ -89,34 +93,34 @@ async def test_another_behaviour_is_chosen_by_number_and_asked_about_again(
         assert second.behaviour != first.behaviour
         await pilot.press("n")
         await pilot.pause()
-        assert not read_demonstrations(house.store, house.activity.name)
+        assert not read_demonstrations(workspace.store, workspace.activity.name)
 
 
 async def test_words_that_mean_nothing_are_said_and_stay_to_be_mended(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press(*"flurb", "enter")
         await pilot.pause()
         assert "I do not know what 'flurb' means" in screen_text(pilot.app)
         assert pilot.app.screen.query_one(CommandBar).text == "flurb"
 
 
-async def test_undo_takes_the_last_step_back(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
         await pilot.press("escape", "u")
         await pilot.pause()
         assert pilot.app.screen.query_one(Transcript).count == 1
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
         await pilot.press("ctrl+z")
         await pilot.pause()
-        assert steps(house) == []
+        assert steps(workspace) == []
 
 
-async def test_redo_brings_the_steps_back_in_order(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
         await pilot.press("escape", "u", "u")
@@ -124,10 +128,10 @@ async def test_redo_brings_the_steps_back_in_order(run: Run, house: House) -> No
         assert "seen 0/11" in screen_text(pilot.app)
         await pilot.press("U")
         await pilot.pause()
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
         await pilot.press("ctrl+y")
         await pilot.pause()
-        assert steps(house) == ["greeting", "call number"]
+        assert steps(workspace) == ["greeting", "call number"]
         assert pilot.app.screen.query_one(Transcript).count == 2
         assert "seen 2/11" in screen_text(pilot.app)
         await pilot.press("U")
@@ -135,20 +139,22 @@ async def test_redo_brings_the_steps_back_in_order(run: Run, house: House) -> No
         assert "no step to do again" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 
-async def test_undo_and_redo_are_commands_too(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_undo_and_redo_are_commands_too(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await pilot.press(*"undo", "enter")
         await pilot.pause()
-        assert steps(house) == []
+        assert steps(workspace) == []
         await pilot.press(*"redo", "enter")
         await pilot.pause()
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
 
 
 @pytest.mark.parametrize("typed", [True, False])
-async def test_the_game_is_shown_again_from_a_step(run: Run, house: House, typed: bool) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_the_game_is_shown_again_from_a_step(
+    run: Run, workspace: Workspace, typed: bool
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 14)
         if typed:
             await pilot.press(*"again 13", "enter")
@@ -161,26 +167,26 @@ async def test_the_game_is_shown_again_from_a_step(run: Run, house: House, typed
         await pilot.press("y")
         await pilot.pause()
         screen = pilot.app.screen
-        assert screen.query_one(Transcript).count == len(steps(house)) == 12
+        assert screen.query_one(Transcript).count == len(steps(workspace)) == 12
         assert screen_text(pilot.app).count("Steps 13 to 14 are undone") == 1
         await pilot.press(*(["escape"] if typed else []), "U")
         await pilot.pause()
-        assert len(steps(house)) == 13
+        assert len(steps(workspace)) == 13
 
 
-async def test_a_no_leaves_the_game_as_it_is(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 4)
         await pilot.press("escape", "up", "a")
         await pilot.pause()
         assert "Step 4 is taken back; U brings it back until" in screen_text(pilot.app)
         await pilot.press("n")
         await pilot.pause()
-        assert len(steps(house)) == 4
+        assert len(steps(workspace)) == 4
 
 
-async def test_it_says_what_nobody_has_shown_yet(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
         await pilot.press("escape", "c")
         await pilot.pause()
@@ -196,15 +202,15 @@ async def test_it_says_what_nobody_has_shown_yet(run: Run, house: House) -> None
         assert "New to Tangy: help · wrong marks" in said
 
 
-async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, house: House) -> None:
-    async with run(app=program(house), size=LARGE) as pilot:
+async def test_on_a_large_screen_it_stands_below_the_steps(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace), size=LARGE) as pilot:
         assert "! nobody has had a wrong mark yet" in screen_text(pilot.app)
 
 
 async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
-    house = House(taught)
+    workspace = Workspace(taught)
     try:
-        async with run(app=program(house, seed=9)) as pilot:
+        async with run(app=program(workspace, seed=9)) as pilot:
             assert "seen 11/11" in screen_text(pilot.app)
             await pilot.press("escape", "c")
             await pilot.pause()
@@ -216,14 +222,16 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
             assert "11 of 11 situations shown, 2 in this game" in screen_text(pilot.app)
             assert not pilot.app.screen.query_one(CoverageList).missing
     finally:
-        house.close()
+        workspace.close()
 
 
-async def test_a_guided_session_says_so(run: Run, house: House) -> None:
+async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
     async def start(started: Program) -> None:
-        await started.push_screen(TeachScreen(house, house.teaching("ada", 27, guided=True)))
+        await started.push_screen(
+            TeachScreen(workspace, workspace.teaching("ada", 27, guided=True))
+        )
 
-    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
         await mid_game(pilot, 12)
         status = screen_text(pilot.app).splitlines()[0]
         assert "guided" in status
@@ -232,8 +240,8 @@ async def test_a_guided_session_says_so(run: Run, house: House) -> None:
         assert "game 27" in status
 
 
-async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press("escape", "w")  # nothing was shown, so there is nothing to tell
         await ended(pilot, "why")
         assert isinstance(pilot.app.screen, TeachScreen)
@@ -259,37 +267,43 @@ async def ended(pilot: Pilot[None], name: str) -> None:
             return
 
 
-async def test_letters_are_keys_only_outside_of_the_command_line(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_letters_are_keys_only_outside_of_the_command_line(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press("u")
         await pilot.pause()
         assert pilot.app.screen.query_one(CommandBar).text == "u"
         assert "no step to undo" not in screen_text(pilot.app)
 
 
-async def test_going_where_nobody_asks_is_refused_with_a_way_out(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_going_where_nobody_asks_is_refused_with_a_way_out(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press(*"go to user", "enter")
         await pilot.pause()
         assert "go to user 1" in screen_text(pilot.app)
         await say(pilot, " 3")  # what was typed is still there
-        assert house.store.last("demonstration step") is not None
+        assert workspace.store.last("demonstration step") is not None
         assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())
 
 
-async def test_leaving_and_coming_back_finds_the_steps(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_leaving_and_coming_back_finds_the_steps(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await pilot.press("escape", "escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         assert "1 start · nobody asks -> greeting" in screen_text(pilot.app)
         assert "Going on where you left" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
 
-async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, TeachScreen)
         teacher = ScriptedTeacher(screen._teaching)
@@ -303,24 +317,24 @@ async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(run: Run, hou
         await pilot.press("escape", "d")
         await pilot.pause()
         assert screen.query_one(Transcript).count == 0
-        finished = read_demonstrations(house.store, house.activity.name)
+        finished = read_demonstrations(workspace.store, workspace.activity.name)
         assert [d.finished for d in finished] == [True]
 
 
-async def test_stop_works_while_a_question_is_open(run: Run, house: House) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_stop_works_while_a_question_is_open(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
         await pilot.press(*"greet everyone", "enter")
         await pilot.pause()
         await pilot.press("ctrl+x")
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
         assert "STOP" in " ".join(pilot.app.screen.query_one(LogView).sentences)
-        assert not read_demonstrations(house.store, house.activity.name)
+        assert not read_demonstrations(workspace.store, workspace.activity.name)
 
 
 @pytest.mark.parametrize("words", ["stop the robot", "emergency stop", "Make it stop!"])
-async def test_a_stop_is_typed_as_it_is_said(run: Run, house: House, words: str) -> None:
-    async with run(app=program(house)) as pilot:
+async def test_a_stop_is_typed_as_it_is_said(run: Run, workspace: Workspace, words: str) -> None:
+    async with run(app=program(workspace)) as pilot:
         pilot.type(*words, "enter")
         await pilot.pause()
         assert "STOP: the simulated robot stands still" in screen_text(pilot.app)
@@ -329,16 +343,16 @@ async def test_a_stop_is_typed_as_it_is_said(run: Run, house: House, words: str)
 
 
 async def test_a_name_with_markup_is_only_a_name(run: Run, tmp_path: Path) -> None:
-    with_markup = House(tmp_path / "data")
+    with_markup = Workspace(tmp_path / "data")
     with_markup.store.rename("user1", "[/][@click=app.quit]x")
     with_markup.close()
-    house = House(tmp_path / "data")
+    workspace = Workspace(tmp_path / "data")
     try:
-        async with run(app=program(house), size=LARGE) as pilot:
+        async with run(app=program(workspace), size=LARGE) as pilot:
             await say(pilot, "go to user 1")
             assert "[/]" in screen_text(pilot.app)
     finally:
-        house.close()
+        workspace.close()
 
 
 async def mid_game(pilot: Pilot[None], steps: int) -> None:
@@ -357,9 +371,9 @@ async def mid_game(pilot: Pilot[None], steps: int) -> None:
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks_in_mid_game(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house), size=size) as pilot:
+    async with run(app=program(workspace), size=size) as pilot:
         await mid_game(pilot, 14)
         await pilot.press(*"remov")
         await pilot.pause()
@@ -367,9 +381,9 @@ async def test_how_it_looks_in_mid_game(
 
 
 async def test_how_it_looks_to_see_what_is_missing(
-    run: Run, house: House, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 14)
         await pilot.press("escape", "c")
         await pilot.pause()
@@ -377,9 +391,9 @@ async def test_how_it_looks_to_see_what_is_missing(
 
 
 async def test_how_a_question_looks(
-    run: Run, house: House, picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, picture: Callable[[App[None]], None]
 ) -> None:
-    async with run(app=program(house)) as pilot:
+    async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 11)
         await pilot.press(*"go to usr", "enter")
         await pilot.pause()
@@ -387,10 +401,10 @@ async def test_how_a_question_looks(
 
 
 async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(
-    run: Run, house: House, draw: Callable[[App[None]], str]
+    run: Run, workspace: Workspace, draw: Callable[[App[None]], str]
 ) -> None:
     kept = Path(__file__).parent / "pictures" / "teach.svg"
-    async with run(app=program(house), size=(120, 40)) as pilot:
+    async with run(app=program(workspace), size=(120, 40)) as pilot:
         await mid_game(pilot, 14)
         await pilot.press(*"remove markers", "enter")
         await pilot.pause()

@@ -8,7 +8,7 @@ import pytest
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.teaching_events import TeacherCommand, TeachingEvent
 from tangy_tui.ui import policy_preview
@@ -24,7 +24,11 @@ NO_HELP = Help("nothing", (), (), ())
 
 
 def program(
-    house: House, ended: list[bool | None], *, scripted: float | None = None, covered: str = ""
+    workspace: Workspace,
+    ended: list[bool | None],
+    *,
+    scripted: float | None = None,
+    covered: str = "",
 ) -> Program:
     """Make the program with the teaching screen open; what it ends with is noted.
 
@@ -32,7 +36,7 @@ def program(
     """
 
     async def start(started: Program) -> None:
-        teaching = house.teaching("ann", 1)
+        teaching = workspace.teaching("ann", 1)
         apply = teaching.apply
 
         def cover_at_the_end(command: TeacherCommand) -> list[TeachingEvent]:
@@ -43,20 +47,20 @@ def program(
 
         if covered == "at the end":
             teaching.apply = cover_at_the_end  # type: ignore[method-assign]
-        screen = TeachScreen(house, teaching, scripted=scripted)
+        screen = TeachScreen(workspace, teaching, scripted=scripted)
         await started.push_screen(screen, ended.append)
         if covered == "at the start":
             await started.push_screen(HelpScreen(NO_HELP))
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
 @pytest.mark.parametrize("covered", ["at the start", "at the end"])
 async def test_a_story_waits_for_the_help_to_be_closed(
-    run: Run, house: House, covered: str
+    run: Run, workspace: Workspace, covered: str
 ) -> None:
     ended: list[bool | None] = []
-    app = program(house, ended, scripted=FAST, covered=covered)
+    app = program(workspace, ended, scripted=FAST, covered=covered)
     async with run(app=app) as pilot:
         for _ in range(500):
             if isinstance(app.screen, HelpScreen):
@@ -80,8 +84,10 @@ async def test_a_story_waits_for_the_help_to_be_closed(
         assert ended == [True]
 
 
-async def test_the_keys_are_where_they_were_when_the_help_is_closed(run: Run, house: House) -> None:
-    async with run(app=program(house, [])) as pilot:
+async def test_the_keys_are_where_they_were_when_the_help_is_closed(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace, [])) as pilot:
         bar = pilot.app.screen.query_one(CommandBar)
         await pilot.press("escape", "question_mark")
         await pilot.pause()
@@ -99,9 +105,9 @@ async def test_the_keys_are_where_they_were_when_the_help_is_closed(run: Run, ho
 
 
 async def test_the_keys_are_told_over_a_text_that_was_left_in_the_line(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=program(house, [])) as pilot:
+    async with run(app=program(workspace, [])) as pilot:
         await pilot.press(*"call numb", "escape")
         await pilot.pause()
         left = screen_text(pilot.app)
@@ -115,8 +121,10 @@ async def test_the_keys_are_told_over_a_text_that_was_left_in_the_line(
         assert "call number" in typing
 
 
-async def test_who_watches_a_story_is_told_only_the_keys_that_work(run: Run, house: House) -> None:
-    async with run(app=program(house, [], scripted=1.0)) as pilot:
+async def test_who_watches_a_story_is_told_only_the_keys_that_work(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=program(workspace, [], scripted=1.0)) as pilot:
         watched = screen_text(pilot.app)
         assert "w why" in watched
         assert "u undo" not in watched
@@ -124,19 +132,19 @@ async def test_who_watches_a_story_is_told_only_the_keys_that_work(run: Run, hou
 
 @pytest.mark.parametrize("typed", [True, False], ids=["typed", "by key"])
 async def test_escape_while_tangy_thinks_stops_that_and_no_more(
-    run: Run, house: House, typed: bool, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, typed: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     let_go = Event()
     grounds = policy_preview._grounds
 
-    def slow(house: House, present: Demonstration, situation: Situation) -> Why:
+    def slow(workspace: Workspace, present: Demonstration, situation: Situation) -> Why:
         let_go.wait(20)
-        return grounds(house, present, situation)
+        return grounds(workspace, present, situation)
 
     monkeypatch.setattr(policy_preview, "_grounds", slow)
     ended: list[bool | None] = []
     why = [*"why", "enter"] if typed else ["escape", "w"]
-    async with run(app=program(house, ended), notifications=True) as pilot:
+    async with run(app=program(workspace, ended), notifications=True) as pilot:
         await pilot.press(*"greet everyone", "enter")
         await pilot.pause()
         await pilot.press("y")

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 from textual.app import App
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.library import read_demonstrations
-from tangy_tui.learning.verification import Reply, Stop
+from tangy_tui.learning.verification import Reply, StopCommand
 from tangy_tui.ui.dialogs.question import ChoicesDialog, QuestionDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
@@ -28,13 +28,13 @@ from tests.pilot.ears import FakeEars
 UNSURE = "call a joke number"
 
 
-def teaching(house: House, ears: FakeEars) -> Program:
+def teaching(workspace: Workspace, ears: FakeEars) -> Program:
     """Make the program with ears and the teaching screen open."""
 
     async def start(started: Program) -> None:
-        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+        await started.push_screen(TeachScreen(workspace, workspace.teaching("ann", 1)))
 
-    return Program(house, start, clock=StillClock(), ears=ears.ears)
+    return Program(workspace, start, clock=StillClock(), ears=ears.ears)
 
 
 def line_of(pilot: TangyPilot) -> str:
@@ -55,25 +55,27 @@ def log_of(pilot: TangyPilot) -> str:
     return " ".join(screen.query_one(LogView).sentences)
 
 
-def steps(house: House) -> list[str]:
+def steps(workspace: Workspace) -> list[str]:
     """Return the behaviours that the log has of the last demonstration."""
-    shown = read_demonstrations(house.store, house.activity.name)
+    shown = read_demonstrations(workspace.store, workspace.activity.name)
     return [s.behaviour for s in shown[-1].steps] if shown else []
 
 
-async def test_without_ears_there_is_no_line_and_no_key_to_talk(run: Run, house: House) -> None:
+async def test_without_ears_there_is_no_line_and_no_key_to_talk(
+    run: Run, workspace: Workspace
+) -> None:
     async def start(started: Program) -> None:
-        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+        await started.push_screen(TeachScreen(workspace, workspace.teaching("ann", 1)))
 
-    async with run(app=Program(house, start, clock=StillClock())) as pilot:
+    async with run(app=Program(workspace, start, clock=StillClock())) as pilot:
         assert not pilot.app.screen.query(MicrophoneLine)
         await pilot.press("escape", "t", "ctrl+t")
         assert "talk" not in screen_text(pilot.app)
 
 
-async def test_t_talks_at_once_and_ends_it(run: Run, house: House) -> None:
+async def test_t_talks_at_once_and_ends_it(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         assert "t talk" in line_of(pilot)
         assert "t talk" in pilot.lines()[-1]  # the bar is at rest, and says so
         await pilot.press("t")
@@ -83,9 +85,9 @@ async def test_t_talks_at_once_and_ends_it(run: Run, house: House) -> None:
         assert "thinking ..." in line_of(pilot)
 
 
-async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, house: House) -> None:
+async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("colon", "t")
         await pilot.pause()
         assert bar_of(pilot).text == "t"
@@ -98,18 +100,18 @@ async def test_in_the_bar_t_is_a_letter_and_ctrl_t_talks(run: Run, house: House)
 
 @pytest.mark.parametrize("ears", [FakeEars(hands_free=True), FakeEars(live=False)])
 async def test_where_no_key_is_pushed_the_bar_has_the_keys(
-    run: Run, house: House, ears: FakeEars
+    run: Run, workspace: Workspace, ears: FakeEars
 ) -> None:
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("t")
         assert bar_of(pilot).text == "t"
         await pilot.press("ctrl+t")
         assert "key is needed" in log_of(pilot)
 
 
-async def test_sure_words_are_asked_about_and_become_a_step(run: Run, house: House) -> None:
+async def test_sure_words_are_asked_about_and_become_a_step(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
         assert isinstance(pilot.app.screen, QuestionDialog)
@@ -117,15 +119,15 @@ async def test_sure_words_are_asked_about_and_become_a_step(run: Run, house: Hou
         assert ears.asks
         await pilot.press("y")
         await pilot.pause()
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
         assert not ears.asks
 
 
 async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
         await pilot.pause()
         assert isinstance(pilot.app.screen, ChoicesDialog)
@@ -135,18 +137,18 @@ async def test_unsure_words_offer_choices_each_of_which_is_asked_about(
         await pilot.press("1")
         await pilot.pause()
         assert isinstance(pilot.app.screen, QuestionDialog)
-        assert steps(house) == []
+        assert steps(workspace) == []
         await pilot.press("y")
         await pilot.pause()
-        assert len(steps(house)) == 1
+        assert len(steps(workspace)) == 1
 
 
 @pytest.mark.parametrize("key", ["n", "escape"])
 async def test_none_of_the_choices_gives_the_words_back_and_leaves_the_keys(
-    run: Run, house: House, key: str
+    run: Run, workspace: Workspace, key: str
 ) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
         await pilot.pause()
         await pilot.press(key)
@@ -154,14 +156,14 @@ async def test_none_of_the_choices_gives_the_words_back_and_leaves_the_keys(
         assert bar_of(pilot).text == UNSURE
         await pilot.press("t")  # is still a key
         assert ears.state == "listening"
-        assert steps(house) == []
+        assert steps(workspace) == []
 
 
 async def test_keys_typed_before_the_choices_were_seen_choose_nothing(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars()
-    app = teaching(house, ears)
+    app = teaching(workspace, ears)
     app.clock = StillClock(1e9)
     async with run(app=app) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
@@ -171,18 +173,22 @@ async def test_keys_typed_before_the_choices_were_seen_choose_nothing(
         assert isinstance(pilot.app.screen, ChoicesDialog)
 
 
-async def test_words_that_are_nothing_are_said_and_put_into_the_bar(run: Run, house: House) -> None:
+async def test_words_that_are_nothing_are_said_and_put_into_the_bar(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("the weather"))
         await pilot.pause()
         assert "I do not know what 'the weather' means" in log_of(pilot)
         assert bar_of(pilot).text == "the weather"
 
 
-async def test_what_is_heard_overwrites_nothing_that_is_being_typed(run: Run, house: House) -> None:
+async def test_what_is_heard_overwrites_nothing_that_is_being_typed(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press(*"call")
         ears.hear(ears.say("the weather"))
         await pilot.pause()
@@ -190,43 +196,47 @@ async def test_what_is_heard_overwrites_nothing_that_is_being_typed(run: Run, ho
         assert "'the weather'" in log_of(pilot)
 
 
-async def test_stop_acts_at_once_also_while_a_question_is_open(run: Run, house: House) -> None:
+async def test_stop_acts_at_once_also_while_a_question_is_open(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=teaching(house, ears)) as pilot:
-        ears.hear(Stop("stop tangy"))
+    async with run(app=teaching(workspace, ears)) as pilot:
+        ears.hear(StopCommand("stop tangy"))
         await pilot.pause()
         assert "STOP: the simulated robot stands still" in log_of(pilot)
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
-        ears.hear(Stop("stop"))
+        ears.hear(StopCommand("stop"))
         await pilot.pause()
         assert isinstance(pilot.app.screen, TeachScreen)
         assert "Heard: stop." in log_of(pilot)
-        assert steps(house) == []
+        assert steps(workspace) == []
         assert pilot.app.screen.query_one(RoomView).going is None
 
 
-async def test_yes_and_no_are_heard_when_that_is_switched_on(run: Run, house: House) -> None:
+async def test_yes_and_no_are_heard_when_that_is_switched_on(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
         assert "Or say yes or no." in screen_text(pilot.app)
         ears.hear(Reply(False))
         await pilot.pause()
-        assert (steps(house), bar_of(pilot).text) == ([], "greet everyone")
+        assert (steps(workspace), bar_of(pilot).text) == ([], "greet everyone")
         assert "Heard: no." in log_of(pilot)
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
         ears.hear(Reply(True))
         await pilot.pause()
-        assert steps(house) == ["greeting"]
+        assert steps(workspace) == ["greeting"]
         assert "Heard: yes." in log_of(pilot)
 
 
-async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, house: House) -> None:
+async def test_a_yes_does_not_choose_and_a_no_chooses_none(run: Run, workspace: Workspace) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
         await pilot.pause()
         ears.hear(Reply(True))
@@ -247,10 +257,10 @@ def dialog_text(pilot: TangyPilot) -> str:
 
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (120, 40)])
 async def test_what_is_told_while_a_question_is_open_stands_in_it(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=teaching(house, ears), size=size) as pilot:
+    async with run(app=teaching(workspace, ears), size=size) as pilot:
         ears.hear(ears.say(UNSURE, sure=False))
         await pilot.pause()
         nothing, which = (
@@ -274,10 +284,10 @@ async def test_what_is_told_while_a_question_is_open_stands_in_it(
 
 
 async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars(answers=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"))
         await pilot.pause()
         ears.tell("I heard something, but no yes, no or stop.")
@@ -289,9 +299,11 @@ async def test_the_key_to_talk_takes_away_what_was_told_of_the_last_answer(
         assert "I heard something" not in dialog_text(pilot)
 
 
-async def test_a_choice_says_which_answers_it_takes_by_voice(run: Run, house: House) -> None:
+async def test_a_choice_says_which_answers_it_takes_by_voice(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         several = ears.say(UNSURE, sure=False)
         assert several.commands is not None
         ears.hear(several)
@@ -306,24 +318,28 @@ async def test_a_choice_says_which_answers_it_takes_by_voice(run: Run, house: Ho
         ears.hear(Reply(True))
         await pilot.pause()
         assert isinstance(pilot.app.screen, QuestionDialog)  # it is still asked about
-        assert steps(house) == []
+        assert steps(workspace) == []
 
 
-async def test_a_yes_that_no_question_waits_for_does_nothing(run: Run, house: House) -> None:
+async def test_a_yes_that_no_question_waits_for_does_nothing(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True, answers=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(Reply(True))
         await pilot.press("f1")
         ears.hear(Reply(True))
         await pilot.pause()
         assert isinstance(pilot.app.screen, HelpScreen)
         assert ears.asks
-        assert steps(house) == []
+        assert steps(workspace) == []
 
 
-async def test_what_was_said_while_a_question_was_open_comes_next(run: Run, house: House) -> None:
+async def test_what_was_said_while_a_question_was_open_comes_next(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"), ears.say("call number"))
         await pilot.pause()
         await pilot.press("y")
@@ -332,14 +348,14 @@ async def test_what_was_said_while_a_question_was_open_comes_next(run: Run, hous
         assert pilot.app.screen.behaviour == "call number"
         await pilot.press("y")
         await pilot.pause()
-        assert steps(house) == ["greeting", "call number"]
+        assert steps(workspace) == ["greeting", "call number"]
 
 
 async def test_a_recording_is_listened_to_only_when_a_command_is_due(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
     ears = FakeEars(live=False)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         ears.hear(ears.say("greet everyone"), ears.say("call number"))
         while not isinstance(pilot.app.screen, QuestionDialog):
             await pilot.pause(0.02)
@@ -358,9 +374,9 @@ async def test_a_recording_is_listened_to_only_when_a_command_is_due(
         assert "the recording is over" in line_of(pilot)
 
 
-async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, house: House) -> None:
+async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
         ears.be("speaking", "call a", 0.5)
         line._tick()
@@ -375,10 +391,10 @@ async def test_the_line_shows_level_words_and_what_is_wrong(run: Run, house: Hou
 
 
 async def test_the_line_is_drawn_only_when_it_shows_something_else(
-    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
         drawn: list[int] = []
         monkeypatch.setattr(line, "refresh", lambda *regions, **more: drawn.append(1))
@@ -395,14 +411,14 @@ async def test_the_line_is_drawn_only_when_it_shows_something_else(
         assert len(drawn) == 2
 
 
-async def test_names_are_listened_for_as_they_are_said_now(run: Run, house: House) -> None:
+async def test_names_are_listened_for_as_they_are_said_now(run: Run, workspace: Workspace) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("colon", *"phrases", "enter")
         await pilot.pause()
         assert isinstance(pilot.app.screen, PhrasesScreen)
         assert ears.asks  # commands are not for this screen
-        house.pronounce(house.people[0], "Y UW Z ER, W AH N")
+        workspace.pronounce(workspace.people[0], "Y UW Z ER, W AH N")
         before = len(ears.books)
         for worker in [one for one in pilot.app.workers if one.group == "read"]:
             await worker.wait()
@@ -413,8 +429,10 @@ async def test_names_are_listened_for_as_they_are_said_now(run: Run, house: Hous
         assert ears.books[-1].pronunciations() != ears.books[before - 1].pronunciations()
 
 
-async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(run: Run, house: House) -> None:
-    async with run(app=teaching(house, FakeEars())) as pilot:
+async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(
+    run: Run, workspace: Workspace
+) -> None:
+    async with run(app=teaching(workspace, FakeEars())) as pilot:
         await pilot.press("question_mark")
         await pilot.pause()
         assert "press t" in screen_text(pilot.app)
@@ -423,9 +441,11 @@ async def test_the_help_tells_how_to_talk_and_leads_to_the_phrases(run: Run, hou
         assert isinstance(pilot.app.screen, PhrasesScreen)
 
 
-async def test_the_ears_stay_with_the_program_and_end_with_it(run: Run, house: House) -> None:
+async def test_the_ears_stay_with_the_program_and_end_with_it(
+    run: Run, workspace: Workspace
+) -> None:
     ears = FakeEars(hands_free=True)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         await pilot.press("escape", "escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, HomeScreen)
@@ -443,7 +463,7 @@ async def test_the_ears_stay_with_the_program_and_end_with_it(run: Run, house: H
 
 
 async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
-    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tangy_profiles.errors import TangyError
 
@@ -453,7 +473,7 @@ async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
         raise TangyError("The microphone is in use.")
 
     monkeypatch.setattr(FakeEars, "__anext__", fail)
-    async with run(app=teaching(house, ears)) as pilot:
+    async with run(app=teaching(workspace, ears)) as pilot:
         assert "The microphone is in use." in log_of(pilot)
         await pilot.press("colon", *"greet everyone", "enter")
         await pilot.pause()
@@ -476,13 +496,13 @@ async def test_a_microphone_that_fails_is_told_and_typing_goes_on(
 )
 async def test_how_hearing_looks(
     run: Run,
-    house: House,
+    workspace: Workspace,
     size: tuple[int, int],
     shows: str,
     picture: Callable[[App[None]], None],
 ) -> None:
     ears = FakeEars(answers=shows == "no answer")
-    async with run(app=teaching(house, ears), size=size) as pilot:
+    async with run(app=teaching(workspace, ears), size=size) as pilot:
         line = pilot.app.screen.query_one(MicrophoneLine)
         if shows == "words":
             ears.be("speaking", "call the next", 0.6)

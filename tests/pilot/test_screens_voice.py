@@ -9,7 +9,7 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.voice import VoicePreference
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui import speaking
 from tangy_tui.ui.program import Program
@@ -43,24 +43,24 @@ def voices(monkeypatch: pytest.MonkeyPatch) -> list[FakeVoice]:
     return made
 
 
-def teaching(house: House, *, voice: bool = True, ears: FakeEars | None = None) -> Program:
+def teaching(workspace: Workspace, *, voice: bool = True, ears: FakeEars | None = None) -> Program:
     """Make the program with a voice and the teaching screen open."""
 
     async def start(started: Program) -> None:
-        await started.push_screen(TeachScreen(house, house.teaching("ann", 1)))
+        await started.push_screen(TeachScreen(workspace, workspace.teaching("ann", 1)))
 
     real = None if ears is None else ears.ears
-    return Program(house, start, clock=StillClock(), voice=voice, ears=real)
+    return Program(workspace, start, clock=StillClock(), voice=voice, ears=real)
 
 
-def playing(house: House, policy: Policy, speed: float) -> Program:
+def playing(workspace: Workspace, policy: Policy, speed: float) -> Program:
     """Make the program with a voice and the playing screen open."""
 
     async def start(started: Program) -> None:
-        supervision = house.supervision(policy, 5)
-        await started.push_screen(PlayScreen(house, supervision, speed=speed))
+        supervision = workspace.supervision(policy, 5)
+        await started.push_screen(PlayScreen(workspace, supervision, speed=speed))
 
-    return Program(house, start, clock=StillClock(), voice=True)
+    return Program(workspace, start, clock=StillClock(), voice=True)
 
 
 async def do(pilot: TangyPilot, words: str) -> None:
@@ -81,10 +81,10 @@ async def until(pilot: TangyPilot, there: Callable[[], bool]) -> None:
 
 
 async def test_what_tangy_says_while_teaching_is_spoken(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
-    house.prefer_voice(house.people[2], VoicePreference(100, "en-gb"))
-    async with run(app=teaching(house)) as pilot:
+    workspace.prefer_voice(workspace.people[2], VoicePreference(100, "en-gb"))
+    async with run(app=teaching(workspace)) as pilot:
         await do(pilot, "greet everyone")
         assert len(voices) == 1
         assert voices[0].lines[0].startswith("Hello, everybody")
@@ -99,9 +99,9 @@ async def test_what_tangy_says_while_teaching_is_spoken(
 
 
 async def test_a_new_step_cuts_what_was_said_for_the_last(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=teaching(house)) as pilot:
+    async with run(app=teaching(workspace)) as pilot:
         await do(pilot, "greet everyone")
         await do(pilot, "call number")
         await until(pilot, lambda: len(voices[0].lines) == 2)
@@ -109,10 +109,10 @@ async def test_a_new_step_cuts_what_was_said_for_the_last(
 
 
 async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
-    run: Run, house: House, voices: list[FakeVoice], monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, voices: list[FakeVoice], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(speaking, "GAP", 0.05)
-    async with run(app=teaching(house)) as pilot:
+    async with run(app=teaching(workspace)) as pilot:
         assert isinstance(pilot.app, Program)
         for line in ("one", "two", "three", "four"):
             pilot.app.speaker.interject(line, VoicePreference())
@@ -121,9 +121,9 @@ async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
 
 
 async def test_nothing_is_made_before_it_is_switched_on(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=teaching(house, voice=False), notifications=True) as pilot:
+    async with run(app=teaching(workspace, voice=False), notifications=True) as pilot:
         await do(pilot, "greet everyone")
         assert voices == []
         await pilot.press("escape", "v")
@@ -140,15 +140,15 @@ async def test_nothing_is_made_before_it_is_switched_on(
 
 
 async def test_the_palette_switches_it_on_too(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=teaching(house, voice=False)) as pilot:
+    async with run(app=teaching(workspace, voice=False)) as pilot:
         titles = [c.title for c in pilot.app.get_system_commands(pilot.app.screen)]
         assert titles.count("Voice on or off") == 1
 
 
 async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
-    run: Run, house: House, monkeypatch: pytest.MonkeyPatch
+    run: Run, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def silent(
         activity: Activity,
@@ -159,7 +159,7 @@ async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
         return FakeVoice(begin, end, SILENT)
 
     monkeypatch.setattr(speaking.Speaker.__init__, "__defaults__", (silent,))
-    async with run(app=teaching(house), notifications=True) as pilot:
+    async with run(app=teaching(workspace), notifications=True) as pilot:
         assert screen_text(pilot.app).count("espeak-ng is not") == 1
         await do(pilot, "greet everyone")
         assert "Hello, everybody" in screen_text(pilot.app)
@@ -168,10 +168,10 @@ async def test_where_nothing_can_speak_that_is_said_once_and_the_text_is_shown(
 
 
 async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_silent(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears=ears)) as pilot:
+    async with run(app=teaching(workspace, ears=ears)) as pilot:
         await pilot.press("colon")
         await do(pilot, "greet everyone")
         assert ears.state == "shut"
@@ -187,10 +187,10 @@ async def test_the_microphone_is_shut_while_tangy_speaks_and_t_lets_it_fall_sile
 
 
 async def test_nobody_is_interrupted_who_is_talking_to_tangy(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
     ears = FakeEars()
-    async with run(app=teaching(house, ears=ears)) as pilot:
+    async with run(app=teaching(workspace, ears=ears)) as pilot:
         await pilot.press("colon", "ctrl+t")
         await do(pilot, "greet everyone")
         assert voices[0].lines == []
@@ -198,9 +198,9 @@ async def test_nobody_is_interrupted_who_is_talking_to_tangy(
 
 
 async def test_stop_and_leaving_let_it_fall_silent(
-    run: Run, house: House, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=teaching(house)) as pilot:
+    async with run(app=teaching(workspace)) as pilot:
         await do(pilot, "greet everyone")
         assert voices[0].speaking
         await pilot.press("ctrl+x")
@@ -214,13 +214,13 @@ async def test_stop_and_leaving_let_it_fall_silent(
 
 
 async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
-    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=playing(house, policy, 1)) as pilot:
+    async with run(app=playing(workspace, policy, 1)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
-        assert voices[0].prepared == opening_lines(house.activity)
-        assert len(voices[0].prepared) > len(house.activity.deck.numbers)
+        assert voices[0].prepared == opening_lines(workspace.activity)
+        assert len(voices[0].prepared) > len(workspace.activity.deck.numbers)
         steps = screen.query_one(Transcript)
         await until(pilot, lambda: steps.count == 1)
         screen._nudge.set()  # the time of the step has passed
@@ -238,9 +238,9 @@ async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
 
 
 async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
-    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=playing(house, policy, 1)) as pilot:
+    async with run(app=playing(workspace, policy, 1)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
         steps = screen.query_one(Transcript)
@@ -255,9 +255,9 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
 
 
 async def test_a_game_that_is_skipped_to_its_end_is_silent(
-    run: Run, house: House, policy: Policy, voices: list[FakeVoice]
+    run: Run, workspace: Workspace, policy: Policy, voices: list[FakeVoice]
 ) -> None:
-    async with run(app=playing(house, policy, 1)) as pilot:
+    async with run(app=playing(workspace, policy, 1)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
         await until(pilot, lambda: bool(voices[0].lines))
@@ -267,17 +267,17 @@ async def test_a_game_that_is_skipped_to_its_end_is_silent(
         assert not voices[0].speaking
 
 
-def test_what_is_made_ready_names_nobody(house: House) -> None:
-    lines = opening_lines(house.activity)
+def test_what_is_made_ready_names_nobody(workspace: Workspace) -> None:
+    lines = opening_lines(workspace.activity)
     assert all("{" not in line and line for line in lines)
-    label = house.activity.deck.label
-    assert all(any(label(n) in line for line in lines) for n in house.activity.deck.numbers)
+    label = workspace.activity.deck.label
+    assert all(any(label(n) in line for line in lines) for n in workspace.activity.deck.numbers)
 
 
 async def test_the_program_does_not_wait_for_a_voice_to_be_made_ready(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    async with run(app=teaching(house, voice=False)) as pilot:
+    async with run(app=teaching(workspace, voice=False)) as pilot:
         assert isinstance(pilot.app, Program)
         pilot.app.speaker.prepare(("a", "b"))
         await asyncio.sleep(0)

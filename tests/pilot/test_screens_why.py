@@ -12,8 +12,8 @@ from textual.app import App
 
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.state import Situation
-from tangy_tui.app.workspace import House
-from tangy_tui.interaction.persuasion import Choice
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.persuasion import StrategyChoice
 from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import load_policy
@@ -30,56 +30,58 @@ TINY = (60, 18)
 
 
 @pytest.fixture
-def house(taught: Path) -> Iterator[House]:
-    """A house in which three demonstrations were given and learnt from."""
-    opened = House(taught)
+def workspace(taught: Path) -> Iterator[Workspace]:
+    """A workspace in which three demonstrations were given and learnt from."""
+    opened = Workspace(taught)
     yield opened
     opened.close()
 
 
-def why_of(house: House, behaviour: str) -> Why:
+def why_of(workspace: Workspace, behaviour: str) -> Why:
     """Return the grounds of the first situation in which something is done."""
-    policy, _ = load_policy(house.store, house.activity)
-    shown = read_library(house.store, house.activity.name).demonstrations
-    expected = house.activity.expected
-    situation = next(s for s in house.activity.situations if expected[s] == behaviour)
+    policy, _ = load_policy(workspace.store, workspace.activity)
+    shown = read_library(workspace.store, workspace.activity.name).demonstrations
+    expected = workspace.activity.expected
+    situation = next(s for s in workspace.activity.situations if expected[s] == behaviour)
     return explain(policy, shown, situation)
 
 
-def a_choice(house: House) -> Choice:
+def a_choice(workspace: Workspace) -> StrategyChoice:
     """Return a choice among all strategies, as Thompson sampling makes it."""
     rng = Random(3)
-    beliefs = {s: Beta(2.0 + n, 1.0 + n / 2) for n, s in enumerate(house.activity.strategies)}
+    beliefs = {s: Beta(2.0 + n, 1.0 + n / 2) for n, s in enumerate(workspace.activity.strategies)}
     draws = {s: rng.betavariate(b.alpha, b.beta) for s, b in beliefs.items()}
-    return Choice("user2", max(draws, key=lambda s: draws[s]), draws, beliefs, "Thompson sampling")
+    return StrategyChoice(
+        "user2", max(draws, key=lambda s: draws[s]), draws, beliefs, "Thompson sampling"
+    )
 
 
-def showing(house: House, why: Why, choice: Choice | None = None) -> Program:
+def showing(workspace: Workspace, why: Why, choice: StrategyChoice | None = None) -> Program:
     """Make the program with the dialog open."""
 
     async def start(program: Program) -> None:
-        await program.push_screen(WhyDialog(house, why, choice))
+        await program.push_screen(WhyDialog(workspace, why, choice))
 
-    return Program(house, start, clock=StillClock())
+    return Program(workspace, start, clock=StillClock())
 
 
-def persuading(house: House) -> str:
+def persuading(workspace: Workspace) -> str:
     """Return a behaviour that persuades."""
-    return next(b.name for b in house.activity.behaviours.values() if b.persuades)
+    return next(b.name for b in workspace.activity.behaviours.values() if b.persuades)
 
 
 @pytest.mark.parametrize("size", [TINY, SMALL, LARGE], ids=["tiny", "small", "large"])
 async def test_votes_come_first_and_then_the_draws(
-    run: Run, house: House, size: tuple[int, int]
+    run: Run, workspace: Workspace, size: tuple[int, int]
 ) -> None:
-    why, choice = why_of(house, persuading(house)), a_choice(house)
-    async with run(app=showing(house, why, choice), size=size) as pilot:
+    why, choice = why_of(workspace, persuading(workspace)), a_choice(workspace)
+    async with run(app=showing(workspace, why, choice), size=size) as pilot:
         await pilot.pause()
         seen = screen_text(pilot.app)
         for _ in range(30):
             await pilot.press("down")
             seen += screen_text(pilot.app)
-        assert house.activity.in_words(why.situation).partition(" · ")[0] in seen
+        assert workspace.activity.in_words(why.situation).partition(" · ")[0] in seen
         assert "Votes of the trees" in seen
         assert "Thompson sampling" in seen
         for strategy, number in choice.draws.items():
@@ -88,9 +90,11 @@ async def test_votes_come_first_and_then_the_draws(
         assert f"It rests on {len(why.rests_on)} step" in seen
 
 
-async def test_enter_opens_the_step_where_it_was_demonstrated(run: Run, house: House) -> None:
-    why = why_of(house, persuading(house))
-    async with run(app=showing(house, why)) as pilot:
+async def test_enter_opens_the_step_where_it_was_demonstrated(
+    run: Run, workspace: Workspace
+) -> None:
+    why = why_of(workspace, persuading(workspace))
+    async with run(app=showing(workspace, why)) as pilot:
         await pilot.press("down", "enter")
         await pilot.pause()
         screen: Any = pilot.app.screen
@@ -99,7 +103,9 @@ async def test_enter_opens_the_step_where_it_was_demonstrated(run: Run, house: H
         assert page.chosen is not None
         step = why.steps[page.chosen]
         assert screen.query_one(Transcript).chosen == step.number
-        assert f"{step.number} {house.activity.in_words(why.situation)}" in screen_text(pilot.app)
+        assert f"{step.number} {workspace.activity.in_words(why.situation)}" in screen_text(
+            pilot.app
+        )
         await pilot.press("escape")
         await pilot.pause()
         assert isinstance(pilot.app.screen, WhyDialog)
@@ -109,13 +115,13 @@ async def test_enter_opens_the_step_where_it_was_demonstrated(run: Run, house: H
 
 
 async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
-    run: Run, house: House
+    run: Run, workspace: Workspace
 ) -> None:
-    policy, _ = load_policy(house.store, house.activity)
-    shown = read_library(house.store, house.activity.name).demonstrations
+    policy, _ = load_policy(workspace.store, workspace.activity)
+    shown = read_library(workspace.store, workspace.activity.name).demonstrations
     never = next(s for s, d in policy.table.items() if not d.seen and s.stage == "help")
     why = explain(policy, shown, Situation(*never))
-    async with run(app=showing(house, why), size=LARGE) as pilot:
+    async with run(app=showing(workspace, why), size=LARGE) as pilot:
         await pilot.pause()
         assert "Nobody has shown Tangy what to do here" in screen_text(pilot.app)
         assert "Shown nearby" in screen_text(pilot.app)
@@ -123,18 +129,18 @@ async def test_what_was_never_shown_says_so_and_where_the_trees_guess_from(
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])
 async def test_how_it_looks(
-    run: Run, house: House, size: tuple[int, int], picture: Callable[[App[None]], None]
+    run: Run, workspace: Workspace, size: tuple[int, int], picture: Callable[[App[None]], None]
 ) -> None:
-    why = why_of(house, persuading(house))
+    why = why_of(workspace, persuading(workspace))
     async with run(size=size) as pilot:  # above an empty screen, so that it alone is compared
-        await pilot.app.push_screen(WhyDialog(house, why, a_choice(house)))
+        await pilot.app.push_screen(WhyDialog(workspace, why, a_choice(workspace)))
         await pilot.pause()
         picture(pilot.app)
 
 
-async def test_it_can_be_read_in_plain_letters(run: Run, house: House) -> None:
-    app = showing(house, why_of(house, persuading(house)), a_choice(house))
-    ascii_app = Program(house, app._start, clock=StillClock(), kind=TerminalKind(ascii=True))
+async def test_it_can_be_read_in_plain_letters(run: Run, workspace: Workspace) -> None:
+    app = showing(workspace, why_of(workspace, persuading(workspace)), a_choice(workspace))
+    ascii_app = Program(workspace, app._start, clock=StillClock(), kind=TerminalKind(ascii=True))
     async with run(app=ascii_app) as pilot:
         await pilot.pause()
         assert pilot.text().isascii()

@@ -17,7 +17,7 @@ from tangy_profiles.room import load_room
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.monitoring.rules import check_rules
-from tangy_tui.speech.activity_check import Checked, check_activity
+from tangy_tui.speech.activity_check import CheckedFile, check_activity
 from tangy_tui.speech.lexicon import Lexicon
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -35,7 +35,7 @@ advice = ["Look."]
 """
 
 
-def checked(folder: Path, text: str) -> Checked:
+def checked(folder: Path, text: str) -> CheckedFile:
     path = folder / "mine.toml"
     path.write_text(text, encoding="utf-8")
     people = load_room().placed(load_people(4))

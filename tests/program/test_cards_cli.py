@@ -11,7 +11,7 @@ import cv2
 import pytest
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, Face, numbers_of
+from tangy_profiles.card_face import HEIGHT, TAGS, WIDTH, CardLayout, numbers_of
 from tangy_tui.pages.card_sheets import card_sheets
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -59,7 +59,7 @@ def test_a_deck_is_another_with_another_seed_and_the_same_with_the_same(
         *(2, 30, 42, 52, 67, 11, 22, 39, 59, 61, 8, 28, 37, 49, 71),
         *(10, 16, 44, 53, 65, 15, 19, 45, 50, 73),
     )  # printed cards are in people's hands: they may not change
-    assert Face(lanterns.deck).grid.right <= WIDTH
+    assert CardLayout(lanterns.deck).grid.right <= WIDTH
 
 
 @pytest.mark.parametrize(("paper", "sheets"), [("a4", 3), ("letter", 3), ("a5", 4)])

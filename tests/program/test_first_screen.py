@@ -13,17 +13,17 @@ PAINT = """
 import asyncio, json, sys
 from pathlib import Path
 import tangy_tui
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.ui.program import Program
 
 async def paint():
-    with_house = House(Path(sys.argv[1]))
-    app = Program(with_house)
+    with_workspace = Workspace(Path(sys.argv[1]))
+    app = Program(with_workspace)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
         strips = app.screen._compositor.render_strips()
         text = "\\n".join("".join(s.text for s in strip) for strip in strips)
-    with_house.close()
+    with_workspace.close()
     return text
 
 text = asyncio.run(paint())

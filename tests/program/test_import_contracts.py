@@ -71,7 +71,7 @@ def test_the_sources_as_they_are_keep_every_contract(copy: Path) -> None:
         ),
     ],
 )
-def test_an_import_up_the_house_is_refused_by_name(
+def test_an_import_to_a_layer_above_is_refused_by_name(
     copy: Path, module: str, line: str, named: str
 ) -> None:
     adds(copy / module, line)

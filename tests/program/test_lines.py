@@ -18,10 +18,10 @@ from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import belief_lines, game_lines, play_by_lines
 from tangy_tui.console.teaching import TeachingLines, command_line
-from tangy_tui.interaction.facilitation import Learnt
+from tangy_tui.interaction.facilitation import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
@@ -31,34 +31,40 @@ Tangy = Callable[..., CompletedProcess[str]]
 
 
 def told(
-    house: House, *lines: str, teacher: str = "Ada", resume: bool = True, again: Again | None = None
+    workspace: Workspace,
+    *lines: str,
+    teacher: str = "Ada",
+    resume: bool = True,
+    again: Again | None = None,
 ) -> list[str]:
     """Hold a session in which these lines are typed; return what was said."""
     typed = iter(lines)
     said: list[str] = []
-    teaching = house.teaching(teacher, 1, again=again)
+    teaching = workspace.teaching(teacher, 1, again=again)
     session = TeachingLines(teaching, lambda: next(typed, None), said.append)
     asyncio.run(session.run(resume=resume))
     return said
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    opened = House(tmp_path / "data")
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    opened = Workspace(tmp_path / "data")
     yield opened
     opened.close()
 
 
-def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(house: House) -> None:
-    said = told(house)
+def test_a_session_begins_with_what_can_be_said_and_where_everybody_is(
+    workspace: Workspace,
+) -> None:
+    said = told(workspace)
     assert said[0].startswith("Teaching Bingo. Commands: ")
     assert said[1] == "A new demonstration by Ada (game 1)."
     assert said[2] == ("Now: start · nobody asks. Tangy is at the front. Nobody asks for help.")
     assert len(said) == 3, "looking in leaves nothing to go on from"
 
 
-def test_the_question_names_the_behaviour_and_only_y_executes_it(house: House) -> None:
-    said = told(house, "greet everyone", "", "yep", "ok", "Y")
+def test_the_question_names_the_behaviour_and_only_y_executes_it(workspace: Workspace) -> None:
+    said = told(workspace, "greet everyone", "", "yep", "ok", "Y")
     question = "Did you say: greet everyone? Type Y to execute it or N for a new command."
     assert said[3] == question
     assert said[4:6] == ["Please answer Y to execute it, or N to give a new command."] * 2
@@ -67,12 +73,12 @@ def test_the_question_names_the_behaviour_and_only_y_executes_it(house: House) -
 
 
 @pytest.mark.parametrize("yes", ["y", "Y", "yes", "Yes", " YES "])
-def test_yes_in_full_is_taken_as_well(house: House, yes: str) -> None:
-    assert "1. start · nobody asks -> greeting" in told(house, "greet everyone", yes)
+def test_yes_in_full_is_taken_as_well(workspace: Workspace, yes: str) -> None:
+    assert "1. start · nobody asks -> greeting" in told(workspace, "greet everyone", yes)
 
 
-def test_help_at_the_question_says_what_can_be_answered(house: House) -> None:
-    said = told(house, "tell everyone goodbye", "help", "n", "greet everyone", "?")
+def test_help_at_the_question_says_what_can_be_answered(workspace: Workspace) -> None:
+    said = told(workspace, "tell everyone goodbye", "help", "n", "greet everyone", "?")
     at = said.index("Please answer Y to execute it, or N to give a new command.")
     assert [line.partition(":")[0] for line in said[at + 1 : at + 5]] == [
         "  y", "  n", "  1 to 2", "  quit",
@@ -82,40 +88,44 @@ def test_help_at_the_question_says_what_can_be_answered(house: House) -> None:
 
 
 @pytest.mark.parametrize("answer", ["y", "N", "yes", "no"])
-def test_an_answer_without_a_question_is_told_so(house: House, answer: str) -> None:
-    assert told(house, answer)[-1] == "There is no question open: give a command."
+def test_an_answer_without_a_question_is_told_so(workspace: Workspace, answer: str) -> None:
+    assert told(workspace, answer)[-1] == "There is no question open: give a command."
 
 
 @pytest.mark.parametrize(
     "words", ["stop the robot", "Emergency stop!", "make it stop", "stop the bingo game"]
 )
-def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(house: House, words: str) -> None:
+def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(
+    workspace: Workspace, words: str
+) -> None:
     stands = "STOP: the simulated robot stands still until the next command is carried out."
-    assert told(house, words)[-1] == stands
-    said = told(house, "greet everyone", words, "y")
+    assert told(workspace, words)[-1] == stands
+    said = told(workspace, "greet everyone", words, "y")
     assert said[-2:] == [stands, "There is no question open: give a command."]
     assert not any(line.startswith("1. ") for line in said)
 
 
 @pytest.mark.parametrize("words", ["stop teasing her", "stop the music", "don't stop"])
-def test_what_only_mentions_stopping_is_a_command_like_another(house: House, words: str) -> None:
-    assert not any(line.startswith("STOP") for line in told(house, words))
+def test_what_only_mentions_stopping_is_a_command_like_another(
+    workspace: Workspace, words: str
+) -> None:
+    assert not any(line.startswith("STOP") for line in told(workspace, words))
 
 
 @pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
-def test_again_wants_a_step(house: House, words: str) -> None:
-    assert told(house, words)[-1] == "Say which step: again 5 goes back before step 5."
+def test_again_wants_a_step(workspace: Workspace, words: str) -> None:
+    assert told(workspace, words)[-1] == "Say which step: again 5 goes back before step 5."
 
 
-def test_n_gives_the_words_back(house: House) -> None:
+def test_n_gives_the_words_back(workspace: Workspace) -> None:
     for no in ("n", "N", "no", "No"):
-        said = told(house, "greet everyone", no)
+        said = told(workspace, "greet everyone", no)
         assert "Not done: greet everyone. Give a new command." in said
         assert not any(line.startswith("1. ") for line in said)
 
 
-def test_alternatives_are_chosen_by_number_and_asked_about_again(house: House) -> None:
-    said = told(house, "tell everyone goodbye", "9", "1", "1")
+def test_alternatives_are_chosen_by_number_and_asked_about_again(workspace: Workspace) -> None:
+    said = told(workspace, "tell everyone goodbye", "9", "1", "1")
     asked = [line.partition("?")[0] for line in said if line.startswith("Did you say: ")]
     goodbye, joke = "Did you say: say goodbye", "Did you say: tell a joke"
     assert asked == [goodbye, joke, goodbye], "nothing is executed unasked"
@@ -127,45 +137,45 @@ def test_alternatives_are_chosen_by_number_and_asked_about_again(house: House) -
     assert said[10] == "  1 instead: say goodbye"
 
 
-def test_undo_where_help_and_quit_are_understood(house: House) -> None:
+def test_undo_where_help_and_quit_are_understood(workspace: Workspace) -> None:
     typed = ("undo", "greet everyone", "y", "where", "help", "undo", "quit", "tell a joke")
-    said = told(house, *typed)
+    said = told(workspace, *typed)
     assert "There is no step to undo." in said
     assert "Step 1 is undone: greeting." in said
     assert said.count("Now: facilitate · nobody asks. Tangy is at the front. "
                       "Nobody asks for help.") == 2  # fmt: skip
-    for behaviour in house.activity.behaviours.values():
+    for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
     assert not any("joke?" in line for line in said), "after quit nothing is read"
 
 
-def test_a_session_that_is_left_is_gone_on_with(house: House) -> None:
-    said = told(house, "greet everyone", "y", "next number", "y", "quit")
+def test_a_session_that_is_left_is_gone_on_with(workspace: Workspace) -> None:
+    said = told(workspace, "greet everyone", "y", "next number", "y", "quit")
     assert said[-1] == (
         "Left after 2 steps. What you confirmed is kept: `tangy teach` goes on from here."
     )
-    assert told(house)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
-    assert told(house, resume=False)[1].startswith("A new demonstration by Ada")
+    assert told(workspace)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
+    assert told(workspace, resume=False)[1].startswith("A new demonstration by Ada")
 
 
-def test_what_is_not_in_the_log_is_not_said_to_be_kept(house: House) -> None:
-    told(house, "greet everyone", "y", "next number", "y", "quit")
-    kept = told(house, "quit")
+def test_what_is_not_in_the_log_is_not_said_to_be_kept(workspace: Workspace) -> None:
+    told(workspace, "greet everyone", "y", "next number", "y", "quit")
+    kept = told(workspace, "quit")
     assert kept[-1].startswith("Left after 2 steps.")
-    first = next(house.store.events()).body["demonstration"]
-    left = told(house, "quit", teacher="Bea", again=Again(first, 1))
+    first = next(workspace.store.events()).body["demonstration"]
+    left = told(workspace, "quit", teacher="Bea", again=Again(first, 1))
     assert left[-1] == "You confirmed nothing, so nothing was changed."
-    assert told(house, "quit", teacher="Bea")[1].startswith("A new demonstration by Bea")
-    gone_on = told(house, "next number", "y", "quit", teacher="Bea", again=Again(first, 1))
+    assert told(workspace, "quit", teacher="Bea")[1].startswith("A new demonstration by Bea")
+    gone_on = told(workspace, "next number", "y", "quit", teacher="Bea", again=Again(first, 1))
     assert gone_on[-1].startswith("Left after 2 steps.")
 
 
-def test_what_is_missing_stands_under_a_heading(house: House) -> None:
+def test_what_is_missing_stands_under_a_heading(workspace: Workspace) -> None:
     def seen(*lines: str) -> list[str]:
         said: list[str] = []
         typed = iter(["seen"])
         session = TeachingLines(
-            house.teaching("Ada", 1),
+            workspace.teaching("Ada", 1),
             lambda: next(typed, None),
             said.append,
             seen=lambda: list(lines),
@@ -199,16 +209,18 @@ def test_the_command_that_is_told_goes_on_where_it_was_left(
         assert "Going on with " in again
 
 
-def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(house: House) -> None:
-    said = told(house, "qwertz \x1b[2J")
+def test_words_that_nobody_knows_are_given_back_with_what_was_perhaps_meant(
+    workspace: Workspace,
+) -> None:
+    said = told(workspace, "qwertz \x1b[2J")
     assert said[3].startswith("I do not know what ")
     assert said[3].isprintable()
-    near = told(house, "sing and call")
+    near = told(workspace, "sing and call")
     assert any("Did you mean" in line or "Did you say" in line for line in near[3:])
 
 
-def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(house: House) -> None:
-    teaching = house.teaching("Ada", 1)
+def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Workspace) -> None:
+    teaching = workspace.teaching("Ada", 1)
     said: list[str] = []
     answers: list[str] = []
 
@@ -220,8 +232,8 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(house: House) -> 
             return answers.pop()
         if teaching.question is not None:
             return "y"
-        expected = house.activity.expected[teaching.world.observe().situation]
-        return house.activity.behaviours[expected].phrases[0]
+        expected = workspace.activity.expected[teaching.world.observe().situation]
+        return workspace.activity.behaviours[expected].phrases[0]
 
     session = TeachingLines(
         teaching,
@@ -247,18 +259,22 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(house: House) -> 
 @given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))
 def test_whatever_is_typed_is_answered_in_printable_lines(lines: list[str]) -> None:
     with TemporaryDirectory() as folder:
-        house = House(Path(folder))
-        with house.store.transaction():
-            said = told(house, *lines)
-        house.close()
+        workspace = Workspace(Path(folder))
+        with workspace.store.transaction():
+            said = told(workspace, *lines)
+        workspace.close()
     assert all(line.isprintable() for line in said)
 
 
-def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, cover: Cover) -> None:
-    policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
-    supervision = house.supervision(policy, 3)
+def test_games_are_told_step_by_step_with_responses_and_beliefs(
+    workspace: Workspace, cover: Cover
+) -> None:
+    policy = learn_policy(
+        workspace.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5)
+    )
+    supervision = workspace.supervision(policy, 3)
     said: list[str] = []
-    play_by_lines(supervision, 3, house.name, said.append)
+    play_by_lines(supervision, 3, workspace.name, said.append)
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. start · nobody asks -> greeting, 100% of the votes"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
@@ -266,18 +282,20 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(house: House, co
     learnt = [line for line in said if " complied (" in line or late in line]
     assert any(late in line for line in learnt)
     assert all("best so far: " in line for line in learnt)
-    assert said[-4:] == belief_lines(supervision, house.name)
+    assert said[-4:] == belief_lines(supervision, workspace.name)
     assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
     assert all(line.isprintable() for line in said)
 
 
-def test_what_counts_as_no_is_said_to(house: House, cover: Cover) -> None:
-    policy = learn_policy(house.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5))
-    supervision = house.supervision(policy, 3)
+def test_what_counts_as_no_is_said_to(workspace: Workspace, cover: Cover) -> None:
+    policy = learn_policy(
+        workspace.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5)
+    )
+    supervision = workspace.supervision(policy, 3)
 
     def line(*, followed: bool, complied: bool) -> str:
         response = Response("user2", "praise", followed, complied, 12.0)
-        return game_lines(Learnt(response, Beta(1, 2)), supervision, house.name)[0]
+        return game_lines(BeliefUpdated(response, Beta(1, 2)), supervision, workspace.name)[0]
 
     assert line(followed=True, complied=True).startswith("   User 2 complied (praise now ")
     late = "   User 2 followed, but late, which counts as no (praise now "
@@ -286,31 +304,31 @@ def test_what_counts_as_no_is_said_to(house: House, cover: Cover) -> None:
     assert line(followed=False, complied=False).startswith(never)
 
 
-def test_a_stopped_game_says_why(house: House, cover: Cover) -> None:
+def test_a_stopped_game_says_why(workspace: Workspace, cover: Cover) -> None:
     shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
-    policy = learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
+    policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
     said: list[str] = []
-    play_by_lines(house.supervision(policy, 3), 1, house.name, said.append)
+    play_by_lines(workspace.supervision(policy, 3), 1, workspace.name, said.append)
     stopped = next(line for line in said if line.startswith("The game stopped after "))
     assert "Nobody has shown Tangy what to do here yet: end · somebody asks." in stopped
 
 
-def asked(house: House, *lines: str, knows: bool = True) -> list[str]:
+def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
     """Play a game by a policy that was not shown its first situation; return what is said."""
-    teaching = house.teaching("Ada", 1)
+    teaching = workspace.teaching("Ada", 1)
     teaching.begin(resume=False)
     for phrase in ("greet everyone", "next number"):
         teaching.apply(Say(phrase))
         teaching.apply(Reply(yes=True))
     present = teaching.demonstration
     shown = [replace(present, steps=present.steps[1:])]
-    policy = learn_policy(house.activity, shown, settings=ForestSettings(trees=5))
+    policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
     typed = iter(lines)
     said: list[str] = []
     play_by_lines(
-        house.supervision(policy, 3, asks=True),
+        workspace.supervision(policy, 3, asks=True),
         1,
-        house.name,
+        workspace.name,
         said.append,
         lambda: next(typed, None),
         "Cleo",
@@ -321,57 +339,59 @@ def asked(house: House, *lines: str, knows: bool = True) -> list[str]:
     return said[2:stopped]
 
 
-def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(house: House) -> None:
+def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
+    workspace: Workspace,
+) -> None:
     stands = "STOP: Tangy stands still until you say what it should do."
-    assert asked(house, "stop the robot") == [stands]
-    *_, said, last = asked(house, "greet everyone", "stop the bingo", "y")
+    assert asked(workspace, "stop the robot") == [stands]
+    *_, said, last = asked(workspace, "greet everyone", "stop the bingo", "y")
     assert (said, last) == (stands, "There is no question open: give a command.")
 
 
-def test_while_tangy_asks_it_says_why_and_what_it_sees(house: House) -> None:
-    why, *others = asked(house, "why", "Where")
+def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> None:
+    why, *others = asked(workspace, "why", "Where")
     assert why == "Situation: start · nobody asks."
     assert "Nobody has shown Tangy what to do here: it does not act, it asks." in others
     assert "Votes of the trees: call number 100%." in others
     assert others[-1] == "Now: start · nobody asks. Tangy is at the front. Nobody asks for help."
 
 
-def test_without_the_demonstrations_it_still_says_the_votes(house: House) -> None:
-    assert asked(house, "why", knows=False) == [
+def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace) -> None:
+    assert asked(workspace, "why", knows=False) == [
         "Nobody has shown Tangy what to do here yet: start · nobody asks.",
         "Votes of the trees: call number 100%.",
     ]
 
 
-def test_while_tangy_asks_there_is_help_for_every_word(house: House) -> None:
+def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> None:
     answer = "Answer with a behaviour in words, or type one of: where, why, help, quit."
-    said = asked(house, "help")
+    said = asked(workspace, "help")
     assert said[0] == answer
-    for behaviour in house.activity.behaviours.values():
+    for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
     assert [line.partition(":")[0] for line in said[-3:]] == ["  where", "  why", "  quit"]
-    assert asked(house, "qwertz")[-1] == answer
-    assert asked(house, "yes") == ["There is no question open: give a command."]
+    assert asked(workspace, "qwertz")[-1] == answer
+    assert asked(workspace, "yes") == ["There is no question open: give a command."]
 
 
 @pytest.mark.parametrize("word", ["undo", "redo", "again 3"])
-def test_while_tangy_asks_nothing_is_taken_back(house: House, word: str) -> None:
+def test_while_tangy_asks_nothing_is_taken_back(workspace: Workspace, word: str) -> None:
     does = {"again 3": "show again"}.get(word, word)
-    assert asked(house, word) == [f"There is nothing to {does} here: answer, or quit."]
+    assert asked(workspace, word) == [f"There is nothing to {does} here: answer, or quit."]
 
 
-def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(house: House) -> None:
-    said = asked(house, "greet everyone", "perhaps", "help", "YES", "quit")
+def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: Workspace) -> None:
+    said = asked(workspace, "greet everyone", "perhaps", "help", "YES", "quit")
     assert said[0].startswith("Did you say: greet everyone?")
     assert said[1] == said[2] == "Please answer Y to execute it, or N to give a new command."
     assert said[3].startswith("  y: ")
     assert "1. start · nobody asks -> greeting, as Cleo said" in said, "not by votes for another"
-    left = asked(house, "greet everyone", "quit", "greet everyone", "y")
+    left = asked(workspace, "greet everyone", "quit", "greet everyone", "y")
     assert len(left) == 1, "after quit nothing is read"
 
 
-def test_what_was_said_is_in_the_log(house: House) -> None:
-    told(house, "greet everyone", "y")
-    house.close()
-    with Store.open(house.store.folder, write=False) as store:
+def test_what_was_said_is_in_the_log(workspace: Workspace) -> None:
+    told(workspace, "greet everyone", "y")
+    workspace.close()
+    with Store.open(workspace.store.folder, write=False) as store:
         assert [e.kind for e in store.events()] == ["demonstration begun", "demonstration step"]

@@ -14,12 +14,12 @@ import pytest
 
 from tangy_hw.audio.meter import NO_SOUND_SECONDS
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House, data_folder
+from tangy_tui.app.workspace import Workspace, data_folder
 from tangy_tui.speech import transcription
 from tangy_tui.speech.calibration import Chosen, Figures
-from tangy_tui.speech.evidence import RATE, Settings, Wanted
+from tangy_tui.speech.evidence import RATE, EvidenceSettings, Wanted
 from tangy_tui.speech.loudness import LOUD, loudness
-from tangy_tui.speech.microphone_check import PATIENCE, Checked, MicrophoneCheck
+from tangy_tui.speech.microphone_check import PATIENCE, CheckResult, MicrophoneCheck
 from tangy_tui.speech.recogniser import Recogniser
 from tangy_tui.speech.recordings import consent, consented
 from tangy_tui.verbs import hearing, mic_check
@@ -184,9 +184,9 @@ def test_who_is_asked_for_consent_is_told_how_to_delete_what_is_kept_there(
     monkeypatch.setattr("typer.confirm", confirm)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     for folder in (tmp_path / "two words", data_folder(None)):
-        house = House(folder)
-        assert hearing._recorder(house, "rosa") is None
-        house.close()
+        workspace = Workspace(folder)
+        assert hearing._recorder(workspace, "rosa") is None
+        workspace.close()
     assert f"`tangy listen --forget-recordings --data '{tmp_path / 'two words'}'`" in asked[0]
     assert "`tangy listen --forget-recordings`" in asked[1]
 
@@ -273,10 +273,10 @@ class TestCheckingAMicrophone:
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
         figures = Figures(6, understood, 0, 3, 0)
-        chosen = Chosen(Settings(garbage=0.9), figures, figures)
+        chosen = Chosen(EvidenceSettings(garbage=0.9), figures, figures)
 
-        async def run(check: MicrophoneCheck) -> Checked:
-            return Checked(-60.0, -30.0, (), chosen, figures.parted, ())
+        async def run(check: MicrophoneCheck) -> CheckResult:
+            return CheckResult(-60.0, -30.0, (), chosen, figures.parted, ())
 
         monkeypatch.setattr(MicrophoneCheck, "run", run)
         (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))
@@ -296,11 +296,11 @@ class TestCheckingAMicrophone:
     def test_what_was_not_measured_is_not_put_in_figures(
         self, tangy: Tangy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        chosen = Chosen(Settings(), Figures(6, 5, 0, 0, 0), Figures(6, 5, 0, 0, 0))
+        chosen = Chosen(EvidenceSettings(), Figures(6, 5, 0, 0, 0), Figures(6, 5, 0, 0, 0))
         room = loudness(bytes(2 * RATE), LOUD)  # zeros alone
 
-        async def run(check: MicrophoneCheck) -> Checked:
-            return Checked(room, -17.0, (), chosen, False, ())
+        async def run(check: MicrophoneCheck) -> CheckResult:
+            return CheckResult(room, -17.0, (), chosen, False, ())
 
         monkeypatch.setattr(MicrophoneCheck, "run", run)
         (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))

@@ -12,45 +12,45 @@ from tangy_hw.navigation.map_files import write_map
 from tangy_hw.navigation.occupancy import OccupancyMap, map_of_room
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.robot_opening import check_map
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    house = House(tmp_path / "data", activity="bingo", users=4)
-    yield house
-    house.close()
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    workspace = Workspace(tmp_path / "data", activity="bingo", users=4)
+    yield workspace
+    workspace.close()
 
 
-def refusal(house: House, map_: Path) -> str:
+def refusal(workspace: Workspace, map_: Path) -> str:
     with pytest.raises(TangyError) as refused:
-        check_map(house, str(map_))
+        check_map(workspace, str(map_))
     return str(refused.value)
 
 
 def test_a_map_on_which_the_robot_can_stand_everywhere_is_taken(
-    house: House, tmp_path: Path
+    workspace: Workspace, tmp_path: Path
 ) -> None:
-    write_map(map_of_room(house.room, people=4), tmp_path / "room.yaml")
-    check_map(house, str(tmp_path / "room.yaml"))
+    write_map(map_of_room(workspace.room, people=4), tmp_path / "room.yaml")
+    check_map(workspace, str(tmp_path / "room.yaml"))
 
 
-def test_what_is_no_map_is_refused_by_its_name(house: House, tmp_path: Path) -> None:
-    assert refusal(house, tmp_path / "none.yaml").startswith(
+def test_what_is_no_map_is_refused_by_its_name(workspace: Workspace, tmp_path: Path) -> None:
+    assert refusal(workspace, tmp_path / "none.yaml").startswith(
         f"{tmp_path / 'none.yaml'}: there is no"
     )
     (tmp_path / "words.yaml").write_text("some: words\n", encoding="utf-8")
-    assert "words.yaml, line 1: 'some' is not known" in refusal(house, tmp_path / "words.yaml")
+    assert "words.yaml, line 1: 'some' is not known" in refusal(workspace, tmp_path / "words.yaml")
 
 
 def test_a_map_of_another_room_is_refused_with_the_place_that_is_not_on_it(
-    house: House, tmp_path: Path
+    workspace: Workspace, tmp_path: Path
 ) -> None:
-    here = map_of_room(house.room, people=4)
+    here = map_of_room(workspace.room, people=4)
     elsewhere = OccupancyMap(here.cells, here.resolution, (here.origin[0] + 7.5, here.origin[1]))
     write_map(elsewhere, tmp_path / "other.yaml")
     assert "the front (5, 1.2) cannot be driven to on it." in refusal(
-        house, tmp_path / "other.yaml"
+        workspace, tmp_path / "other.yaml"
     )
 
 

@@ -15,7 +15,7 @@ import pytest
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app import device_simulator
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.switching_on import SwitchingOn, switched_on
 
 WORLD = cast(LiveWorld, object())
@@ -154,7 +154,7 @@ def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyP
     caller.start()
     began = time.monotonic()
     with pytest.raises(Cancelled):
-        Bench(
+        DeviceSimulator(
             seed=1,
             people={},
             stepped=True,
@@ -172,7 +172,7 @@ def test_no_bench_is_started_once_it_was_called_off(monkeypatch: pytest.MonkeyPa
     cancellation = Cancellation()
     cancellation.cancel()
     with pytest.raises(Cancelled):
-        Bench(
+        DeviceSimulator(
             seed=1, people={}, stepped=True, activity="bingo", robot="", cancellation=cancellation
         )
     assert started == []

@@ -23,18 +23,18 @@ FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
 
 @pytest.fixture(scope="module")
 def _played(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from tangy_tui.app.workspace import House
+    from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policies import load_policy
     from tests.monitoring.conftest import play
 
     folder = Path(shutil.copytree(_taught, tmp_path_factory.mktemp("played") / "data"))
-    house = House(folder)
-    learnt, _ = load_policy(house.store, house.activity)
-    with house.store.transaction():
-        play(house.supervision(learnt, 1, asks=True))
-        play(house.supervision(learnt, 2, asks=True, injections=FAULTS))
-        play(house.supervision(learnt, 3, injections=("base-failed@5",)), expert=False)
-    house.close()
+    workspace = Workspace(folder)
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    with workspace.store.transaction():
+        play(workspace.supervision(learnt, 1, asks=True))
+        play(workspace.supervision(learnt, 2, asks=True, injections=FAULTS))
+        play(workspace.supervision(learnt, 3, injections=("base-failed@5",)), expert=False)
+    workspace.close()
     return folder
 
 

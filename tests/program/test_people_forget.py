@@ -17,7 +17,7 @@ import pytest
 
 from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Reply, Say
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -27,15 +27,15 @@ NAME = "Xanthippe"
 
 def teach(folder: Path, *lines: str) -> None:
     """Teach by typed lines, each with a yes."""
-    house = House(folder)
+    workspace = Workspace(folder)
     try:
-        teaching = house.teaching("Ada", 3)
+        teaching = workspace.teaching("Ada", 3)
         teaching.begin()
         for line in lines:
             teaching.apply(Say(line))
             teaching.apply(Reply(True))
     finally:
-        house.close()
+        workspace.close()
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Asked
 from tangy_tui.learning.verification import Say as Words
 from tangy_tui.speech import aloud
@@ -241,17 +241,17 @@ class TestVoices:
         assert told in done.stderr
 
 
-class TestTheHouse:
+class TestTheWorkspace:
     def test_teaching_goes_to_seats_and_hears_names(self, data: Path) -> None:
-        house = House(data)
-        house.pronounce(house.find_person("user2"), "Z AE N, L IY")
-        teaching = house.teaching("somebody", 1)
+        workspace = Workspace(data)
+        workspace.pronounce(workspace.find_person("user2"), "Z AE N, L IY")
+        teaching = workspace.teaching("somebody", 1)
         teaching.begin()
         book = teaching.phrasebook
         assert "go to seat two" in book.spoken()
         assert book.pronunciations()["xanthippus"] == ("Z AE N",)
         (asked,) = teaching.apply(Words("go to seat two"))
-        house.close()
+        workspace.close()
         assert isinstance(asked, Asked)
         assert asked.target == "user2"
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from tangy_hw.robot_setup import RobotSetup
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 
 FRONT = (5.0, 1.2, 1.5708)
 
 
-def setup_on(bench: Bench, *, stepped: bool = False, eyes: bool = False) -> RobotSetup:
+def setup_on(bench: DeviceSimulator, *, stepped: bool = False, eyes: bool = False) -> RobotSetup:
     """Name the wires of a bench; without eyes no camera is opened, which saves two processes."""
     at = bench.wires.rosbridge
     drivers = {name: {"kind": "rosbridge", "at": at} for name in ("base", "stop_button", "voice")}

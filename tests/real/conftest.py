@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tangy_hw.robot_client.client import RobotLink
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.bench_setup import setup_on
 from tests.support.terminal import TANGY, Terminal, Tmux
 
@@ -77,8 +77,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    bench = Bench(
+def bench() -> Iterator[DeviceSimulator]:
+    bench = DeviceSimulator(
         seed=1,
         people={"user1": "Ann", "user2": "Ben"},
         stepped=False,
@@ -90,7 +90,7 @@ def bench() -> Iterator[Bench]:
 
 
 @pytest.fixture
-def link(bench: Bench) -> Iterator[RobotLink]:
+def link(bench: DeviceSimulator) -> Iterator[RobotLink]:
     link = RobotLink(setup_on(bench))
     link.start()
     yield link

@@ -16,7 +16,7 @@ from tangy_profiles.fault_file import load_faults
 from tangy_sim.worlds.injection import read_injection
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Acted
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.fault import Diagnosed, read_faults
@@ -28,15 +28,15 @@ pytestmark = [pytest.mark.xdist_group("robot"), pytest.mark.slow]
 
 
 @pytest.fixture
-def house(folder: Path) -> Iterator[House]:
-    house = House(folder)
-    yield house
-    house.close()
+def workspace(folder: Path) -> Iterator[Workspace]:
+    workspace = Workspace(folder)
+    yield workspace
+    workspace.close()
 
 
-def games(house: House, world: BenchedWorld) -> Supervision:
-    policy, _ = load_policy(house.store, house.activity, "")
-    return house.supervision(policy, 1, asks=True, world=world)
+def games(workspace: Workspace, world: BenchedWorld) -> Supervision:
+    policy, _ = load_policy(workspace.store, workspace.activity, "")
+    return workspace.supervision(policy, 1, asks=True, world=world)
 
 
 def play(game: Supervision, steps: int) -> list[Event]:
@@ -47,10 +47,10 @@ def play(game: Supervision, steps: int) -> list[Event]:
     return told
 
 
-def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(house: House) -> None:
-    book = load_faults(house.robot)
-    with open_bench(house, seed=3, stepped=True, pace=2, book=book, kind=BenchedWorld) as world:
-        game = games(house, world)
+def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(workspace: Workspace) -> None:
+    book = load_faults(workspace.robot)
+    with open_bench(workspace, seed=3, stepped=True, pace=2, book=book, kind=BenchedWorld) as world:
+        game = games(workspace, world)
         told = game.begin() + play(game, 4)
         world.requests.ask_for("user2")
         told += play(game, 2)
@@ -69,13 +69,13 @@ def test_a_robot_on_the_bench_calls_visits_reads_and_comes_back(house: House) ->
         assert len(world.truth()["called"]) == len(world.called)  # people heard every call
 
 
-def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(house: House) -> None:
-    book = load_faults(house.robot)
+def test_what_goes_wrong_on_the_bench_is_diagnosed_and_recovered_from(workspace: Workspace) -> None:
+    book = load_faults(workspace.robot)
     faults = [read_injection(text) for text in ("laser-disconnected@3", "camera-occluded@6")]
     with open_bench(
-        house, seed=4, stepped=True, pace=2, book=book, injections=faults, kind=BenchedWorld
+        workspace, seed=4, stepped=True, pace=2, book=book, injections=faults, kind=BenchedWorld
     ) as world:  # fmt: skip
-        game = games(house, world)
+        game = games(workspace, world)
         game.begin()
         play(game, 8)
         assert [fault.code for fault in game.faults] == ["laser-disconnected", "camera-occluded"]
@@ -147,13 +147,13 @@ def test_a_robot_process_that_stalls_for_four_seconds_is_one_dialog(folder: Path
         terminal.until("or c when all is well")
         terminal.type("c")
         terminal.until("5 facilitate")  # the game has gone on
-        house = House(folder, write=False)
+        workspace = Workspace(folder, write=False)
         try:
-            assert [fault.code for fault in read_faults(house.store)[-1:]] == ["link-lost"]
-            last = read_faults(house.store)[-1].game
-            assert len(read_faults(house.store, last)) == 1
+            assert [fault.code for fault in read_faults(workspace.store)[-1:]] == ["link-lost"]
+            last = read_faults(workspace.store)[-1].game
+            assert len(read_faults(workspace.store, last)) == 1
         finally:
-            house.close()
+            workspace.close()
     finally:
         terminal.end()
 

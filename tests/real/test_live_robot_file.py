@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from tangy_sim.device_simulator.tablet import Tablet
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
 from tests.support.terminal import TANGY, Terminal
 
@@ -26,14 +26,14 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    bench = Bench(seed=3, people=PEOPLE, stepped=False, activity="bingo", robot="tangy")
+def bench() -> Iterator[DeviceSimulator]:
+    bench = DeviceSimulator(seed=3, people=PEOPLE, stepped=False, activity="bingo", robot="tangy")
     bench.do("begin")
     yield bench
     bench.close()
 
 
-def robot_file(bench: Bench, folder: Path) -> Path:
+def robot_file(bench: DeviceSimulator, folder: Path) -> Path:
     """Write the file of the robot that the bench is, as docs/robots.md tells."""
     at = bench.wires.rosbridge
     drivers = [
@@ -51,7 +51,7 @@ def robot_file(bench: Bench, folder: Path) -> Path:
 ROSBRIDGE = ("base", "stop_button", "arms", "voice")
 
 
-def program(bench: Bench, folder: Path) -> Terminal:
+def program(bench: DeviceSimulator, folder: Path) -> Terminal:
     corners = ",".join(f"{x:g},{y:g}" for x, y in bench.wires.corners)
     command = [
         *(TANGY, "live", "--robot", str(robot_file(bench, folder)), "--pace", "3"),
@@ -63,7 +63,7 @@ def program(bench: Bench, folder: Path) -> Terminal:
 
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGSTOP, signal.SIGHUP])
 def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
-    folder: Path, bench: Bench, ending: signal.Signals
+    folder: Path, bench: DeviceSimulator, ending: signal.Signals
 ) -> None:
     terminal = program(bench, folder)
     try:
@@ -88,7 +88,9 @@ def test_a_robot_of_a_file_plays_and_stands_when_the_program_ends_or_hangs(
 UP, DOWN = "\x1b[A", "\x1b[B"
 
 
-def test_a_tablet_is_paired_by_what_the_live_screen_tells(folder: Path, bench: Bench) -> None:
+def test_a_tablet_is_paired_by_what_the_live_screen_tells(
+    folder: Path, bench: DeviceSimulator
+) -> None:
     terminal = program(bench, folder)
     told = re.compile(r"(http://[\d.:]+/), code[^\d]+(\d{4}-\d{4})")
     tablet = None

@@ -13,28 +13,28 @@ from tangy_hw.navigation.occupancy import map_of_room
 from tangy_profiles.fault_file import load_faults
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FOUND = 0.15  # metres by which it may be off
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> Iterator[House]:
-    house = House(tmp_path / "data")
-    yield house
-    house.close()
+def workspace(tmp_path: Path) -> Iterator[Workspace]:
+    workspace = Workspace(tmp_path / "data")
+    yield workspace
+    workspace.close()
 
 
 @pytest.mark.parametrize("seed", [5, 9])
 def test_it_finds_itself_wherever_it_stands_and_drives_to_the_front(
-    house: House, tmp_path: Path, seed: int
+    workspace: Workspace, tmp_path: Path, seed: int
 ) -> None:
     map_ = tmp_path / "room.yaml"
-    write_map(map_of_room(house.room, people=4), map_)
-    book = load_faults(house.robot)
+    write_map(map_of_room(workspace.room, people=4), map_)
+    book = load_faults(workspace.robot)
     with open_bench(
-        house, seed=seed, stepped=True, book=book, kind=BenchedWorld, map_=str(map_), lost=True
+        workspace, seed=seed, stepped=True, book=book, kind=BenchedWorld, map_=str(map_), lost=True
     ) as world:
         assert world.lost
         world.bench.do("inject", kind="carried-off")  # to anywhere in the room
@@ -43,4 +43,4 @@ def test_it_finds_itself_wherever_it_stands_and_drives_to_the_front(
         x, y, _ = world.truth()["pose"]
         believed = world.link.beat().pose
         assert hypot(believed.x - x, believed.y - y) < FOUND
-        assert hypot(house.room.front.x - x, house.room.front.y - y) < 0.5
+        assert hypot(workspace.room.front.x - x, workspace.room.front.y - y) < 0.5

@@ -23,8 +23,8 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import CHILD, RobotLink
 from tangy_hw.robot_process.controller import HAZARD_SECONDS
 from tangy_hw.robot_process.program_pipe import LONGEST_LINE
-from tangy_hw.robot_process.stop_latch import BrokenOff
-from tangy_tui.app.device_simulator import Bench
+from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.bench_setup import setup_on
 
 ROOT = Path(__file__).parents[2]
@@ -45,7 +45,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 class Program:
     """A program on a terminal of its own that drives the robot up and down."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: DeviceSimulator) -> None:
         self.terminal, theirs = pty.openpty()
         command = [sys.executable, "-m", "tests.real.driving_program", setup_on(bench).to_json()]
         self.process = subprocess.Popen(  # noqa: S603 - our own program
@@ -68,7 +68,7 @@ class Program:
 
 
 @pytest.fixture
-def program(bench: Bench) -> Iterator[Program]:
+def program(bench: DeviceSimulator) -> Iterator[Program]:
     program = Program(bench)
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
     yield program
@@ -82,7 +82,7 @@ def wait_until(holds: Callable[[], bool], what: str) -> None:
         time.sleep(0.01)
 
 
-def speed(bench: Bench) -> float:
+def speed(bench: DeviceSimulator) -> float:
     """How fast the robot goes, by where it really is, in m/s of the bench's time."""
     before = bench.do("truth")["truth"]
     time.sleep(0.1)
@@ -91,7 +91,7 @@ def speed(bench: Bench) -> float:
     return float(way**0.5 / max(1e-6, after["time"] - before["time"]))
 
 
-def seconds_to_stop(bench: Bench) -> float:
+def seconds_to_stop(bench: DeviceSimulator) -> float:
     """The bench's time until the robot stands, from now on."""
     began = bench.do("truth")["truth"]["time"]
     until = time.monotonic() + PATIENCE
@@ -105,7 +105,7 @@ def seconds_to_stop(bench: Bench) -> float:
 
 @pytest.mark.parametrize("ending", ["killed", "hung", "hung up"])
 def test_the_base_stops_when_the_program_has_ended_or_hangs(
-    bench: Bench, program: Program, ending: str
+    bench: DeviceSimulator, program: Program, ending: str
 ) -> None:
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
     if ending == "killed":
@@ -122,7 +122,7 @@ def test_the_base_stops_when_the_program_has_ended_or_hangs(
 
 
 def test_a_program_that_lives_again_does_not_drive_on_by_itself(
-    bench: Bench, program: Program
+    bench: DeviceSimulator, program: Program
 ) -> None:
     program.process.send_signal(signal.SIGSTOP)
     assert seconds_to_stop(bench) <= STOPS
@@ -158,21 +158,21 @@ def test_a_robot_process_ends_with_its_program_also_where_its_pipe_stays_open() 
         wait_until(lambda: not is_there(robot), "the robot process ends")
 
 
-def test_a_stop_overtakes_a_drive_and_latches(bench: Bench, link: RobotLink) -> None:
+def test_a_stop_overtakes_a_drive_and_latches(bench: DeviceSimulator, link: RobotLink) -> None:
     drive = link.ask("go", to=[8.0, 3.0, 1.57])
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
     link.stop("somebody said so")
 
     assert seconds_to_stop(bench) <= STOPS
-    with pytest.raises(BrokenOff, match="somebody said so"):
+    with pytest.raises(Preempted, match="somebody said so"):
         drive.result(PATIENCE)
-    with pytest.raises(BrokenOff, match="somebody said so"):
+    with pytest.raises(Preempted, match="somebody said so"):
         link.do("go", to=[8.0, 3.0, 1.57])
     link.release()
     assert link.do("go", to=[5.0, 2.0, 1.57])["arrived"]
 
 
-def seconds_to_zero(bench: Bench) -> float:
+def seconds_to_zero(bench: DeviceSimulator) -> float:
     """How long after the last scan the base is told to stand, when the scanner falls silent now."""
     began = time.monotonic()
     bench.do("inject", kind="laser-disconnected")
@@ -185,7 +185,7 @@ def seconds_to_zero(bench: Bench) -> float:
 
 
 def test_a_laser_that_falls_silent_has_the_robot_told_to_stand(
-    bench: Bench, link: RobotLink
+    bench: DeviceSimulator, link: RobotLink
 ) -> None:
     told, stood = [], []
     for number in range(TRIALS):
@@ -193,7 +193,7 @@ def test_a_laser_that_falls_silent_has_the_robot_told_to_stand(
         wait_until(lambda: speed(bench) > 0.25, "the robot drives")
         told.append(seconds_to_zero(bench))
         stood.append(told[-1] + seconds_to_stop(bench))
-        with pytest.raises(BrokenOff, match="laser scanner says nothing"):
+        with pytest.raises(Preempted, match="laser scanner says nothing"):
             drive.result(PATIENCE)
         bench.do("lift", kind="laser-disconnected")
         wait_until(lambda: not link.beat().hazard, "the laser is back")
@@ -205,13 +205,13 @@ def test_a_laser_that_falls_silent_has_the_robot_told_to_stand(
 
 
 def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
-    bench: Bench, link: RobotLink
+    bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=[8.0, 3.0, 1.57])
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
     assert link.pid is not None
     os.kill(link.pid, signal.SIGKILL)
-    with pytest.raises(BrokenOff, match="has ended"):
+    with pytest.raises(Preempted, match="has ended"):
         drive.result(SAID)
     assert link.silent == "the robot process has ended"
     assert {reading.state for reading in link.health()} == {"STALE"}
@@ -224,7 +224,7 @@ def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
 
 
 def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
-    bench: Bench, link: RobotLink
+    bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=[8.0, 3.0, 1.57])
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
@@ -238,10 +238,10 @@ def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
     finally:
         os.kill(link.pid, signal.SIGCONT)
 
-    with pytest.raises(BrokenOff, match="it was frozen for"):
+    with pytest.raises(Preempted, match="it was frozen for"):
         drive.result(PATIENCE)
     link.release("staff")
-    with pytest.raises(BrokenOff, match="it was frozen for"):
+    with pytest.raises(Preempted, match="it was frozen for"):
         link.do("go", to=[8.0, 3.0, 1.57])
     assert bench.do("truth")["truth"]["pose"] == pytest.approx(stood, abs=1e-3)
     assert link.beat().frozen >= FROZEN
@@ -251,7 +251,7 @@ def test_a_robot_process_that_was_frozen_stands_until_it_is_told_to_go_on(
 
 
 def test_driven_by_hand_at_the_table_it_is_no_faster_than_it_may_and_stands_before_it(
-    bench: Bench, link: RobotLink
+    bench: DeviceSimulator, link: RobotLink
 ) -> None:
     """The table's top is above the scanner: that it is there, the map has to tell."""
     fastest = 0.0
@@ -281,7 +281,9 @@ def test_driven_by_hand_at_the_table_it_is_no_faster_than_it_may_and_stands_befo
     drive(0.3, 0.0, lambda truth: not truth["moving"] and "laser" in link.state.hazard)
 
 
-def test_lines_that_make_no_sense_are_answered_and_the_robot_process_lives(bench: Bench) -> None:
+def test_lines_that_make_no_sense_are_answered_and_the_robot_process_lives(
+    bench: DeviceSimulator,
+) -> None:
     wrong = [
         "[" * 100_000,
         '{"id": [1], "do": "spin"}',

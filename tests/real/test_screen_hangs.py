@@ -8,8 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from tangy_hw.robot_client.client import HANGS_SECONDS, RobotLink
-from tangy_hw.robot_process.stop_latch import BrokenOff
-from tangy_tui.app.device_simulator import Bench
+from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_tui.app.device_simulator import DeviceSimulator
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FAR = [9.0, 1.2, 1.57]  # some ten seconds away
@@ -23,12 +23,12 @@ def until(holds: Callable[[], bool]) -> None:
         time.sleep(0.02)
 
 
-def moves(bench: Bench) -> bool:
+def moves(bench: DeviceSimulator) -> bool:
     return bool(bench.do("truth")["truth"]["moving"])
 
 
 def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
-    bench: Bench, link: RobotLink
+    bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=FAR)
     until(lambda: moves(bench))
@@ -37,14 +37,16 @@ def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
     until(lambda: "the program says nothing" in link.state.hazard)
     until(lambda: not moves(bench))
     assert HANGS_SECONDS - 0.1 < time.monotonic() - said < HANGS_SECONDS + STOPS
-    with pytest.raises(BrokenOff):
+    with pytest.raises(Preempted):
         drive.result(10)
 
     link.alive()
     until(lambda: link.state.hazard == "")
 
 
-def test_a_program_without_a_screen_need_not_say_it(bench: Bench, link: RobotLink) -> None:
+def test_a_program_without_a_screen_need_not_say_it(
+    bench: DeviceSimulator, link: RobotLink
+) -> None:
     link.ask("go", to=FAR)
     until(lambda: moves(bench))
     time.sleep(HANGS_SECONDS + 1.0)

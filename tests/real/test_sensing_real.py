@@ -10,7 +10,7 @@ import pytest
 from tangy_hw.robot_client.client import RobotLink
 from tangy_profiles.activity import load_activity
 from tangy_profiles.robot import load_robot
-from tangy_tui.app.device_simulator import Bench
+from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.sensing import LinkedSensors
 from tests.real.bench_setup import setup_on
 
@@ -20,7 +20,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 @pytest.fixture
 def link() -> Iterator[RobotLink]:
     people = {"user1": "Ann", "user2": "Ben"}
-    bench = Bench(seed=1, people=people, stepped=False, activity="bingo", robot="tangy")
+    bench = DeviceSimulator(seed=1, people=people, stepped=False, activity="bingo", robot="tangy")
     link = RobotLink(setup_on(bench, eyes=True))
     try:
         link.start()

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tangy_hw.drivers.camera_source import CameraError
-from tangy_hw.perception.camera_hub import Sensors, camera_sources
+from tangy_hw.perception.camera_hub import CameraHub, camera_sources
 from tangy_profiles.activity import Activity
 from tangy_profiles.card_face import numbers_of
 from tangy_profiles.robot import load_robot
@@ -49,7 +49,7 @@ async def test_the_last_card_is_read_as_long_as_somebody_looks(
 ) -> None:
     robot = load_robot()
     sources = camera_sources(robot, [f"camera={cards}"])
-    async with Sensors(robot, sources, activity.deck) as sensors:
+    async with CameraHub(robot, sources, activity.deck) as sensors:
         await sensors.settled(PATIENCE)
         assert sensors.cards.stamp is None  # nobody has looked
         with sensors.reading_cards():
@@ -70,7 +70,7 @@ async def test_what_is_no_card_is_told_and_the_last_one_kept(
             cv2.imwrite(str(tmp_path / f"{number}.png"), room(number, 640, 480))
     robot = load_robot()
     sources = camera_sources(robot, [f"camera={tmp_path}"])
-    async with Sensors(robot, sources, activity.deck) as sensors:
+    async with CameraHub(robot, sources, activity.deck) as sensors:
         with sensors.reading_cards():
             await until(lambda: sensors.cards.last)
             await until(lambda: sensors.cards.problem)
@@ -83,7 +83,7 @@ async def test_each_camera_says_how_it_is_and_gives_small_pictures() -> None:
     with CameraServer(1) as one, CameraServer(2) as other:
         other.mode = "covered"
         sources = camera_sources(robot, [f"camera={one.url}", f"requests={other.url}"])
-        async with Sensors(robot, sources) as sensors:
+        async with CameraHub(robot, sources) as sensors:
             await until(lambda: sensors.sight("requests").state == "COVERED")
             await until(lambda: sensors.sight("camera").state == "OK")
             readings = {reading.device: reading for reading in sensors.health()}
@@ -100,7 +100,7 @@ async def test_they_are_open_as_long_as_anybody_is_in_it_and_leave_nothing() -> 
     robot = load_robot()
     before = asyncio.all_tasks()
     with CameraServer() as server:
-        sensors = Sensors(robot, camera_sources(robot, [f"camera={server.url}"]))
+        sensors = CameraHub(robot, camera_sources(robot, [f"camera={server.url}"]))
         async with sensors:
             async with sensors:
                 await sensors.settled(PATIENCE)

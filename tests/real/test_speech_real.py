@@ -24,9 +24,9 @@ from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import load_activity
 from tangy_profiles.person import Person, load_people
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.verification import Say, Stop
-from tangy_tui.speech.evidence import LONGEST, USUAL, Evidence, Settings, Wanted
-from tangy_tui.speech.input import Ears
+from tangy_tui.learning.verification import Say, StopCommand
+from tangy_tui.speech.evidence import LONGEST, USUAL, AcousticEvidence, EvidenceSettings, Wanted
+from tangy_tui.speech.input import SpeechInput
 from tangy_tui.speech.recogniser import WORKER, Recogniser, SpeechUnavailable
 from tangy_tui.speech.transcription import listen, tier_of
 from tangy_tui.speech.understanding import understand, wanted
@@ -89,7 +89,7 @@ class Studio:
 
         return self._runner.run(patiently())
 
-    def decode(self, pcm: bytes) -> Evidence:
+    def decode(self, pcm: bytes) -> AcousticEvidence:
         return self.run(self.recogniser.decode(pcm))
 
     def hear(self, pcm: bytes) -> tuple[str, str | None, dict[str, str]]:
@@ -104,7 +104,7 @@ class Studio:
         self._runner.close()
 
 
-def hands_free(pcm: bytes) -> tuple[float, Evidence]:
+def hands_free(pcm: bytes) -> tuple[float, AcousticEvidence]:
     """Return the first utterance in a sound, and after how many s of it that was known."""
     answers: list[dict[str, Any]] = []
     worker = Worker(answers.append)
@@ -114,7 +114,7 @@ def hands_free(pcm: bytes) -> tuple[float, Evidence]:
     for place in range(0, len(pcm), PIECE):
         worker.take({"pcm": base64.b64encode(pcm[place : place + PIECE]).decode()})
         if heard := next((answer["heard"] for answer in answers if "heard" in answer), None):
-            return (place + PIECE) / 2 / RATE, Evidence(**heard)
+            return (place + PIECE) / 2 / RATE, AcousticEvidence(**heard)
     raise AssertionError(f"nothing was heard: {answers}")
 
 
@@ -200,7 +200,7 @@ class TestStream:
     def test_words_come_before_the_end(self, studio: Studio, voices: Voices) -> None:
         shown: list[str] = []
 
-        async def talk() -> Evidence:
+        async def talk() -> AcousticEvidence:
             sound: asyncio.Queue[bytes] = asyncio.Queue()
             whole = asyncio.Event()
 
@@ -228,7 +228,7 @@ class TestStream:
         first = studio.recogniser.pid
         assert first is not None
 
-        async def talk() -> Evidence:
+        async def talk() -> AcousticEvidence:
             sound: asyncio.Queue[bytes] = asyncio.Queue()
             begun = asyncio.Event()
             studio.recogniser.partial = lambda words: begun.set()
@@ -257,12 +257,12 @@ class TestStream:
     def test_stop_ends_the_utterance_by_itself(
         self, studio: Studio, voices: Voices, said: str, voice: str
     ) -> None:
-        async def talk() -> Evidence:
+        async def talk() -> AcousticEvidence:
             sound: asyncio.Queue[bytes] = asyncio.Queue()
             await self.speak(sound, voices.say(said, voice))
             return await studio.recogniser.hear(sound)
 
-        assert isinstance(understand(studio.run(talk()), BOOK, USUAL), Stop)
+        assert isinstance(understand(studio.run(talk()), BOOK, USUAL), StopCommand)
 
     @pytest.mark.parametrize("voice", ["slt", "rms", "awb"])
     @pytest.mark.parametrize(
@@ -275,7 +275,7 @@ class TestStream:
         loud = [abs(sample) > 1000 for sample in memoryview(pcm).cast("h")]
         last = (len(loud) - loud[::-1].index(True)) / RATE  # s, where its last sound ends
         seconds, evidence = hands_free(pcm)
-        assert isinstance(understand(evidence, BOOK, USUAL), Stop)
+        assert isinstance(understand(evidence, BOOK, USUAL), StopCommand)
         assert seconds - last <= soon
 
     @pytest.mark.parametrize("voice", ["slt", "rms"])
@@ -286,7 +286,7 @@ class TestStream:
         self, voices: Voices, said: str, voice: str
     ) -> None:
         _, evidence = hands_free(voices.say(said, voice))
-        assert not isinstance(understand(evidence, BOOK, USUAL), Stop)
+        assert not isinstance(understand(evidence, BOOK, USUAL), StopCommand)
 
     def test_the_answer_comes_soon_after_the_end(
         self, studio: Studio, voices: Voices, capsys: pytest.CaptureFixture[str]
@@ -343,7 +343,7 @@ class TestEars:
         reading, writing = os.pipe()
 
         async def hear() -> list[object]:
-            ears = Ears("-", BOOK, hands_free=True, stdin=reading, folder=tmp_path)
+            ears = SpeechInput("-", BOOK, hands_free=True, stdin=reading, folder=tmp_path)
             try:
                 return [heard async for heard in ears]
             finally:
@@ -364,7 +364,7 @@ class TestEars:
             one.commands[0].behaviour for one in heard if isinstance(one, Say) and one.commands
         ]
         assert commands == ["call number", "joke"]
-        assert Stop("stop") in heard
+        assert StopCommand("stop") in heard
 
     def test_files_are_listened_to(self, voices: Voices, tmp_path: Path) -> None:
         both = tmp_path / "both.wav"
@@ -380,7 +380,7 @@ class TestEars:
         json.dumps(rows)
 
     def test_the_papers_mode_understands_phrases_too(self, voices: Voices) -> None:
-        settings = Settings(mode="paper")
+        settings = EvidenceSettings(mode="paper")
         files = [voices.file(said, voice) for said, voice, _, _ in KNOWN[:3]]
         rows = listen([*files, voices.file("stop")], BOOK, settings)
         assert [row["behaviour"] for row in rows] == [name for _, _, name, _ in KNOWN[:3]] + [None]

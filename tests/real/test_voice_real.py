@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tangy_hw.audio.number_reader import as_called, marked_up
 from tangy_hw.audio.player import PlayerError, examine_output, open_player
 from tangy_hw.audio.synthesis import NoSuchVoice, Synthesiser, examine_voice, wav_seconds
-from tangy_hw.audio.voice import Voice
+from tangy_hw.audio.voice import SpeechVoice
 from tangy_profiles.activity import load_activity
 from tangy_profiles.voice import VoicePreference
 from tests.real.conftest import OpenTerminal
@@ -181,7 +181,7 @@ def test_doctor_hears_it_speak() -> None:
 
 @needs_aplay
 async def test_what_is_played_is_what_was_made(synthesiser: Synthesiser, card: int) -> None:
-    voice = Voice(synthesiser, open_player("aplay"), deck=DECK)
+    voice = SpeechVoice(synthesiser, open_player("aplay"), deck=DECK)
     line = voice.say("B 5")
     heard = await hear(card, 10_000_000)
     assert await line
@@ -195,7 +195,7 @@ async def test_what_is_played_is_what_was_made(synthesiser: Synthesiser, card: i
 @needs_aplay
 async def test_hush_cuts_it_in_the_middle_of_a_word(synthesiser: Synthesiser, card: int) -> None:
     gate: list[str] = []
-    voice = Voice(
+    voice = SpeechVoice(
         synthesiser,
         open_player("aplay"),
         on_begin=lambda: gate.append("shut"),
@@ -221,7 +221,7 @@ async def test_a_player_that_is_killed_opens_the_microphone(
 ) -> None:
     told: list[str] = []
     ended = asyncio.Event()
-    voice = Voice(synthesiser, open_player("aplay"), on_end=ended.set, tell=told.append)
+    voice = SpeechVoice(synthesiser, open_player("aplay"), on_end=ended.set, tell=told.append)
     line = voice.say(" ".join([LONG] * 3))
     await hear(card, 4_096)
     (path,) = synthesiser.folder.iterdir()

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_sim.device_simulator.drive import EXACT, RADIUS, SILENCE, Odometer, Wheels
-from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.drive import EXACT, RADIUS, SILENCE, Odometer, SimulatedWheels
+from tangy_sim.device_simulator.floor import Floor, FloorPose
 from tangy_sim.device_simulator.joints import FASTEST, Joints
 from tangy_sim.device_simulator.lidar import Lidar, cast
 from tests.sim.bench_game import ROBOT, ROOM
 
 EMPTY = np.zeros((0, 3))
-AHEAD = Pose(ROOM.front.x, ROOM.front.y, pi / 2)
+AHEAD = FloorPose(ROOM.front.x, ROOM.front.y, pi / 2)
 angles = st.floats(-pi, pi)
 
 
@@ -24,8 +24,8 @@ def floor(seed: int = 1) -> Floor:
     return Floor(ROOM, 4, np.random.default_rng(seed))
 
 
-def wheels(odometer: Odometer = EXACT, pose: Pose = AHEAD, seed: int = 2) -> Wheels:
-    return Wheels(floor(), pose, np.random.default_rng(seed), odometer)
+def wheels(odometer: Odometer = EXACT, pose: FloorPose = AHEAD, seed: int = 2) -> SimulatedWheels:
+    return SimulatedWheels(floor(), pose, np.random.default_rng(seed), odometer)
 
 
 class TestRays:
@@ -58,7 +58,7 @@ class TestRays:
             assert met == inf
 
     def test_the_laser_sees_legs_below_the_table_and_no_table_top(self) -> None:
-        seen = Lidar(noise=0.0).scan(Pose(4.6, 4.0, pi / 2), floor(), np.random.default_rng(1))
+        seen = Lidar(noise=0.0).scan(FloorPose(4.6, 4.0, pi / 2), floor(), np.random.default_rng(1))
         ahead = seen[150:211]  # 45 degrees to each side
         assert 1.5 < ahead.min() < 2.6  # people's legs, beyond the edge 1 m away
         assert (ahead > 2.6).any()  # and the wall between them
@@ -156,13 +156,13 @@ class TestWheels:
                 one.drive(0.5, 0.0, tick * 0.05)
             stuck.step(tick * 0.05, 0.05, stuck=True)
             slips.step(tick * 0.05, 0.05, grip=0.0)
-        assert stuck.pose == AHEAD and stuck.odometry == Pose(0, 0, 0)
+        assert stuck.pose == AHEAD and stuck.odometry == FloorPose(0, 0, 0)
         assert slips.pose == AHEAD and slips.odometry.x > 0.6
 
     def test_wheels_count_a_little_wrong_each_time_otherwise(self) -> None:
         wrong = []
         for seed in range(12):
-            one = wheels(Odometer(), Pose(1.0, 2.5, 0.0), seed)
+            one = wheels(Odometer(), FloorPose(1.0, 2.5, 0.0), seed)
             for tick in range(1, 161):
                 one.drive(0.5, 0.0, tick * 0.05)
                 one.step(tick * 0.05, 0.05)

@@ -13,12 +13,12 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.state import FRONT
 from tangy_sim.device_simulator.people import HIDES
-from tangy_sim.device_simulator.speech_reception import Hearing, speaking_seconds
+from tangy_sim.device_simulator.speech_reception import SpeechReception, speaking_seconds
 from tangy_sim.device_simulator.world import BenchWorld
 from tests.sim.bench_game import ACTIVITY, ROBOT, Player, bench, drive_to, say
 
 PEOPLE = (*load_people(3), Person("ann", "Ann"), Person("anna", "Anna O'Neil-Smith"))
-HEARING = Hearing(ACTIVITY, ROBOT, PEOPLE)
+HEARING = SpeechReception(ACTIVITY, ROBOT, PEOPLE)
 WAYS = [
     (behaviour.name, strategy)
     for behaviour in ACTIVITY.behaviours.values()

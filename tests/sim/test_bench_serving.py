@@ -25,7 +25,7 @@ from tangy_hw.drivers.scip import ScipLaser
 from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_profiles.health import ERROR
 from tangy_sim.device_simulator.__main__ import main
-from tangy_sim.device_simulator.device_servers import Bench
+from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.lidar import Lidar
 from tests.sim.bench_game import ROBOT, bench
 
@@ -36,7 +36,7 @@ CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator", "--activity",
 class Peer:
     """A robot's drivers at a bench whose time goes in steps."""
 
-    def __init__(self, bench: Bench, wires: dict[str, Any]) -> None:
+    def __init__(self, bench: DeviceServers, wires: dict[str, Any]) -> None:
         self.bench, self.world, self.wires = bench, bench.world, wires
         self.clock = SteppedClock()
         # What counts the bench's time has a link of its own: it answers when the robot's is lost.
@@ -91,9 +91,9 @@ class Peer:
 
 
 @asynccontextmanager
-async def served(*, stepped: bool = True) -> AsyncIterator[tuple[Bench, dict[str, Any]]]:
+async def served(*, stepped: bool = True) -> AsyncIterator[tuple[DeviceServers, dict[str, Any]]]:
     """Serve a bench in this process."""
-    one = Bench(bench(3), stepped=stepped, faces=FACES)
+    one = DeviceServers(bench(3), stepped=stepped, faces=FACES)
     wires = await one.start()
     try:
         yield one, wires

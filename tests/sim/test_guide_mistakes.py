@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.state import Situation
 from tangy_sim.worlds.guidance import GuidedWorld
-from tangy_sim.worlds.guided_plan import Plan
+from tangy_sim.worlds.guided_plan import GuidedPlan
 from tests.sim.guided import (
     BINGO,
     IDS,
@@ -117,13 +117,13 @@ def test_who_waits_long_still_shows_what_they_asked_about(users: int) -> None:
 
 
 def test_what_was_tried_in_vain_waits_and_a_full_line_waits_longest() -> None:
-    plan = Plan(LANTERNS, Random(1).random)
+    plan = GuidedPlan(LANTERNS, Random(1).random)
     for _ in range(4):
         order = [state.name for state in plan.visits()]
         assert len(order) == 4 and order[-1] == "corners lit"
         plan.tried[order[0]] += 1
         assert [state.name for state in plan.visits()][2] == order[0]
-    assert Plan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
+    assert GuidedPlan(BINGO, Random(1).random).wanted(spent=True) == BINGO.user_states[1]
 
 
 def test_people_ask_even_where_cards_are_not_looked_at() -> None:

@@ -25,14 +25,14 @@ _UNSPEAKABLE = re.compile("[\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class SpokenPiece:
     """A part of what is said; a call is said slowly, with a pause before and after it."""
 
     text: str
     call: bool = False
 
 
-def as_called(text: str, deck: Deck | None) -> tuple[Piece, ...]:
+def as_called(text: str, deck: Deck | None) -> tuple[SpokenPiece, ...]:
     """Split a text into what is said plainly and the calls in it, as a caller says them.
 
     A call is a letter of the deck with a number of its column ("X 17", "X-17"). The first time in
@@ -41,18 +41,18 @@ def as_called(text: str, deck: Deck | None) -> tuple[Piece, ...]:
     """
     text = " ".join(_UNSPEAKABLE.sub(" ", text).split())
     if deck is None:
-        return (Piece(text),) if text else ()
+        return (SpokenPiece(text),) if text else ()
     pattern = _pattern(deck)
     found = [label for match in pattern.finditer(text) if (label := _label(match, deck))]
     return tuple(_pieces(text, pattern, deck, found))
 
 
-def in_words(pieces: tuple[Piece, ...]) -> str:
+def in_words(pieces: tuple[SpokenPiece, ...]) -> str:
     """Write what is said as a text."""
     return " ".join(piece.text for piece in pieces)
 
 
-def marked_up(pieces: tuple[Piece, ...]) -> str:
+def marked_up(pieces: tuple[SpokenPiece, ...]) -> str:
     """Write what is said for a synthesiser (SSML)."""
     written: list[str] = []
     for place, piece in enumerate(pieces):
@@ -94,7 +94,9 @@ def _pause(milliseconds: int) -> str:
     return f'<break time="{milliseconds}ms"/>'
 
 
-def _pieces(text: str, pattern: re.Pattern[str], deck: Deck, found: list[str]) -> Iterator[Piece]:
+def _pieces(
+    text: str, pattern: re.Pattern[str], deck: Deck, found: list[str]
+) -> Iterator[SpokenPiece]:
     said: set[str] = set()
     begin = 0
     for match in pattern.finditer(text):
@@ -102,16 +104,16 @@ def _pieces(text: str, pattern: re.Pattern[str], deck: Deck, found: list[str]) -
         if not label:
             continue
         if before := text[begin : match.start()].strip():
-            yield Piece(before)
+            yield SpokenPiece(before)
         letter, number = match["letter"], str(int(match["number"]))
         whole, digits = f"{letter}, {number}.", f"{letter}, {' '.join(number)}."
-        yield Piece(digits if label in said else whole, call=True)
+        yield SpokenPiece(digits if label in said else whole, call=True)
         if found.count(label) == 1:
-            yield Piece(digits, call=True)
+            yield SpokenPiece(digits, call=True)
         said.add(label)
         begin = match.end()
     if rest := text[begin:].strip():
-        yield Piece(rest)
+        yield SpokenPiece(rest)
 
 
 def _label(match: re.Match[str], deck: Deck) -> str:

@@ -54,7 +54,7 @@ class PlayerError(TangyError):
     """No sound comes out; one sentence that says why."""
 
 
-class Player(Protocol):
+class SoundPlayer(Protocol):
     """Something on which a WAV is heard, one at a time."""
 
     @property
@@ -184,7 +184,9 @@ class NullPlayer:
             self._playing.cancel()
 
 
-def open_player(sink: str = "auto", which: Callable[[str], str | None] = shutil.which) -> Player:
+def open_player(
+    sink: str = "auto", which: Callable[[str], str | None] = shutil.which
+) -> SoundPlayer:
     """Open a player by the name of its sink: `auto`, a program, or `null`.
 
     Raises:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tangy_hw.audio.number_reader import as_called, marked_up
-from tangy_hw.audio.player import Player, PlayerError
+from tangy_hw.audio.player import PlayerError, SoundPlayer
 from tangy_hw.audio.synthesis import USUAL, NoSuchVoice, Synthesiser, VoiceError
 from tangy_profiles.cards import Deck
 from tangy_profiles.voice import VoicePreference
@@ -32,7 +32,7 @@ class _Line:
     heard: asyncio.Future[bool]
 
 
-class Voice:
+class SpeechVoice:
     """Speaks lines one after the other; a game that talks through it never sees it fail.
 
     All of it belongs to one event loop. What goes wrong is told once, in a sentence; when no sound
@@ -42,7 +42,7 @@ class Voice:
     def __init__(
         self,
         synthesiser: Synthesiser,
-        player: Player | None,
+        player: SoundPlayer | None,
         *,
         deck: Deck | None = None,
         usual: VoicePreference = USUAL,

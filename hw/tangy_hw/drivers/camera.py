@@ -20,7 +20,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from tangy_hw.drivers.camera_look import Look
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
-from tangy_hw.drivers.camera_state import USUAL, Limits, Sight, State, Watch
+from tangy_hw.drivers.camera_state import USUAL, CameraLimits, CameraWatch, Sight, State
 from tangy_profiles.health import Reading
 from tangy_profiles.worker_log import open_log
 
@@ -75,7 +75,7 @@ class Camera:
         *,
         device: str = "camera",
         log: Path | None = None,
-        limits: Limits = USUAL,
+        limits: CameraLimits = USUAL,
     ) -> None:
         """Prepare a camera.
 
@@ -200,10 +200,10 @@ class Camera:
         while (frame := await self.frame()) is not None:
             yield frame
 
-    def _new_watch(self) -> Watch:
+    def _new_watch(self) -> CameraWatch:
         source = self.source
         interval = 1 / source.rate if source.rate else 0.0
-        return Watch(time.monotonic(), self._limits, each=source.each, interval=interval)
+        return CameraWatch(time.monotonic(), self._limits, each=source.each, interval=interval)
 
     async def _tick(self) -> None:
         """Tell of every change of state, also of those that come of nothing happening."""

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from tangy_hw.drivers.camera_look import Look
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK as WELL
 from tangy_profiles.health import STALE, WARN, Fact, Reading
 
@@ -18,7 +18,7 @@ LONGEST = 3600.0  # s: the robot's profile has no larger fact
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class CameraLimits:
     """When a camera is in which state; times in s, measures as in `camera_look`.
 
     A flat picture without a sharp edge shows nothing: the lens is covered, by something dark or by
@@ -38,7 +38,7 @@ class Limits:
     well_for: float = 0.3
 
 
-USUAL = Limits()
+USUAL = CameraLimits()
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +83,11 @@ class Sight:
         return Reading(device, self.age, state, MappingProxyType(facts), self.rate)
 
 
-class Watch:
+class CameraWatch:
     """Takes what is seen of a camera, and says what state it is in at any time."""
 
     def __init__(
-        self, now: float, limits: Limits = USUAL, *, each: bool = False, interval: float = 0.0
+        self, now: float, limits: CameraLimits = USUAL, *, each: bool = False, interval: float = 0.0
     ) -> None:
         """Begin to watch.
 
@@ -102,7 +102,7 @@ class Watch:
         self._gone = max(limits.gone, 2.5 * interval)
         self._began = now
         self._look: Look | None = None
-        self._arrivals = Arrivals()
+        self._arrivals = RateEstimator()
         self._first_alike = now
         self._picture: State = "OK"  # what the pictures alone say
         self._other_since: float | None = None  # since when they have said something else

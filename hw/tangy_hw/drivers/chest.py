@@ -19,7 +19,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.drivers.chest_pairing import Pairing
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
 
@@ -83,7 +83,7 @@ class WebChestScreen:
         self._number = 0
         self._picture = Picture("")
         self._heard = -math.inf
-        self._arrivals = Arrivals()
+        self._arrivals = RateEstimator()
         self._taken = asyncio.Event()
         self._error = ""
 

@@ -7,9 +7,9 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from tangy_hw.audio.player import Player, PlayerError, examine_output, open_player
+from tangy_hw.audio.player import PlayerError, SoundPlayer, examine_output, open_player
 from tangy_hw.audio.synthesis import USUAL, Synthesiser
-from tangy_hw.audio.voice import Voice
+from tangy_hw.audio.voice import SpeechVoice
 from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import ERROR, OK, WARN, Reading
@@ -31,7 +31,7 @@ class SpokenVoice:
         preference: VoicePreference = USUAL,
         deck: Deck | None = None,
         folder: Path | None = None,
-        player: Player | None = None,
+        player: SoundPlayer | None = None,
         which: Callable[[str], str | None] = shutil.which,
         on_begin: Callable[[], None] | None = None,
         on_end: Callable[[], None] | None = None,
@@ -53,7 +53,7 @@ class SpokenVoice:
         self._sink, self._preference, self._deck = sink, preference, deck
         self._folder, self._player, self._which = folder, player, which
         self._on_begin, self._on_end = on_begin, on_end
-        self._voice: Voice | None = None
+        self._voice: SpeechVoice | None = None
         self._trying: asyncio.Task[tuple[str, str]] | None = None
         self._dead = f"{name} was not started."
         self._failed = ""
@@ -81,7 +81,7 @@ class SpokenVoice:
             self._dead = f"{self.name}: {error}"
         if synthesiser.reason:
             self._dead = f"{self.name}: {synthesiser.reason}"
-        self._voice = Voice(
+        self._voice = SpeechVoice(
             synthesiser,
             player,
             deck=self._deck,

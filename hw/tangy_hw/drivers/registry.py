@@ -20,7 +20,7 @@ from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot
 
 
-class Settings:
+class DriverSettings:
     """The settings of one driver, taken one by one; what nobody took is refused."""
 
     def __init__(self, device: str, kind: str, values: Mapping[str, Setting]) -> None:
@@ -116,10 +116,10 @@ class Wiring:
         return self.diagnosing[at]
 
 
-Opens = Callable[[Wiring, Settings], Device]
+Opens = Callable[[Wiring, DriverSettings], Device]
 
 
-def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
+def _rosbridge(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.ros_arms import RosArms
     from tangy_hw.drivers.ros_base import REPEAT_SECONDS, RosBase
     from tangy_hw.drivers.ros_laser import RosLaser
@@ -183,7 +183,7 @@ def _rosbridge(wiring: Wiring, settings: Settings) -> Device:
     )
 
 
-def _scip(wiring: Wiring, settings: Settings) -> Device:
+def _scip(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.scip import ScipLaser
 
     return ScipLaser(
@@ -198,7 +198,7 @@ def _scip(wiring: Wiring, settings: Settings) -> Device:
     )
 
 
-def _page(wiring: Wiring, settings: Settings) -> Device:
+def _page(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.chest import PORT, WebChestScreen
     from tangy_hw.drivers.chest_pairing import Pairing
 
@@ -213,7 +213,7 @@ def _page(wiring: Wiring, settings: Settings) -> Device:
     )
 
 
-def _spoken(wiring: Wiring, settings: Settings) -> Device:
+def _spoken(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.espeak_voice import SpokenVoice
 
     return SpokenVoice(
@@ -223,7 +223,7 @@ def _spoken(wiring: Wiring, settings: Settings) -> Device:
     )
 
 
-def _dynamixel(wiring: Wiring, settings: Settings) -> Device:
+def _dynamixel(wiring: Wiring, settings: DriverSettings) -> Device:
     from tangy_hw.drivers.dynamixel import DynamixelArms, servos_of
 
     try:
@@ -262,7 +262,7 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
         raise DeviceError(
             plain(f"drivers.{device}: {kind!r} drives no {device}; {nearest(kind, known)}")
         )
-    settings = Settings(device, kind, {k: v for k, v in values.items() if k != "kind"})
+    settings = DriverSettings(device, kind, {k: v for k, v in values.items() if k != "kind"})
     opened = DRIVERS[kind][1](wiring, settings)
     settings.close()
     return opened

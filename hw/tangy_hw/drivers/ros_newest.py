@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
 from tangy_hw.device_protocols import Stamped
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK, STALE, Fact, Reading
 
 Value = TypeVar("Value")
@@ -24,7 +24,7 @@ class Newest(Generic[Value]):
         self.stamped: Stamped[Value] | None = None
         """The newest value; None: there was none yet."""
         self._clock = clock
-        self._arrivals = Arrivals()
+        self._arrivals = RateEstimator()
         self._since = clock()
 
     def take(self, value: Value) -> None:

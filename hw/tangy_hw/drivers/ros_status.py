@@ -15,7 +15,7 @@ NAMES = 500  # diagnoses that are kept
 WORSE = (OK, WARN, STALE, ERROR)
 
 
-class Diagnosis(NamedTuple):
+class DeviceStatus(NamedTuple):
     """What is said of a device: its state, a sentence, values, and when it came."""
 
     state: str
@@ -48,7 +48,7 @@ class RosDiagnostics:
         self._bridge, self._topic = bridge, topic
         self._names = dict(names or {})
         self._newest: Newest[None] = Newest(bridge.clock)
-        self._said: dict[str, dict[str, Diagnosis]] = {}
+        self._said: dict[str, dict[str, DeviceStatus]] = {}
         self._begun = False
 
     async def start(self) -> None:
@@ -67,7 +67,7 @@ class RosDiagnostics:
         """Return the age of the newest of them."""
         return self._newest.reading(self.name)
 
-    def of(self, device: str) -> Diagnosis | None:
+    def of(self, device: str) -> DeviceStatus | None:
         """Return the worst that is said of a device now; None: nothing is, or not any more."""
         now = self._bridge.clock()
         said = self._said.get(device, {}).values()
@@ -89,7 +89,7 @@ class RosDiagnostics:
         statuses = statuses_of(message)
         self._newest.take(None)
         for name, state, says, values in statuses[:NAMES]:
-            diagnosis = Diagnosis(state, says, values, self._bridge.clock())
+            diagnosis = DeviceStatus(state, says, values, self._bridge.clock())
             self._said.setdefault(self.device(name), {})[name] = diagnosis
 
 

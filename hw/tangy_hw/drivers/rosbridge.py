@@ -22,7 +22,7 @@ from websockets.exceptions import WebSocketException
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.reading import plain
 
@@ -80,7 +80,7 @@ class Rosbridge:
         self._task: asyncio.Task[None] | None = None
         self._connected = asyncio.Event()
         self._heard: float | None = None
-        self._arrivals = Arrivals()
+        self._arrivals = RateEstimator()
         self._began = clock()
         self._hears: dict[str, list[Hears]] = {}
         self._hello: dict[str, str] = {}

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from tangy_hw.device_protocols import DeviceError, Scan, Stamped
 from tangy_hw.drivers.scip_codec import (
     Optics,
-    Reply,
     ScipError,
+    ScipReply,
     decode,
     decode_all,
     found_again,
@@ -29,7 +29,7 @@ from tangy_hw.drivers.scip_codec import (
     trouble,
 )
 from tangy_hw.drivers.scip_link import Link, open_link
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Reading
 
 NEAR = 0.15
@@ -98,7 +98,7 @@ class ScipLaser:
         self._replies: deque[bytes] = deque()
         self._scan: Stamped[Scan] | None = None
         self._seen: deque[tuple[float, NDArray[np.int64]]] = deque()
-        self._arrivals = Arrivals()
+        self._arrivals = RateEstimator()
         self._facts: tuple[int, Mapping[str, Fact]] = (0, MappingProxyType({}))
         self._arrived = asyncio.Event()
         self._ticks: int | None = None
@@ -210,7 +210,9 @@ class ScipLaser:
         self.about = MappingProxyType(dict(named((await self._ask(b"VV")).lines)))
         await self._ask(b"BM", also=("02",))
 
-    async def _ask(self, command: bytes, *, also: tuple[str, ...] = (), tries: int = 1) -> Reply:
+    async def _ask(
+        self, command: bytes, *, also: tuple[str, ...] = (), tries: int = 1
+    ) -> ScipReply:
         """Send a command and return its answer; answers to anything else are passed over.
 
         Raises:
@@ -233,7 +235,7 @@ class ScipLaser:
             raise _Refusal(f"cannot measure: {problem}")
         return reply
 
-    async def _next(self, echo: bytes) -> Reply:
+    async def _next(self, echo: bytes) -> ScipReply:
         """Return the next sound reply, and find the one of this echo behind what came before it.
 
         Raises:
@@ -284,7 +286,7 @@ class ScipLaser:
             elif problem := trouble(reply.status):
                 raise _Refusal(f"cannot measure: {problem}")
 
-    def _take(self, reply: Reply) -> None:
+    def _take(self, reply: ScipReply) -> None:
         """Make a scan of a measurement.
 
         Raises:

@@ -26,7 +26,7 @@ class ScipError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class ScipReply:
     """What a scanner answered: the command it answers, how it went, and lines with checksums."""
 
     echo: bytes
@@ -140,7 +140,7 @@ def found_again(reply: bytes, echo: bytes) -> bytes:
     return reply[at:] if at > 0 else reply
 
 
-def parse(reply: bytes) -> Reply:
+def parse(reply: bytes) -> ScipReply:
     """Read one reply, without its empty line.
 
     Raises:
@@ -152,7 +152,7 @@ def parse(reply: bytes) -> Reply:
     # Scanners that still speak SCIP 1.1 answer the change to 2.0 with a bare 0.
     status = lines[0] if lines[0] == b"0" else checked(lines[0])
     try:
-        return Reply(echo, status.decode("ascii"), tuple(lines[1:]))
+        return ScipReply(echo, status.decode("ascii"), tuple(lines[1:]))
     except UnicodeDecodeError:
         raise ScipError("a status that is no text") from None
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Twist
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import Floats, lengths
 
 Mask: TypeAlias = NDArray[np.bool_]
@@ -40,7 +40,7 @@ class Seen(NamedTuple):
         return Seen(self.points * np.array([-1.0, 1.0]), self.bodies)
 
 
-class Room(NamedTuple):
+class Clearance(NamedTuple):
     """How far, in m, the robot may go along an arc (`free`), and how far a body is on it (`body`).
 
     `free` ends short of what would be touched; `body` where the robot would come up to somebody.
@@ -77,7 +77,7 @@ def free_ahead(points: Floats, curvature: float, half: float | Floats) -> float:
     return float(np.min(along - np.sqrt(wide[hit] ** 2 - off**2)))
 
 
-def room_ahead(seen: Seen, curvature: float, limits: Limits) -> Room:
+def room_ahead(seen: Seen, curvature: float, limits: MotionLimits) -> Clearance:
     """Return how much room there is before a robot on an arc (1/m, positive to the left).
 
     What it stands near already does not count as long as driving brings it no nearer: it is
@@ -85,14 +85,14 @@ def room_ahead(seen: Seen, curvature: float, limits: Limits) -> Room:
     """
     points, bodies = seen
     if not len(points):
-        return Room(inf, inf)
+        return Clearance(inf, inf)
     at_most = np.maximum(lengths(points) - AWAY, 0.0)
     half = limits.radius + MARGIN + np.where(bodies, limits.torso, 0.0)
     free = free_ahead(points, curvature, np.minimum(half, at_most)) - limits.gap
-    return Room(free, _body_ahead(points[bodies], curvature, limits))
+    return Clearance(free, _body_ahead(points[bodies], curvature, limits))
 
 
-def _body_ahead(points: Floats, curvature: float, limits: Limits) -> float:
+def _body_ahead(points: Floats, curvature: float, limits: MotionLimits) -> float:
     """Return how far a body is before the robot: on the arc, or aside from where it may step in."""
     if not len(points):
         return inf
@@ -103,13 +103,13 @@ def _body_ahead(points: Floats, curvature: float, limits: Limits) -> float:
     return min(on_it, float(there[aside].min() - reach) if aside.any() else inf)
 
 
-def speed_in(room: Room, limits: Limits) -> float:
+def speed_in(room: Clearance, limits: MotionLimits) -> float:
     """Return how fast a robot may drive into some room, in m/s: it must be able to stop in it."""
     fast = sqrt(2 * limits.brake * max(0.0, min(room.free, REACH)))
     return min(fast, limits.careful) if room.body < limits.near else fast
 
 
-def guarded(twist: Twist, seen: Seen, limits: Limits) -> Twist:
+def guarded(twist: Twist, seen: Seen, limits: MotionLimits) -> Twist:
     """Return a twist as it may be driven by hand, past what is seen: on the same arc, or turning.
 
     It is slower before what is near and stands before what is close; then it still turns. Where a

@@ -22,7 +22,7 @@ AGAIN_SECONDS = 0.5  # for which it must be allowed to drive until it goes on
 CLEARING_SECONDS = 10.0  # that people have to clear a way, which cannot be looked at before
 
 
-class Entrusted:
+class ExternalNavigator:
     """Lets a robot's own navigation find place and way."""
 
     def __init__(self, navigation: OwnNavigation) -> None:

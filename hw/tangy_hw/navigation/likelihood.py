@@ -37,7 +37,7 @@ def covered(scan: Scan) -> bool:
     return bool((scan.ranges < NEAREST).mean() > COVERED)
 
 
-class Evidence(NamedTuple):
+class ScanLikelihood(NamedTuple):
     """What beams say about one pose.
 
     `score` is how well those fit that something on the map explains or contradicts; `share` is how
@@ -91,18 +91,20 @@ class LikelihoodField:
         index = row.astype(np.int32) * np.int32(self._width) + column.astype(np.int32)
         return np.asarray(self._flat.take(index))
 
-    def evidence(self, pose: Pose, points: Floats) -> Evidence:
+    def evidence(self, pose: Pose, points: Floats) -> ScanLikelihood:
         """Return what beams (n, 2: their ends, in the robot's frame) say about a pose."""
         if not len(points):
-            return Evidence(0.0, 0.0)
+            return ScanLikelihood(0.0, 0.0)
         fits = self.beams(np.asarray([pose]), points)[0]
         # a beam that fits nowhere and went through a wall speaks against the pose
         through = fits < 0.5
         through[through] = self._crosses(pose, points[through])
         tells = through | (fits > 2 * FLOOR)
         if not tells.any():
-            return Evidence(0.0, 0.0)
-        return Evidence(float(np.where(through, FLOOR, fits)[tells].mean()), float(tells.mean()))
+            return ScanLikelihood(0.0, 0.0)
+        return ScanLikelihood(
+            float(np.where(through, FLOOR, fits)[tells].mean()), float(tells.mean())
+        )
 
     def _crosses(self, pose: Pose, points: Floats) -> NDArray[np.bool_]:
         """Say of each beam whether it went through a wall, in steps as long as none is near."""

@@ -9,7 +9,7 @@ from tangy_hw.device_protocols import STILL, Twist
 
 
 @dataclass(frozen=True)
-class Limits:
+class MotionLimits:
     """How a base may drive: m/s, rad/s, m/s^2, rad/s^2, and metres.
 
     `radius` is the robot's own, `gap` what it always keeps free ahead. A laser sees legs: `torso`

@@ -14,7 +14,7 @@ from numpy.random import Generator
 
 from tangy_hw.device_protocols import STILL, Odometry, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import AWAY, REACH, Seen
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.localisation import WIDE, Estimate, Localisation
 from tangy_hw.navigation.obstacles import Obstacles
 from tangy_hw.navigation.occupancy import OccupancyMap
@@ -60,7 +60,7 @@ class Navigator:
         rng: Generator,
         start: Pose | None = None,
         *,
-        limits: Limits | None = None,
+        limits: MotionLimits | None = None,
         radius: float = RADIUS,
         keep: float = KEEP,
         laser: Pose = HERE,
@@ -79,7 +79,7 @@ class Navigator:
             people: where people may be (n, 2), near whom it drives gently.
         """
         self.map = map_
-        self.limits = limits or Limits()
+        self.limits = limits or MotionLimits()
         self.people = np.zeros((0, 2)) if people is None else people
         self.state: State = "idle"
         self.why = ""

@@ -13,7 +13,7 @@ from tangy_hw.navigation.poses import Floats
 from tangy_profiles.health import Fact, Reading
 
 
-class Wayfinder(Protocol):
+class NavigatorProtocol(Protocol):
     """Is told where to go, and then again and again what the wheels and the laser say."""
 
     @property

@@ -15,7 +15,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH, Seen, room_ahead, speed_in
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import HERE, Floats, between, endpoints, lengths, wrap
 
 State = Literal["driving", "turning", "waiting", "arrived"]
@@ -36,7 +36,7 @@ class Pursuit:
         self,
         path: Floats,
         heading: float | None = None,
-        limits: Limits | None = None,
+        limits: MotionLimits | None = None,
         laser: Pose = HERE,
     ) -> None:
         """Begin.
@@ -49,7 +49,7 @@ class Pursuit:
         """
         self.path = path
         self.heading = heading
-        self.limits = limits or Limits()
+        self.limits = limits or MotionLimits()
         self.laser = laser
         self.state: State = "turning"
         self._at = 0

@@ -27,7 +27,7 @@ TOLD = 0.04  # mean square of normals along a direction from which on walls tell
 
 
 @dataclass(frozen=True, eq=False)
-class Match:
+class ScanMatch:
     """How a scan fits an earlier one.
 
     `pose` is where it was taken, seen from the earlier one; `fits` the share of points on lines;
@@ -60,20 +60,20 @@ class Reference:
         self._points, self._normals = points, normals
         self._tree = cKDTree(points) if len(points) else None
 
-    def match(self, scan: Scan, guess: Pose, laser: Pose = HERE) -> Match:
+    def match(self, scan: Scan, guess: Pose, laser: Pose = HERE) -> ScanMatch:
         """Find where another scan was taken, beginning at a guess."""
         points = endpoints(scan, REACH, laser)
         if len(points) > POINTS:
             points = points[np.linspace(0, len(points) - 1, POINTS).round().astype(np.intp)]
         if self._tree is None or len(points) < 20:
-            return Match(guess, 0.0, np.zeros((2, 2)))
+            return ScanMatch(guess, 0.0, np.zeros((2, 2)))
         pose, hessian = guess, np.zeros((3, 3))
         for ring in RINGS:
             moved = placed(points, pose)
             far, partner = self._tree.query(moved, distance_upper_bound=ring)
             near = np.isfinite(far)
             if near.sum() < 10:
-                return Match(guess, 0.0, np.zeros((2, 2)))
+                return ScanMatch(guess, 0.0, np.zeros((2, 2)))
             normals, at = self._normals[partner[near]], moved[near]
             off = ((at - self._points[partner[near]]) * normals).sum(axis=1)
             arm = at - np.array([pose.x, pose.y])
@@ -83,7 +83,7 @@ class Reference:
             hessian = (jacobian * weight[:, None]).T @ jacobian / weight.sum()
             step = _solve(hessian, (jacobian * weight[:, None]).T @ off / weight.sum())
             pose = Pose(pose.x - step[0], pose.y - step[1], wrap(pose.heading - step[2]))
-        return Match(pose, self._fits(points, pose), _told(hessian))
+        return ScanMatch(pose, self._fits(points, pose), _told(hessian))
 
     def _fits(self, points: Floats, pose: Pose) -> float:
         moved = placed(points, pose)

@@ -14,7 +14,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import Pose, Scan
 from tangy_hw.navigation.poses import HERE, Floats, between, wrap
-from tangy_hw.navigation.scan_matching import Match, Reference
+from tangy_hw.navigation.scan_matching import Reference, ScanMatch
 
 STEP, TURN = 0.1, 0.15  # metres and radians by the wheels after which scans are compared
 STEPS = 8  # that are summed up: most of a metre
@@ -76,7 +76,7 @@ class Disagreement:
             self._steps.append((self._count, off))
 
 
-def _off(step: Pose, match: Match) -> Floats:
+def _off(step: Pose, match: ScanMatch) -> Floats:
     """Return by how much wheels and a match differ: on the floor, and by the turn, in metres."""
     floor = match.told @ np.array([step.x - match.pose.x, step.y - match.pose.y])
     return np.array([*floor, ARM * wrap(step.heading - match.pose.heading)])

@@ -22,7 +22,7 @@ from tangy_profiles.card_face import USUAL_SEED, numbers_of
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import Health
 from tangy_profiles.reading import nearest, plain
-from tangy_profiles.robot import Device, Robot
+from tangy_profiles.robot import DeviceProfile, Robot
 
 if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader
@@ -65,7 +65,7 @@ def camera_sources(robot: Robot, given: Sequence[str] = ()) -> Sources:
     return MappingProxyType(found)
 
 
-def _of_profile(robot: Robot, device: Device) -> CameraSource:
+def _of_profile(robot: Robot, device: DeviceProfile) -> CameraSource:
     source = device.source
     if "://" not in source and not source.isdecimal():
         source = str(robot.file.parent / source)
@@ -113,7 +113,7 @@ class CardSight:
     stamp: float | None = None
 
 
-class Sensors:
+class CameraHub:
     """The cameras of one robot. They are open within `async with`, and as long as anybody is in it.
 
     `health` is what the diagnosis is told. Cards are read only within `reading_cards`.
@@ -153,7 +153,7 @@ class Sensors:
         self._wanted = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
-    async def __aenter__(self) -> Sensors:
+    async def __aenter__(self) -> CameraHub:
         async with self._open:
             self._users += 1
             if self._users == 1:
@@ -296,11 +296,11 @@ def sensors_of(
     given: Sequence[str] = (),
     *,
     deck_seed: int = USUAL_SEED,
-) -> Sensors:
+) -> CameraHub:
     """Make the cameras of a robot, those of its profile and those given (see `camera_sources`).
 
     Raises:
         CameraError: one of them is none.
     """
     sources = camera_sources(robot, given)
-    return Sensors(robot, sources, deck, deck_seed=deck_seed, log=folder / LOG)
+    return CameraHub(robot, sources, deck, deck_seed=deck_seed, log=folder / LOG)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tangy_hw.drivers.camera import Frame
 from tangy_hw.drivers.camera_source import CameraError
-from tangy_hw.perception.camera_hub import Sensors
+from tangy_hw.perception.camera_hub import CameraHub
 from tangy_hw.perception.cards.look import MOMENT, CardLook
 from tangy_hw.perception.faces.face_votes import FRAMES, Vote, vote
 from tangy_profiles.activity import Activity
@@ -24,7 +24,7 @@ from tangy_profiles.robot import FaceModels
 
 if TYPE_CHECKING:
     from tangy_hw.perception.cards.reader import CardReader
-    from tangy_hw.perception.faces.gallery import Gallery, Match
+    from tangy_hw.perception.faces.gallery import FaceMatch, Gallery
     from tangy_hw.perception.faces.reader import FaceReader
 
 T = TypeVar("T")
@@ -58,12 +58,12 @@ class CardSeen:
         return {name: getattr(self, name) for name in self.__slots__}
 
 
-class Senses:
+class CardAndFacePerception:
     """Cards and faces in the pictures of one camera."""
 
     def __init__(
         self,
-        sensors: Sensors,
+        sensors: CameraHub,
         activity: Activity,
         *,
         deck_seed: int = USUAL_SEED,
@@ -132,7 +132,7 @@ class Senses:
 
     async def who(self, most: int = 2 * FRAMES) -> Vote:
         """Say whose face the robot looks at: so many pictures are looked at for a vote."""
-        matches: list[Match] = []
+        matches: list[FaceMatch] = []
         async for frame in _fresh(self.sensors, most):
             match = await self._in_thread(self._match, frame)
             if match is not None:
@@ -160,7 +160,7 @@ class Senses:
         assert self._reader is not None  # noqa: S101 - `_load` has seen to that
         return self._reader
 
-    def _match(self, frame: Frame) -> Match | None:
+    def _match(self, frame: Frame) -> FaceMatch | None:
         """Compare the largest face in a picture that is seen well enough, if there is one."""
         self._load()
         assert self._face_reader is not None and self._gallery is not None  # noqa: S101
@@ -173,7 +173,7 @@ class Senses:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work, *args)
 
 
-async def _fresh(sensors: Sensors, most: int, apart: float = 0.0) -> AsyncIterator[Frame]:
+async def _fresh(sensors: CameraHub, most: int, apart: float = 0.0) -> AsyncIterator[Frame]:
     """Give pictures that were taken from now on, at most so many; none if none comes.
 
     Each was taken so many s `apart` from the one before.

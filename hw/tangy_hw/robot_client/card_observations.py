@@ -19,7 +19,7 @@ from tangy_profiles.scene import CardView
 MOST_NEWS = 50  # that wait to be told
 
 
-class CardViews:
+class CardObservations:
     """Looks at cards, and keeps the newest view of the one beside the robot in `view`."""
 
     def __init__(self, activity: Activity, commands: Commands) -> None:

@@ -23,9 +23,9 @@ from typing import IO, Any
 
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError, Pose
-from tangy_hw.robot_process.stop_latch import STAFF, BrokenOff
+from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.write_queue import Outbox
+from tangy_hw.write_queue import WriteQueue
 from tangy_profiles.health import STALE, Health, Reading
 from tangy_profiles.worker_log import open_log
 
@@ -130,7 +130,7 @@ class RobotLink:
         self._over = False  # it is closed for good
         self._process: subprocess.Popen[bytes] | None = None
         self._told = _Told()
-        self._outbox: Outbox | None = None
+        self._outbox: WriteQueue | None = None
         self._asked: dict[int, Future[dict[str, Any]]] = {}
         self._number = 0
         self._lock = threading.Lock()
@@ -184,7 +184,7 @@ class RobotLink:
         ready: Future[dict[str, Any]] = Future()
         self._asked[0] = ready
         assert process.stdin is not None  # noqa: S101 - it was asked for
-        outbox = self._outbox = Outbox(process.stdin)
+        outbox = self._outbox = WriteQueue(process.stdin)
         outbox.put(self.setup.to_json())
         self._threads = [
             threading.Thread(target=outbox.run, daemon=True),
@@ -298,7 +298,7 @@ class RobotLink:
             if heard:
                 self._asked[self._number] = asked
         if not heard:
-            asked.set_exception(BrokenOff(self.silent or ENDED))
+            asked.set_exception(Preempted(self.silent or ENDED))
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
@@ -357,7 +357,7 @@ class RobotLink:
         outbox = self._outbox
         return outbox is not None and outbox.put(line)
 
-    def _beat(self, process: subprocess.Popen[bytes], outbox: Outbox) -> None:
+    def _beat(self, process: subprocess.Popen[bytes], outbox: WriteQueue) -> None:
         number = 0
         while not self._closing.wait(BEAT_SECONDS) and process.poll() is None:
             alive = self._alive
@@ -377,7 +377,7 @@ class RobotLink:
             unanswered, self._asked = self._asked, {}
         for asked in unanswered.values():
             if not asked.done():
-                asked.set_exception(BrokenOff(ENDED))
+                asked.set_exception(Preempted(ENDED))
 
     def _take(self, said: dict[str, Any]) -> None:
         self._told.heard = time.monotonic()
@@ -393,7 +393,7 @@ class RobotLink:
         if asked is None or asked.done():
             return
         if "failed" in said:
-            kind = BrokenOff if said.get("broken") else DeviceError
+            kind = Preempted if said.get("broken") else DeviceError
             asked.set_exception(kind(said["failed"]))
         else:
             asked.set_result(said.get("done", {}))

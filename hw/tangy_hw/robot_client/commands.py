@@ -9,7 +9,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.client import RobotLink
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import Health
 
 BREAK_SECONDS = 20.0  # of real time, after which what was called off is taken to be over
@@ -37,9 +37,9 @@ class Commands:
         broken, until = "", 0.0
         while not self.link.wait(asked):
             if silent := self.link.silent:
-                raise BrokenOff(silent)
+                raise Preempted(silent)
             if broken and time.monotonic() > until:
-                raise BrokenOff(broken)
+                raise Preempted(broken)
             if not broken and (broken := self._critical()):
                 until = time.monotonic() + BREAK_SECONDS
                 self.link.ask("cancel", why=broken)

@@ -8,7 +8,7 @@ from contextlib import suppress
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.commands import Commands
 from tangy_profiles.health import OK, WARN, state_of
-from tangy_profiles.robot import Device
+from tangy_profiles.robot import DeviceProfile
 from tangy_profiles.tracker import Tracker
 
 LOOK_SECONDS = 0.5  # between two looks at the signs
@@ -18,11 +18,11 @@ WITHDRAWN_SECONDS = 3.0
 """Without a sign, after which somebody does not ask any more: an arm may have been before it."""
 
 
-class SeenRequests:
+class HelpRequestTracker:
     """The requests of one game; times are the robot's, in s."""
 
     def __init__(
-        self, people: Sequence[str], commands: Commands, device: Device | None = None
+        self, people: Sequence[str], commands: Commands, device: DeviceProfile | None = None
     ) -> None:
         """Prepare a game.
 

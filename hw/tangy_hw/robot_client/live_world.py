@@ -15,13 +15,13 @@ from random import Random
 from typing import Any, assert_never
 
 from tangy_hw.device_protocols import DeviceError, Picture, Pose
-from tangy_hw.robot_client.card_observations import CardViews
+from tangy_hw.robot_client.card_observations import CardObservations
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
-from tangy_hw.robot_client.help_requests import SeenRequests
-from tangy_hw.robot_client.recovery_actions import Remedies
+from tangy_hw.robot_client.help_requests import HelpRequestTracker
+from tangy_hw.robot_client.recovery_actions import RecoveryActions
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Remedy
@@ -80,8 +80,8 @@ class LiveWorld:
         """Why the last behaviour was not carried out to its end, "" if it was."""
         self.link = link
         self.commands = Commands(link)
-        self.cards = CardViews(activity, self.commands)
-        self._remedies = Remedies(self)
+        self.cards = CardObservations(activity, self.commands)
+        self._remedies = RecoveryActions(self)
         self._robot = robot
         self._room = room
         self._names = dict(names or {})
@@ -95,7 +95,7 @@ class LiveWorld:
         self.called: list[int] = []
         self._numbers = self.activity.deck.shuffled(self._order.random)
         self.cards.begin()
-        self.requests = SeenRequests(
+        self.requests = HelpRequestTracker(
             self.people, self.commands, self._robot.devices.get("requests")
         )
         self.sitting: dict[str, str] = {}
@@ -183,7 +183,7 @@ class LiveWorld:
             case "draw":
                 self.called.extend(numbers)
                 self._due = self.link.time + self._pace
-                with suppress(BrokenOff):  # it was called, whatever comes now
+                with suppress(Preempted):  # it was called, whatever comes now
                     self.commands.wait(min(self._pace, LOOK_SECONDS), asks=True)
             case "go to user":
                 target = action.target or (tracker.queue[0] if tracker.queue else None)

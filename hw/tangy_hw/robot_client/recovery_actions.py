@@ -20,7 +20,7 @@ BACK_SECONDS = 3.0  # of real time, in which all is back that a lost link had ta
 HELP_SECONDS = 25.0  # in which people do what the robot asks them for when it needs help
 
 
-class Remedies:
+class RecoveryActions:
     """The remedies that a world has for what is wrong with its robot, or at its table."""
 
     def __init__(self, world: LiveWorld) -> None:

@@ -15,13 +15,13 @@ from tangy_hw.device_protocols import Clock, DeviceError, MachineClock, OwnNavig
 from tangy_hw.drivers.registry import Wiring, open_device
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.simulated_clock import SteppedClock
-from tangy_hw.navigation.external_navigator import Entrusted
+from tangy_hw.navigation.external_navigator import ExternalNavigator
 from tangy_hw.navigation.map_files import read_map
 from tangy_hw.navigation.navigator import Navigator
-from tangy_hw.navigation.navigator_protocol import Wayfinder
+from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 from tangy_hw.navigation.occupancy import map_of_room, with_feet
-from tangy_hw.perception.camera_hub import Sensors, camera_sources
-from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.perception.camera_hub import CameraHub, camera_sources
+from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.help_request_source import RequestSource
 from tangy_hw.robot_process.body import Body
@@ -51,11 +51,15 @@ def drivers_of(robot: Robot, given: Mapping[str, Mapping[str, Setting]]) -> dict
     return {**own, **given}
 
 
-class Wired:
+class RobotRuntime:
     """A robot with all that belongs to it; within `async with` it is switched on."""
 
     def __init__(
-        self, robot: LiveRobot, sensors: Sensors, senses: Senses, bench: Rosbridge | None = None
+        self,
+        robot: LiveRobot,
+        sensors: CameraHub,
+        senses: CardAndFacePerception,
+        bench: Rosbridge | None = None,
     ) -> None:
         self.robot = robot
         self._bench = bench
@@ -63,7 +67,7 @@ class Wired:
         self._senses = senses
         self._open = AsyncExitStack()
 
-    async def __aenter__(self) -> Wired:
+    async def __aenter__(self) -> RobotRuntime:
         try:
             if self._bench is not None:
                 self._open.push_async_callback(self._bench.close)
@@ -106,7 +110,7 @@ class Wired:
             await asyncio.sleep(0.01)
 
 
-def wire(setup: RobotSetup) -> Wired:
+def assemble(setup: RobotSetup) -> RobotRuntime:
     """Put a robot together as a setup says; nothing is switched on yet.
 
     Raises:
@@ -121,14 +125,14 @@ def wire(setup: RobotSetup) -> Wired:
         for name, values in drivers_of(robot, setup.drivers).items()
     }
     body = _body(devices, wiring)
-    sensors = Sensors(
+    sensors = CameraHub(
         robot,
         camera_sources(robot, [f"{name}={source}" for name, source in setup.cameras.items()]),
         activity.deck,
         deck_seed=setup.deck_seed,
         log=Path(setup.log) if setup.log else None,
     )
-    senses = Senses(
+    senses = CardAndFacePerception(
         sensors,
         activity,
         deck_seed=setup.deck_seed,
@@ -149,7 +153,7 @@ def wire(setup: RobotSetup) -> Wired:
         # A link of its own: what it says is not to be taken for a word of the robot's.
         bench = Rosbridge(next(iter(wiring.links)), clock=clock.now)
         clock.follow(bench, _counted(body))
-    return Wired(live, sensors, senses, bench)
+    return RobotRuntime(live, sensors, senses, bench)
 
 
 def _body(devices: Mapping[str, Any], wiring: Wiring) -> Body:
@@ -178,11 +182,13 @@ def _counted(body: Body) -> dict[str, Callable[[], int]]:
     }
 
 
-def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None) -> Wayfinder:
+def _wayfinder(
+    setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation | None
+) -> NavigatorProtocol:
     """Return what finds place and way: the robot's own navigation where it has one, or ours."""
     if own is not None:
-        return Entrusted(own)
-    from tangy_hw.navigation.limits import Limits
+        return ExternalNavigator(own)
+    from tangy_hw.navigation.limits import MotionLimits
 
     count = len(setup.people)
     known = map_of_room(room, people=count)
@@ -194,7 +200,7 @@ def _wayfinder(setup: RobotSetup, robot: Robot, room: Room, own: OwnNavigation |
         known,
         np.random.default_rng(setup.seed),
         start,
-        limits=Limits(speed=robot.speed),
+        limits=MotionLimits(speed=robot.speed),
         people=np.array([(seat.x, seat.y) for seat in seats]),
     )
 

@@ -23,7 +23,7 @@ ON_THE_WAY, AT_REST = 0.1, 0.2
 and while it stands: no data is stale yet."""
 
 
-class PassingTime:
+class ControlLoop:
     """The ticks of a robot: `run` lets them come, `until` waits for what comes about with them."""
 
     def __init__(self, clock: Clock, tick: Callable[[], bool], *, stepped: bool = False) -> None:

@@ -14,18 +14,18 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
 from tangy_hw.device_protocols import STILL, Clock, Picture, Pose, Twist
-from tangy_hw.navigation.limits import Limits
-from tangy_hw.navigation.navigator_protocol import Wayfinder
-from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.navigation.limits import MotionLimits
+from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
+from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import Ask, RequestSource
-from tangy_hw.rate_estimator import Arrivals
+from tangy_hw.rate_estimator import RateEstimator
 from tangy_hw.robot_process.body import Body
-from tangy_hw.robot_process.control_loop import PassingTime
-from tangy_hw.robot_process.device_diagnostics import reports_of
-from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.robot_process.control_loop import ControlLoop
+from tangy_hw.robot_process.device_diagnostics import device_diagnostics
+from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.robot_process.hand_drive import HandDrive
 from tangy_hw.robot_process.performer import Performer
-from tangy_hw.robot_process.stop_latch import FAULT, STAFF, BrokenOff, Stops
+from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted, StopLatch
 from tangy_hw.robot_process.tick_watchdog import TickWatch
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_hw.watchdogs import Watchdogs
@@ -49,10 +49,10 @@ class LiveRobot:
         self,
         robot: Robot,
         body: Body,
-        navigator: Wayfinder,
+        navigator: NavigatorProtocol,
         clock: Clock,
         *,
-        senses: Senses | None = None,
+        senses: CardAndFacePerception | None = None,
         requests: RequestSource | None = None,
         stepped: bool = False,
     ) -> None:
@@ -77,23 +77,23 @@ class LiveRobot:
         """Is called with why when all that is under way is to be given up."""
         self.going = ""
         """Where it is driving to."""
-        self.passing = PassingTime(clock, self._tick, stepped=stepped)
+        self.passing = ControlLoop(clock, self._tick, stepped=stepped)
         self._body = body
         self._clock = clock
         self._stepped = stepped
-        limits = Limits(speed=robot.speed)
+        limits = MotionLimits(speed=robot.speed)
         self.hand = HandDrive(limits)
         self.watch = TickWatch()
         self._wheels = Wheels(body.base, limits)
-        self._stops = Stops()
+        self._stops = StopLatch()
         self._alone_since: float | None = None
         self._left_alone = False
         self._performer = Performer(body, self.passing, robot.gaze, lambda: self._halted)
         self._wanted: Pose | None = None
         self._was = ""  # how the last drive ended
-        self._evidence = DriveEvidence(navigator, clock.now)
-        self._ticked, self._ticks = clock.now(), Arrivals()
-        reports = reports_of(
+        self._evidence = DriveMonitor(navigator, clock.now)
+        self._ticked, self._ticks = clock.now(), RateEstimator()
+        reports = device_diagnostics(
             robot,
             body,
             self._evidence,
@@ -346,7 +346,7 @@ class LiveRobot:
             navigator.cancel()
             await self._wheels.stop()
         if hazard and not arrived:
-            raise BrokenOff(hazard)
+            raise Preempted(hazard)
         return arrived
 
     def _tick(self) -> bool:

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from tangy_hw.device_protocols import Device
-from tangy_hw.perception.card_and_face_perception import Senses
+from tangy_hw.perception.card_and_face_perception import CardAndFacePerception
 from tangy_hw.perception.requests.help_request_source import RequestSource
 from tangy_hw.robot_process.body import Body
-from tangy_hw.robot_process.drive_monitor import DriveEvidence
+from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.watchdogs import Report
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Reading, state_of
 from tangy_profiles.robot import FROZEN, LINK, Robot
@@ -18,16 +18,16 @@ FILMED_PATIENCE = 4.0
 """How much longer a picture may take on a bench in a hurry, whose cameras film in real time."""
 
 
-def reports_of(
+def device_diagnostics(
     robot: Robot,
     body: Body,
-    evidence: DriveEvidence,
+    evidence: DriveMonitor,
     ticked: Callable[[], float],
     rate: Callable[[], float | None] = lambda: None,
     *,
     failed: Callable[[], str] = str,
     frozen: Callable[[], float] = float,
-    senses: Senses | None = None,
+    senses: CardAndFacePerception | None = None,
     requests: RequestSource | None = None,
     stepped: bool = False,
 ) -> dict[str, Report]:
@@ -86,7 +86,7 @@ def reports_of(
             age=late, state=OK if reading.state == STALE and fresh else reading.state
         )
 
-    def camera(senses: Senses, name: str) -> Reading:
+    def camera(senses: CardAndFacePerception, name: str) -> Reading:
         readings = senses.sensors.health()
         return filmed(next((r for r in readings if r.device == name), Reading(name, state=WARN)))
 

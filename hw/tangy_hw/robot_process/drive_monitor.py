@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 from tangy_profiles.health import Fact, Reading
 
 if TYPE_CHECKING:
-    from tangy_hw.navigation.navigator_protocol import Wayfinder
+    from tangy_hw.navigation.navigator_protocol import NavigatorProtocol
 
 LOST_FIT, LOST_SPREAD, SLIPS = 0.85, 0.5, 0.3  # as the rules for faults have it
 KEPT_SECONDS = 3.0  # for which a drive that is over still says what was wrong with it
 
 
-class DriveEvidence:
+class DriveMonitor:
     """The worst of a navigator's facts on the present drive, and for a moment after it."""
 
-    def __init__(self, navigator: Wayfinder, now: Callable[[], float]) -> None:
+    def __init__(self, navigator: NavigatorProtocol, now: Callable[[], float]) -> None:
         self.blocked = False
         """Whether there was no way to where the robot was to go last."""
         self._navigator = navigator

@@ -8,7 +8,7 @@ import numpy as np
 
 from tangy_hw.device_protocols import STILL, Pose, Scan, Twist
 from tangy_hw.navigation.clearance import REACH, Seen, guarded
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 from tangy_hw.navigation.poses import HERE, Floats, endpoints
 
 HOLDS_SECONDS = 0.4  # for which a command of somebody at the keys holds
@@ -23,7 +23,7 @@ class HandDrive:
     Where the robot is on a map does not matter, and whatever is seen may be somebody.
     """
 
-    def __init__(self, limits: Limits, laser: Pose = HERE) -> None:
+    def __init__(self, limits: MotionLimits, laser: Pose = HERE) -> None:
         self.held: Held = ""
         self._limits, self._laser = limits, laser
         self._told = STILL

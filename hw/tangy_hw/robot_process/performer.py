@@ -8,8 +8,8 @@ from typing import Any
 
 from tangy_hw.device_protocols import Arms, Picture
 from tangy_hw.robot_process.body import Body
-from tangy_hw.robot_process.control_loop import PassingTime
-from tangy_hw.robot_process.stop_latch import BrokenOff
+from tangy_hw.robot_process.control_loop import ControlLoop
+from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import ERROR
 
 SPEECH_SECONDS = 60.0  # for one line
@@ -25,7 +25,7 @@ class Performer:
     def __init__(
         self,
         body: Body,
-        passing: PassingTime,
+        passing: ControlLoop,
         gazes: Mapping[str, Angles],
         halted: Callable[[], str],
     ) -> None:
@@ -62,7 +62,7 @@ class Performer:
                 task.cancel()
             await asyncio.gather(*tasks.values(), return_exceptions=True)
         if why := self._halted():
-            raise BrokenOff(why)
+            raise Preempted(why)
         return {
             what: not task.cancelled() and task.exception() is None for what, task in tasks.items()
         }
@@ -70,7 +70,7 @@ class Performer:
     async def _pose(self, arms: Arms, posture: Angles) -> None:
         """Move the arms; not when it was stopped before they were told."""
         if why := self._halted():
-            raise BrokenOff(why)
+            raise Preempted(why)
         await arms.pose(posture, POSE_SECONDS)
 
     async def look_at(self, what: str) -> None:

@@ -24,11 +24,15 @@ from dataclasses import astuple
 from typing import Any
 
 from tangy_hw.device_protocols import DeviceError, Twist
-from tangy_hw.perception.card_and_face_perception import MOST_PICTURES, CardSeen, Senses
-from tangy_hw.robot_process.assembly import Wired, wire
+from tangy_hw.perception.card_and_face_perception import (
+    MOST_PICTURES,
+    CardAndFacePerception,
+    CardSeen,
+)
+from tangy_hw.robot_process.assembly import RobotRuntime, assemble
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import aged, beat_of
-from tangy_hw.robot_process.program_pipe import Answers, end_with, open_lines
+from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with, open_lines
 from tangy_hw.robot_process.protocol import (
     Asked,
     LineError,
@@ -40,7 +44,7 @@ from tangy_hw.robot_process.protocol import (
     text_of,
 )
 from tangy_hw.robot_process.startup import switched_on
-from tangy_hw.robot_process.stop_latch import STAFF, BrokenOff
+from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.errors import TangyError
 
@@ -58,7 +62,9 @@ Answer = dict[str, Any]
 class RobotProcess:
     """Does what the lines ask for, and tells of the robot."""
 
-    def __init__(self, wired: Wired, say: Callable[[Answer], None], *, stepped: bool) -> None:
+    def __init__(
+        self, wired: RobotRuntime, say: Callable[[Answer], None], *, stepped: bool
+    ) -> None:
         """Take charge of a robot that is wired up; `say` writes a line."""
         self.robot: LiveRobot = wired.robot
         self._wired = wired
@@ -191,7 +197,7 @@ class RobotProcess:
     async def _do(self, asked: Asked) -> None:
         try:
             done = await self._deeds[asked["do"]](asked)
-        except BrokenOff as error:
+        except Preempted as error:
             self._answer(asked, failed=str(error), broken=True)
         except asyncio.CancelledError:
             self._answer(asked, failed=self._broken or "called off", broken=True)
@@ -278,7 +284,7 @@ class RobotProcess:
         }
 
     @property
-    def _senses(self) -> Senses:
+    def _senses(self) -> CardAndFacePerception:
         if self.robot.senses is None:
             raise DeviceError("The robot has no cameras.")
         return self.robot.senses
@@ -346,10 +352,10 @@ async def run() -> int:
 
 
 async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> int:
-    _, out = await asyncio.get_running_loop().connect_write_pipe(Answers, sys.stdout)
+    _, out = await asyncio.get_running_loop().connect_write_pipe(AnswerPipe, sys.stdout)
     try:
         setup = RobotSetup.from_json(await lines.readline())
-        wired = wire(setup)
+        wired = assemble(setup)
         # Told to end, it does what it does when its pipe closes; before this, nothing is open.
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, pipe.close)
         async with switched_on(wired, lines) as said:

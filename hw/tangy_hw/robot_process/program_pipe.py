@@ -31,7 +31,7 @@ async def end_with(program: int, lines: asyncio.StreamReader) -> None:
     os._exit(1)
 
 
-class Answers(asyncio.Protocol):
+class AnswerPipe(asyncio.Protocol):
     """Lines to the program; where it takes none, beats are left out and nothing waits."""
 
     transport: asyncio.WriteTransport | None = None

@@ -10,7 +10,7 @@ import signal
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 
-from tangy_hw.robot_process.assembly import Wired
+from tangy_hw.robot_process.assembly import RobotRuntime
 
 GIVE_UP_SECONDS = 1.0
 """In which a robot that was not switched on yet is let go of; then the process ends anyway."""
@@ -19,7 +19,7 @@ BEAT = b'{"beat"'
 
 @asynccontextmanager
 async def switched_on(
-    wired: Wired, lines: asyncio.StreamReader
+    wired: RobotRuntime, lines: asyncio.StreamReader
 ) -> AsyncIterator[list[bytes] | None]:
     """Switch a robot on, unless the program gives it up before that, and off again.
 
@@ -58,7 +58,7 @@ async def _until_the_end(lines: asyncio.StreamReader, said: list[bytes]) -> None
                 said.append(line)
 
 
-async def _give_up(opening: asyncio.Future[Wired]) -> None:
+async def _give_up(opening: asyncio.Future[RobotRuntime]) -> None:
     """Let go of all that is open; devices and threads that do not answer are not waited for."""
     signal.setitimer(signal.ITIMER_REAL, GIVE_UP_SECONDS)  # which ends a process
     opening.cancel()

@@ -8,11 +8,11 @@ STAFF, FAULT = "staff", "fault"
 """Who stops a robot: somebody at the screen, or what was diagnosed."""
 
 
-class BrokenOff(DeviceError):
+class Preempted(DeviceError):
     """Something was not done to its end, because the robot has to stand still."""
 
 
-class Stops:
+class StopLatch:
     """The stops that hold, one for each who asked for one; it is let go when all have."""
 
     def __init__(self) -> None:

@@ -11,13 +11,13 @@ from contextlib import suppress
 from functools import partial
 
 from tangy_hw.device_protocols import STILL, Base, DeviceError, Twist
-from tangy_hw.navigation.limits import Limits
+from tangy_hw.navigation.limits import MotionLimits
 
 
 class Wheels:
     """Tells a base how to drive, without waiting for it."""
 
-    def __init__(self, base: Base, limits: Limits) -> None:
+    def __init__(self, base: Base, limits: MotionLimits) -> None:
         """Take charge of a base that may drive so."""
         self.driven = STILL
         """What it was told last."""

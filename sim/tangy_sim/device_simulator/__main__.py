@@ -1,7 +1,8 @@
 """The bench process: commands as JSON lines on stdin, answers on stdout, devices on their wires.
 
 It says {"ready": {...}} first, then answers each {"do": ...} (with its "id", if it has one); see
-`Bench.do`. What cannot be done is answered by {"failed": "a sentence"}. It ends with its stdin.
+`DeviceServers.do`. What cannot be done is answered by {"failed": "a sentence"}. It ends with its
+stdin.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, load_people
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
-from tangy_sim.device_simulator.device_servers import Bench
+from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.world import BenchWorld
 
 LONGEST_LINE = 1 << 20
@@ -43,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     faces = {person.id: number for number, person in enumerate(people, 1)}
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it closes its stdin
-    asyncio.run(_serve(Bench(world, stepped=told.stepped, faces=faces, seed=told.seed)))
+    asyncio.run(_serve(DeviceServers(world, stepped=told.stepped, faces=faces, seed=told.seed)))
     return 0
 
 
@@ -70,7 +71,7 @@ def _people(count: int, named: Sequence[str]) -> tuple[Person, ...]:
     return tuple(people)
 
 
-async def _serve(bench: Bench) -> None:
+async def _serve(bench: DeviceServers) -> None:
     reader = asyncio.StreamReader(limit=LONGEST_LINE)
     loop = asyncio.get_running_loop()
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
@@ -90,7 +91,7 @@ async def _serve(bench: Bench) -> None:
         await bench.close()
 
 
-def _answer(bench: Bench, line: bytes) -> dict[str, Any]:
+def _answer(bench: DeviceServers, line: bytes) -> dict[str, Any]:
     told: Any = None
     answer: dict[str, Any]
     try:

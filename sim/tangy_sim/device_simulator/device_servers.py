@@ -31,7 +31,7 @@ EVERY = {"laser": 0.1, "joints": 0.1, "stop": 0.1, "diagnostics": 0.25, "infrare
 ALWAYS = ("/bench/advance", "/clock")
 
 
-class Bench:
+class DeviceServers:
     """Serves a world. `start` it, then `run` (in the machine's time) or be advanced (in steps)."""
 
     def __init__(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
-from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.floor import Floor, FloorPose
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,7 +30,7 @@ class Odometer:
 EXACT = Odometer(0.0, 0.0)
 
 
-class Wheels:
+class SimulatedWheels:
     """A base on two driven wheels that stands on a floor.
 
     `pose` is the truth in the room, `odometry` what the wheels counted since they were switched
@@ -38,11 +38,15 @@ class Wheels:
     """
 
     def __init__(
-        self, floor: Floor, pose: Pose, random: np.random.Generator, odometer: Odometer = Odometer()
+        self,
+        floor: Floor,
+        pose: FloorPose,
+        random: np.random.Generator,
+        odometer: Odometer = Odometer(),
     ) -> None:
         self.floor = floor
         self.pose = pose
-        self.odometry = Pose(0.0, 0.0, 0.0)
+        self.odometry = FloorPose(0.0, 0.0, 0.0)
         self.forward = self.turn = 0.0
         self.bumped = False
         """Whether it stands against something that it was told to drive into."""
@@ -111,21 +115,21 @@ class Wheels:
             gone, turned = (left + right) / 2, (right - left) / TRACK
         self.odometry = moved(self.odometry, gone, turned)
 
-    def _leads_out(self, there: Pose) -> bool:
+    def _leads_out(self, there: FloorPose) -> bool:
         """Say whether a move leads away from what the robot stands against already."""
         if self.floor.clear(self.pose.x, self.pose.y, RADIUS):
             return False
         ahead = moved(there, 0.0, 0.0)
         dx, dy = there.x - self.pose.x, there.y - self.pose.y
-        further = Pose(ahead.x + 8 * dx, ahead.y + 8 * dy, ahead.heading)
+        further = FloorPose(ahead.x + 8 * dx, ahead.y + 8 * dy, ahead.heading)
         return self.floor.clear(further.x, further.y, RADIUS - 0.05)
 
 
-def moved(pose: Pose, gone: float, turned: float) -> Pose:
+def moved(pose: FloorPose, gone: float, turned: float) -> FloorPose:
     """Return a pose after a short way along an arc: so many m, turning by so many radians."""
     middle = pose.heading + turned / 2
     heading = (pose.heading + turned + pi) % (2 * pi) - pi
-    return Pose(pose.x + gone * cos(middle), pose.y + gone * sin(middle), heading)
+    return FloorPose(pose.x + gone * cos(middle), pose.y + gone * sin(middle), heading)
 
 
 def _towards(value: float, goal: float, most: float) -> float:

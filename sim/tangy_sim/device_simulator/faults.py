@@ -17,7 +17,7 @@ COMES_BACK = 0.5
 
 
 @dataclass
-class Fault:
+class SimulatedFault:
     """A fault that is there: since when (s), with whom, and whether it has shown."""
 
     kind: Kind
@@ -30,8 +30,8 @@ class Faults:
     """The faults of one game."""
 
     def __init__(self) -> None:
-        self.present: dict[str, Fault] = {}
-        self.lifted: list[Fault] = []
+        self.present: dict[str, SimulatedFault] = {}
+        self.lifted: list[SimulatedFault] = []
         """What was put right since somebody last looked; who acts on it empties it."""
 
     def __contains__(self, kind: str) -> bool:
@@ -42,13 +42,13 @@ class Faults:
         for kind in list(self.present):
             self.lift(kind)
 
-    def inject(self, kind: str, now: float) -> Fault:
+    def inject(self, kind: str, now: float) -> SimulatedFault:
         """Bring about a fault.
 
         Raises:
             KeyError: there is no such kind.
         """
-        return self.present.setdefault(kind, Fault(KINDS[kind], now))
+        return self.present.setdefault(kind, SimulatedFault(KINDS[kind], now))
 
     def lift(self, kind: str) -> bool:
         """Put a fault right; say whether it was there."""

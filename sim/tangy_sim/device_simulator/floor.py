@@ -28,7 +28,7 @@ FIDGETS = 0.2  # times a second that a leg is moved
 RING = 1.0  # m from the robot at which chairs are put around it
 
 
-class Pose(NamedTuple):
+class FloorPose(NamedTuple):
     """Where something stands and which way it faces; heading 0 is along x, in radians."""
 
     x: float
@@ -119,13 +119,13 @@ class Floor:
         away = np.hypot(self.circles[:, 0] - x, self.circles[:, 1] - y)
         return bool((away > radius + self.circles[:, 2]).all())
 
-    def block(self, pose: Pose) -> None:
+    def block(self, pose: FloorPose) -> None:
         """Put chairs all around the robot, so close that it cannot get out between them."""
         count = int(2 * pi * RING / 0.45)
         ways = [2 * pi * number / count for number in range(count)]
         self._drop(Circle(pose.x + RING * cos(way), pose.y + RING * sin(way), 0.2) for way in ways)
 
-    def drop_ahead(self, pose: Pose, ahead: float) -> bool:
+    def drop_ahead(self, pose: FloorPose, ahead: float) -> bool:
         """Put a chair in the robot's way, so many m ahead; say whether there was room for it."""
         x, y = pose.x + ahead * cos(pose.heading), pose.y + ahead * sin(pose.heading)
         if not self.clear(x, y, 0.9):  # it must leave a way round

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.floor import Floor, FloorPose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,7 @@ class Lidar:
     noise: float = 0.01
     farthest: float = 30.0
 
-    def scan(self, pose: Pose, floor: Floor, random: np.random.Generator) -> Real:
+    def scan(self, pose: FloorPose, floor: Floor, random: np.random.Generator) -> Real:
         """Measure all around; what nothing is hit by is inf."""
         angles = pose.heading + self.first + self.step * np.arange(self.beams, dtype=np.float64)
         ranges = cast(pose.x, pose.y, angles, floor.walls, floor.circles)
@@ -41,7 +41,7 @@ class Lidar:
         ranges[ranges > self.farthest] = np.inf
         return np.maximum(ranges, 0.02)
 
-    def covered(self, pose: Pose, floor: Floor, random: np.random.Generator) -> Real:
+    def covered(self, pose: FloorPose, floor: Floor, random: np.random.Generator) -> Real:
         """Measure with a cloth over the scanner."""
         ranges = self.scan(pose, floor, random)
         caught = np.arange(self.beams) < COVERED * self.beams

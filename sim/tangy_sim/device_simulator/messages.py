@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import cos, floor, sin
 from typing import Any
 
-from tangy_sim.device_simulator.floor import Pose
+from tangy_sim.device_simulator.floor import FloorPose
 
 Message = dict[str, Any]
 OK, WARN, ERROR, STALE = range(4)
@@ -24,7 +24,7 @@ def header(seconds: float, frame: str) -> Message:
     return {"stamp": time(seconds), "frame_id": frame}
 
 
-def odometry(seconds: float, pose: Pose, forward: float, turn: float) -> Message:
+def odometry(seconds: float, pose: FloorPose, forward: float, turn: float) -> Message:
     """Return nav_msgs/Odometry; covariances are left out, as nobody reads them."""
     where = {
         "position": {"x": pose.x, "y": pose.y, "z": 0.0},

@@ -25,7 +25,7 @@ from tangy_sim.device_simulator.faults import Faults
 from tangy_sim.device_simulator.speech_reception import Heard
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.faulty_world import HELPS
-from tangy_sim.worlds.users import Player, UserModel, load_users, waiting_calls, waiting_time
+from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
 MARKS = (1.5, 5.0)  # s after a call in which it is marked
 SLIPS = (1.0, 8.0)  # s after a call in which another number is
@@ -49,7 +49,7 @@ class Sitter:
     `refused` how often nothing was done about what was asked.
     """
 
-    player: Player
+    player: SimulatedUser
     card: int
     asks_since: float | None = None
     hides: str = ""
@@ -63,7 +63,7 @@ class Sitter:
 
 
 @dataclass
-class Game:
+class GameProgress:
     """What happened in a game so far, as everybody in the room knows it."""
 
     opened: bool = False
@@ -108,7 +108,7 @@ class People:
         """Deal other cards and begin a game; nobody asks before it is opened."""
         activity = self.activity
         self.now = now
-        self.game = Game()
+        self.game = GameProgress()
         self._agenda.clear()
         self._calls = 0  # numbers called
         self._time = 0.0  # in calls
@@ -123,7 +123,8 @@ class People:
                 dealt.append(card)
         self.sitters = {
             person: Sitter(
-                Player(person, activity.deck, numbers_of(activity.deck, card, USUAL_SEED)), card
+                SimulatedUser(person, activity.deck, numbers_of(activity.deck, card, USUAL_SEED)),
+                card,
             )
             for person, card in zip(self.ids, dealt, strict=True)
         }

@@ -43,7 +43,7 @@ class _Pattern:
     fault: str
 
 
-class Hearing:
+class SpeechReception:
     """The ears of a group that plays an activity with a robot."""
 
     def __init__(self, activity: Activity, robot: Robot, people: Sequence[Person]) -> None:

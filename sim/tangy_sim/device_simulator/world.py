@@ -18,13 +18,13 @@ from tangy_profiles.person import Person
 from tangy_profiles.robot import Robot
 from tangy_profiles.room import Room
 from tangy_profiles.state import FRONT
-from tangy_sim.device_simulator.drive import RADIUS, Odometer, Wheels, moved
+from tangy_sim.device_simulator.drive import RADIUS, Odometer, SimulatedWheels, moved
 from tangy_sim.device_simulator.faults import COMES_BACK, Faults
-from tangy_sim.device_simulator.floor import Floor, Pose
+from tangy_sim.device_simulator.floor import Floor, FloorPose
 from tangy_sim.device_simulator.joints import Joints
 from tangy_sim.device_simulator.lidar import Lidar
 from tangy_sim.device_simulator.people import People
-from tangy_sim.device_simulator.speech_reception import Hearing, speaking_seconds
+from tangy_sim.device_simulator.speech_reception import SpeechReception, speaking_seconds
 from tangy_sim.worlds.injection import KINDS
 from tangy_sim.worlds.users import UserModel
 
@@ -80,13 +80,13 @@ class BenchWorld:
         self.games = 0
         self._physics = np.random.default_rng([seed, 1])
         self.floor = Floor(room, len(people), np.random.default_rng([seed, 2]))
-        start = Pose(room.front.x, room.front.y, pi / 2)
-        self.wheels = Wheels(self.floor, start, self._physics, odometer or Odometer())
+        start = FloorPose(room.front.x, room.front.y, pi / 2)
+        self.wheels = SimulatedWheels(self.floor, start, self._physics, odometer or Odometer())
         self.lidar = Lidar()
         self.joints = Joints(robot)
         self.faults = Faults()
         self.people = People(activity, people, self.faults, seed=seed, users=users)
-        self._hearing = Hearing(activity, robot, people)
+        self._hearing = SpeechReception(activity, robot, people)
         self._speech: deque[str] = deque()
         self._silent_from = 0.0  # when what is being said has been said
         self.said: list[str] = []
@@ -298,7 +298,7 @@ class BenchWorld:
             at_none = all(hypot(p.x - x, p.y - y) > LEAVES for p in self._stands.values())
             if far and at_none and self.floor.clear(x, y, RADIUS + 0.2):
                 heading = pose.heading + float(random.uniform(-TURNED, TURNED))
-                self.wheels.pose = moved(Pose(float(x), float(y), heading), 0.0, 0.0)
+                self.wheels.pose = moved(FloorPose(float(x), float(y), heading), 0.0, 0.0)
                 break
 
     # ------------------------------------------------------------------------------ truth

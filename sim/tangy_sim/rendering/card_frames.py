@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.card_face import HEIGHT, LAST_CARD, USUAL_SEED, WIDTH, Face
+from tangy_profiles.card_face import HEIGHT, LAST_CARD, USUAL_SEED, WIDTH, CardLayout
 from tangy_profiles.card_picture import draw_face
 from tangy_profiles.cards import Deck
 from tangy_sim.rendering.card_backgrounds import background
@@ -63,7 +63,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Frame:
+class RenderedFrame:
     """A picture of a card, and what is true of it.
 
     `marked` are the cells with a chip, as a mask; `covered` is how much of each cell a hand hides,
@@ -130,7 +130,7 @@ class CardCamera:
         `faint` is the chance that the chips of a card are of a kind that is hard to see, `odd`
         that they are none, but what `oddity` draws: coins, beans or scraps of paper.
         """
-        self.face = Face(deck)
+        self.face = CardLayout(deck)
         self.straddling = straddling
         self.faint = faint
         self.odd = odd
@@ -138,7 +138,7 @@ class CardCamera:
         self.deck_seed = deck_seed
         self.title = title
 
-    def frames(self, seed: int, count: int, **given: Any) -> Iterator[Frame]:
+    def frames(self, seed: int, count: int, **given: Any) -> Iterator[RenderedFrame]:
         """Yield frames of random cards in random views; see `some_view` for what may be given."""
         import numpy as np
 
@@ -146,7 +146,7 @@ class CardCamera:
             random = np.random.default_rng([seed, number])
             yield self.some_frame(random, some_view(random, **given))
 
-    def some_frame(self, random: np.random.Generator, view: View) -> Frame:
+    def some_frame(self, random: np.random.Generator, view: View) -> RenderedFrame:
         """Take a frame of a random card with random chips."""
         deck = self.face.deck
         cells = deck.rows * len(deck.columns)
@@ -177,7 +177,7 @@ class CardCamera:
 
     def take(
         self, card: int, chips: dict[int, Chip], view: View, random: np.random.Generator
-    ) -> Frame:
+    ) -> RenderedFrame:
         """Take a frame of this card with these chips in this view."""
         import numpy as np
 
@@ -198,7 +198,7 @@ class CardCamera:
             (grid.left, grid.bottom),
         )
         corners = project(plane, np.array(ends))
-        return Frame(
+        return RenderedFrame(
             picture,
             card,
             sum(1 << cell for cell in chips),
@@ -270,7 +270,7 @@ class CardCamera:
 
 
 @lru_cache(maxsize=300)
-def _master(face: Face, card: int, seed: int, title: str) -> Picture:
+def _master(face: CardLayout, card: int, seed: int, title: str) -> Picture:
     return draw_face(face, card, seed, title, MASTER / 2)
 
 
@@ -296,7 +296,7 @@ def _bent(paper: Real, most: float, random: np.random.Generator) -> Real:
     return moved.astype(np.float32)
 
 
-def _homography(view: View, face: Face, random: np.random.Generator) -> NDArray[Any]:
+def _homography(view: View, face: CardLayout, random: np.random.Generator) -> NDArray[Any]:
     """Return what takes mm on the card to pixels of the picture."""
     import numpy as np
 

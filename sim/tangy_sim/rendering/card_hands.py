@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
-from tangy_profiles.card_face import HEIGHT, WIDTH, Face
+from tangy_profiles.card_face import HEIGHT, WIDTH, CardLayout
 from tangy_sim.rendering.card_backgrounds import tone_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def draw_hand(
     kind: str,
     scale: float,
     around: float,
-    face: Face,
+    face: CardLayout,
     random: np.random.Generator,
 ) -> Real:
     """Draw a hand with its sleeve over the card; return where it is, 0 to 1."""
@@ -95,7 +95,7 @@ def _shape(
     mask: NDArray[np.uint8],
     scale: float,
     around: float,
-    face: Face,
+    face: CardLayout,
     random: np.random.Generator,
 ) -> NDArray[np.uint8]:
     """Draw an outline with corners or none: a fist, a bar (an arm, a ruler), a cup, a sheet."""

@@ -18,7 +18,7 @@ KERNEL_BYTES = 1 << 17
 """What the system may hold back for a slow viewer: more of it would be old pictures."""
 
 
-class Picture:
+class JpegStream:
     """One camera: it shows every viewer the newest JPEG, and leaves out what a slow one missed.
 
     Faults: while `frozen` each new picture is the last from before; while `closed` viewers are cut
@@ -67,7 +67,7 @@ class MjpegServer:
     """Some cameras at one port; `camera["/head"].frozen = True` breaks one of them."""
 
     def __init__(self, paths: Iterable[str] = PATHS) -> None:
-        self.camera = {path: Picture(path) for path in paths}
+        self.camera = {path: JpegStream(path) for path in paths}
         self.port = 0
         self._open: set[_Viewer] = set()
         self._server: asyncio.Server | None = None
@@ -108,7 +108,7 @@ class _Viewer(asyncio.Protocol):
     def __init__(self, server: MjpegServer) -> None:
         self._server = server
         self._asked = b""
-        self._camera: Picture | None = None
+        self._camera: JpegStream | None = None
         self._transport: asyncio.Transport | None = None
         self._begun = False
         self._full = False

@@ -12,14 +12,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tangy_sim.servers.scip_session import CLOCK, URG, Scanner, Session
+from tangy_sim.servers.scip_session import CLOCK, URG, Scanner, ScipSession
 
 MOST_UNSENT = 1 << 18
 """Bytes that wait for a client that is slow; then it misses scans, as it would with a scanner."""
 
 
 class _Wire(Protocol):
-    session: Session
+    session: ScipSession
 
     @property
     def unsent(self) -> int: ...
@@ -163,7 +163,7 @@ class _Connection(asyncio.Protocol):
     def __init__(self, server: ScipServer) -> None:
         self._server = server
         self._transport: asyncio.Transport | None = None
-        self.session = Session(server.scanner, self._send)
+        self.session = ScipSession(server.scanner, self._send)
 
     @property
     def unsent(self) -> int:
@@ -202,7 +202,7 @@ class _Port:
         self._gone = False
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(port, self._receive)
-        self.session = Session(server.scanner, self._send)
+        self.session = ScipSession(server.scanner, self._send)
 
     @property
     def unsent(self) -> int:

@@ -93,7 +93,7 @@ MEASURE = re.compile(
 )
 
 
-class Session:
+class ScipSession:
     """One client's conversation with a scanner: `feed` takes what it says, `offer` a scan."""
 
     def __init__(self, scanner: Scanner, write: Callable[[bytes], None]) -> None:

@@ -20,7 +20,7 @@ from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.devices import readings
 from tangy_sim.worlds.injection import KINDS, Injection, Kind
 from tangy_sim.worlds.pending_injections import ToCome
-from tangy_sim.worlds.users import Player, UserModel
+from tangy_sim.worlds.users import SimulatedUser, UserModel
 from tangy_sim.worlds.world import SimulatedWorld
 
 HELPS = 0.8
@@ -72,7 +72,7 @@ class FaultyWorld(SimulatedWorld):
         self.came: list[tuple[int, str]] = []
         """The faults that set in, and at which step."""
         self._to_come = ToCome(self.injections, self._chance)
-        self._unheard: list[Player] = []
+        self._unheard: list[SimulatedUser] = []
         self._by_word = False  # whether requests are taken by voice and key
         self._refused = False
         self._health: tuple[float, tuple[str, ...], Health] | None = None
@@ -272,7 +272,7 @@ class FaultyWorld(SimulatedWorld):
     def _bring_card_closer(self, action: Action) -> tuple[int, ...] | None:
         return () if self._refuses() else super()._bring_card_closer(action)
 
-    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...] | None:
+    def _correct(self, errors: Callable[[SimulatedUser], int], verb: str) -> tuple[int, ...] | None:
         if self.tracker.seen is None or not self._refuses():
             return super()._correct(errors, verb)
         player = self._players[self.tracker.place]
@@ -287,7 +287,7 @@ class FaultyWorld(SimulatedWorld):
             return None  # what the person did cannot be seen
         return response
 
-    def _ask(self, player: Player) -> bool:
+    def _ask(self, player: SimulatedUser) -> bool:
         if "requests-silent" in self.present and not self._by_word:
             if player not in self._unheard:
                 self._unheard.append(player)

@@ -17,8 +17,8 @@ from tangy_profiles.behaviour import Action
 from tangy_profiles.cards import CardState
 from tangy_profiles.state import FRONT, ActivityState, Outcome
 from tangy_sim.worlds.compliance import Preferences
-from tangy_sim.worlds.guided_plan import FEWEST, LINE, Cue, Plan
-from tangy_sim.worlds.users import Player, UserModel
+from tangy_sim.worlds.guided_plan import FEWEST, LINE, Cue, GuidedPlan
+from tangy_sim.worlds.users import SimulatedUser, UserModel
 from tangy_sim.worlds.world import SimulatedWorld
 
 Some = TypeVar("Some")
@@ -52,7 +52,7 @@ class GuidedWorld(SimulatedWorld):
     def begin(self) -> ActivityState:
         """Deal new cards, plan a game in which everything lacks, and return its first state."""
         state = super().begin()
-        self.plan = Plan(self.activity, self._guide)
+        self.plan = GuidedPlan(self.activity, self._guide)
         self._next_ask = 0.0  # people are looked at after every behaviour
         self._beats = self._played = 0  # calls, with or without a number; those acted upon
         self._cue: Cue | None = None
@@ -71,7 +71,7 @@ class GuidedWorld(SimulatedWorld):
 
     # ------------------------------------------------------------------------ which number comes
 
-    def _prepare_line(self) -> Player:
+    def _prepare_line(self) -> SimulatedUser:
         """Put all but one number of somebody's line among the first: a win can come in time."""
         deck, uniform = self.activity.deck, self._guide
         player = self._pick(tuple(self._players.values()))
@@ -133,7 +133,7 @@ class GuidedWorld(SimulatedWorld):
             return player.cells(sum(1 << c for c in cells) & open_cells)
         return ()
 
-    def _overlooks(self, player: Player, cell: int) -> bool:
+    def _overlooks(self, player: SimulatedUser, cell: int) -> bool:
         """Say whether a person misses the number that is called: by the plan, or not to win yet."""
         cue = self._cue
         if cue is not None and cue.person == player.id and not cue.asked:
@@ -185,7 +185,7 @@ class GuidedWorld(SimulatedWorld):
             self._turns[player.id] += 1
             self.tracker.ask(player.id)
 
-    def _bring_about(self, cue: Cue, player: Player) -> None:
+    def _bring_about(self, cue: Cue, player: SimulatedUser) -> None:
         """Let a person do to their own card what makes it show what it should, if they can."""
         match cue.shows.checker:
             case "complete line":
@@ -201,21 +201,21 @@ class GuidedWorld(SimulatedWorld):
             case _:
                 self._mark_as(player, player.called)
 
-    def _mark_as(self, player: Player, cells: int) -> None:
+    def _mark_as(self, player: SimulatedUser, cells: int) -> None:
         """Let a person notice by themselves what is wrong, and mend it."""
         if player.marked != cells:
             verb = "clears marks" if player.marked & ~cells else "marks"
             player.marked = cells
             player.did = (self.tracker.step - 1, verb, 0)
 
-    def _take_off(self, player: Player) -> None:
+    def _take_off(self, player: SimulatedUser) -> None:
         """Let a person lose a marker from a number that was called."""
         marked = player.marked & player.called & ~self.activity.deck.free
         cells = [c for c in player.cell.values() if marked >> c & 1]
         if cells:
             self._mark_as(player, player.marked & ~(1 << self._pick(cells)))
 
-    def _slip(self, player: Player) -> None:
+    def _slip(self, player: SimulatedUser) -> None:
         """Let a person mark a number that was not called, best one that fills no line."""
         taken = player.marked | player.called
         cells = [c for c in player.cell.values() if not taken >> c & 1]
@@ -244,7 +244,7 @@ class GuidedWorld(SimulatedWorld):
 
     # ---------------------------------------------------------------------------- what cards tell
 
-    def _choose_person(self, shows: CardState | None) -> Player:
+    def _choose_person(self, shows: CardState | None) -> SimulatedUser:
         """Choose who has the next turn: who is nearest to a line, or has asked least so far."""
         players, turns = tuple(self._players.values()), self._turns
         if shows is not None and shows.checker == LINE:
@@ -256,11 +256,11 @@ class GuidedWorld(SimulatedWorld):
     def _shows(self, cue: Cue) -> bool:
         return self._players[cue.person].judged(self.activity.card_states) == cue.shows.name
 
-    def _nearest_line(self, player: Player) -> int:
+    def _nearest_line(self, player: SimulatedUser) -> int:
         lines = self.activity.deck.lines
         return min(lines, key=lambda line: (line & ~player.called).bit_count())
 
-    def _left_of_line(self, player: Player) -> int:
+    def _left_of_line(self, player: SimulatedUser) -> int:
         return (self._nearest_line(player) & ~player.called).bit_count()
 
     def _completes(self, mask: int, cell: int) -> bool:
@@ -271,7 +271,7 @@ class GuidedWorld(SimulatedWorld):
                 return True
         return False
 
-    def _has_line(self, player: Player) -> bool:
+    def _has_line(self, player: SimulatedUser) -> bool:
         """Say whether a whole line was called: once all is marked, the card can only win."""
         return self.activity.deck.wins(player.called)
 

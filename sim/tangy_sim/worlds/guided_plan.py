@@ -42,7 +42,7 @@ class Cue:
     asked: bool = False
 
 
-class Plan:
+class GuidedPlan:
     """What was shown of an activity in one game, what lacks, and what is to be shown next."""
 
     def __init__(self, activity: Activity, uniform: Callable[[], float]) -> None:

@@ -60,7 +60,7 @@ def load_users(path: Path | None = None) -> UserModel:
     return model
 
 
-class Player:
+class SimulatedUser:
     """One simulated person at the table: a card, what is marked on it, what comes next."""
 
     __slots__ = ("asks_at", "called", "cell", "deck", "did", "id", "marked", "numbers", "slips_at")

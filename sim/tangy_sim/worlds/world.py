@@ -23,7 +23,7 @@ from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
 from tangy_profiles.tracker import Tracker
 from tangy_sim.worlds.compliance import Preferences, preferences_in_turn, respond
 from tangy_sim.worlds.devices import WELL
-from tangy_sim.worlds.users import Player, UserModel, load_users, waiting_calls, waiting_time
+from tangy_sim.worlds.users import SimulatedUser, UserModel, load_users, waiting_calls, waiting_time
 
 AGREEING, MOST_LOOKS = 3, 5
 """Looks at a card that agree before it counts as read, and looks that are taken at most."""
@@ -65,8 +65,8 @@ class SimulatedWorld:
         self._order = deck.shuffled(cards)
         self._calls = 0
         self._now = 0.0
-        self._players = {p: Player(p, deck, deck.deal(cards)) for p in self.people}
-        self._holders: dict[int, list[tuple[Player, int]]] = {n: [] for n in deck.numbers}
+        self._players = {p: SimulatedUser(p, deck, deck.deal(cards)) for p in self.people}
+        self._holders: dict[int, list[tuple[SimulatedUser, int]]] = {n: [] for n in deck.numbers}
         for player in self._players.values():
             for number, cell in player.cell.items():
                 if not deck.free >> cell & 1:
@@ -216,7 +216,7 @@ class SimulatedWorld:
                     player.did = (self.tracker.step, "asks for help", 0)
         self._next_ask = min(p.asks_at for p in self._players.values())
 
-    def _ask(self, player: Player) -> bool:
+    def _ask(self, player: SimulatedUser) -> bool:
         """Let a person ask for help; say whether that is seen, and new."""
         return self.tracker.ask(player.id)
 
@@ -257,7 +257,7 @@ class SimulatedWorld:
     def _set_missing_marks(self, _: Action) -> tuple[int, ...] | None:
         return self._correct(lambda player: player.called & ~player.marked, "marks")
 
-    def _correct(self, errors: Callable[[Player], int], verb: str) -> tuple[int, ...] | None:
+    def _correct(self, errors: Callable[[SimulatedUser], int], verb: str) -> tuple[int, ...] | None:
         """Let the person beside the robot mend what is seen on the card, if anything."""
         if self.tracker.seen is None:
             return None

@@ -14,7 +14,7 @@ from textual.content import Content
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.page import Line, Page
+from tangy_tui.ui.widgets.page import Page, PageLine
 from tangy_tui.ui.widgets.rows import fit, shorten
 
 
@@ -64,10 +64,10 @@ class ChooseDialog(Dialog[str | None]):
         """Take none."""
         self.answer(None)
 
-    def _write(self, width: int) -> list[Line]:
+    def _write(self, width: int) -> list[PageLine]:
         label = min(width // 2, max((cell_len(clean(o.name)) for o in self._options), default=0))
         return [
-            Line(
+            PageLine(
                 (
                     (" ", "text"),
                     (fit(clean(option.name), label), "strong"),

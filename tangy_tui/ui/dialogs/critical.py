@@ -31,7 +31,7 @@ from tangy_tui.ui.fault_words import (
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
-from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 SEEN_FIRST = "Press a first: it says that you have seen this."
@@ -286,7 +286,7 @@ class CriticalDialog(Dialog[None]):
         seen = () if self._fault.acknowledged else (("a", "seen"),)
         return (*seen, ("e", "expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
 
-    def _write(self, width: int) -> list[Line]:
+    def _write(self, width: int) -> list[PageLine]:
         fault, supervision = self._fault, self._desk.supervision
         book, robot = supervision.book, self._robot
         lines = paragraph(clean(fault.console), width, "strong")

@@ -16,7 +16,7 @@ from tangy_tui.learning.policies import Change
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
-from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 
 Use = Literal["use", "keep", "back"]
 """What is done with it: used this time, kept as it is now and used, or not used."""
@@ -78,7 +78,7 @@ class DifferenceDialog(Dialog[Use]):
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
 
-    def _write(self, width: int) -> list[Line]:
+    def _write(self, width: int) -> list[PageLine]:
         lines = paragraph(clean(self._notice), width)
         if not self._changes:
             same = "It decides the same everywhere; only the votes differ."

@@ -12,19 +12,19 @@ from textual.content import Content
 
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
-from tangy_tui.monitoring.fault import Fault, Move
+from tangy_tui.monitoring.fault import Fault, RecoveryEvent
 from tangy_tui.monitoring.telling import move_words
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.fault_words import (
-    Piece,
+    EvidenceLine,
     clock_words,
     evidence_of,
     kind_words,
     mark_of,
     state_words,
 )
-from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.wrapping import wrap
 
 
@@ -69,7 +69,7 @@ class FaultDialog(Dialog[None]):
         """Go back."""
         self.answer(None)
 
-    def _write(self, width: int) -> list[Line]:
+    def _write(self, width: int) -> list[PageLine]:
         fault = self._fault
         lines = paragraph(clean(fault.console), width, "strong")
         kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"
@@ -80,7 +80,7 @@ class FaultDialog(Dialog[None]):
         return lines + heading("What should I do?") + advice_lines(fault.advice, width)
 
 
-def timeline(fault: Fault, width: int) -> list[Line]:
+def timeline(fault: Fault, width: int) -> list[PageLine]:
     """Write each move with the time in the game."""
     lines = _entry(fault.seconds, "noticed", width)
     for move in fault.moves:
@@ -89,36 +89,36 @@ def timeline(fault: Fault, width: int) -> list[Line]:
     return lines
 
 
-def moves_so_far(moves: Sequence[Move], width: int) -> list[Line]:
+def moves_so_far(moves: Sequence[RecoveryEvent], width: int) -> list[PageLine]:
     """Write moves with their times, without what was said."""
     return [line for move in moves for line in _entry(move.seconds, move_words(move), width)]
 
 
-def _entry(seconds: float, words: str, width: int) -> list[Line]:
+def _entry(seconds: float, words: str, width: int) -> list[PageLine]:
     first, *more = wrap(clean(words), max(10, width - 8))
-    head = Line(((f"{clock_words(seconds):>6}  ", "dim"), (first, "text")))
-    return [head, *(Line(((f"{'':8}{text}", "text"),)) for text in more)]
+    head = PageLine(((f"{clock_words(seconds):>6}  ", "dim"), (first, "text")))
+    return [head, *(PageLine(((f"{'':8}{text}", "text"),)) for text in more)]
 
 
-def _indented(words: str, width: int, ink: str) -> list[Line]:
-    return [Line(((f"{'':8}{text}", ink),)) for text in wrap(words, max(10, width - 8))]
+def _indented(words: str, width: int, ink: str) -> list[PageLine]:
+    return [PageLine(((f"{'':8}{text}", ink),)) for text in wrap(words, max(10, width - 8))]
 
 
-def evidence_lines(pieces: Sequence[Piece], width: int) -> list[Line]:
+def evidence_lines(pieces: Sequence[EvidenceLine], width: int) -> list[PageLine]:
     """Write what was observed, and under it what was to be expected."""
-    lines: list[Line] = []
+    lines: list[PageLine] = []
     for piece in pieces:
         lines += paragraph(clean(piece.what), width)
         note = wrap(clean(piece.note), max(10, width - 2)) if piece.note else []
-        lines += [Line(((f"  {text}", "dim"),)) for text in note]
+        lines += [PageLine(((f"  {text}", "dim"),)) for text in note]
     return lines
 
 
-def advice_lines(advice: Sequence[str], width: int) -> list[Line]:
+def advice_lines(advice: Sequence[str], width: int) -> list[PageLine]:
     """Number the steps of the staff."""
-    lines: list[Line] = []
+    lines: list[PageLine] = []
     for number, step in enumerate(advice, 1):
         first, *more = wrap(clean(step), max(10, width - 3))
-        lines.append(Line(((f"{number}. ", "robot"), (first, "text"))))
-        lines += [Line(((f"   {text}", "text"),)) for text in more]
+        lines.append(PageLine(((f"{number}. ", "robot"), (first, "text"))))
+        lines += [PageLine(((f"   {text}", "text"),)) for text in more]
     return lines

@@ -15,7 +15,7 @@ from textual.content import Content
 from tangy_sim.worlds.injection import AT_ONCE, KINDS, Kind
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import fit, shorten
 
 THERE, TO_COME = "there: enter lifts it", "to come: enter lifts it"
@@ -83,17 +83,17 @@ class InjectDialog(Dialog[str | None]):
         searched = Content(f"{clean(self._typed)}_   enter takes   esc shows all")
         self.query_one("#inject").border_subtitle = searched if self._typed else keys
 
-    def _lines(self, width: int) -> list[Line]:
+    def _lines(self, width: int) -> list[ChoiceLine]:
         if not self._kinds:
-            return [Line((("Nothing has these letters.", "dim"),))]
+            return [ChoiceLine((("Nothing has these letters.", "dim"),))]
         label = max(cell_len(kind.name) for kind in KINDS.values())
-        lines: list[Line] = []
+        lines: list[ChoiceLine] = []
         for number, kind in enumerate(self._kinds, 1):
             note = THERE if kind.name in self._there else TO_COME
             note = f"  ({note})" if self._lifts(kind) else ""
             room = width - label - 5 - cell_len(note)
             lines.append(
-                Line(
+                ChoiceLine(
                     (
                         (f"{number if number <= 9 else '':>2} ", "robot"),
                         (fit(kind.name, label), "strong"),

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_profiles.persuading import MethodName, Persuading
+from tangy_profiles.persuading import MethodName, PersuasionConfig
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
@@ -40,7 +40,7 @@ FORGETTING = {
 class MethodChoice:
     """What was chosen; None stands for the activity's own."""
 
-    chosen: Persuading | None
+    chosen: PersuasionConfig | None
 
 
 class MethodDialog(Dialog[MethodChoice | None]):
@@ -60,9 +60,9 @@ class MethodDialog(Dialog[MethodChoice | None]):
     def __init__(
         self,
         name: str,
-        current: Persuading,
+        current: PersuasionConfig,
         own: bool,
-        default: Persuading,
+        default: PersuasionConfig,
         *,
         clock: Clock | None = None,
     ) -> None:
@@ -113,7 +113,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
 
-    def _set(self, chosen: Persuading, *, own: bool = True) -> None:
+    def _set(self, chosen: PersuasionConfig, *, own: bool = True) -> None:
         self._chosen, self._own = chosen, own
         self.query_one("#method", Static).update(self._content())
 

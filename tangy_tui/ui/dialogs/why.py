@@ -12,8 +12,8 @@ from textual.containers import Vertical
 from textual.content import Content
 
 from tangy_profiles.beliefs import Beta
-from tangy_tui.app.workspace import House
-from tangy_tui.interaction.persuasion import Choice
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.persuasion import StrategyChoice
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.explanation import Why, why_words
 from tangy_tui.learning.library import read_library
@@ -22,7 +22,7 @@ from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import OpenStep
-from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.policy_table import bar
 from tangy_tui.ui.widgets.posteriors import curve
 from tangy_tui.ui.widgets.rows import Span, fit, shorten
@@ -53,9 +53,9 @@ class WhyDialog(Dialog[None]):
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         why: Why,
-        choice: Choice | None = None,
+        choice: StrategyChoice | None = None,
         *,
         title: str = "Why this?",
         remarks: Sequence[str] = (),
@@ -68,12 +68,12 @@ class WhyDialog(Dialog[None]):
             remarks: sentences that go before the others, such as who answered what.
         """
         super().__init__(None)
-        self._house = house
+        self._workspace = workspace
         self._why = why
         self._choice = choice
         self._title = clean(title)
         self._remarks = tuple(remarks)
-        library = read_library(house.store, house.activity.name)
+        library = read_library(workspace.store, workspace.activity.name)
         self._numbers = {id: n for n, id in enumerate(library.entries, 1)}
 
     @property
@@ -102,19 +102,19 @@ class WhyDialog(Dialog[None]):
         shown = self._why.steps[event.index]
         self.post_message(OpenStep(shown.demonstration, shown.number))
 
-    def _write(self, width: int) -> list[Line]:
-        lines: list[Line] = []
-        words = why_words(self._house.activity, self._why, votes=False)
+    def _write(self, width: int) -> list[PageLine]:
+        lines: list[PageLine] = []
+        words = why_words(self._workspace.activity, self._why, votes=False)
         for sentence in (*self._remarks, *words):
             lines += paragraph(clean(sentence), width)
         lines += vote_lines(self._why, width)
         if self._choice is not None:
-            lines += choice_lines(self._choice, self._house.name(self._choice.person), width)
+            lines += choice_lines(self._choice, self._workspace.name(self._choice.person), width)
         return lines + self._step_lines(width)
 
-    def _step_lines(self, width: int) -> list[Line]:
+    def _step_lines(self, width: int) -> list[PageLine]:
         why = self._why
-        lines: list[Line] = []
+        lines: list[PageLine] = []
         number = 0
         for title, steps in (
             ("It rests on", why.rests_on),
@@ -124,7 +124,7 @@ class WhyDialog(Dialog[None]):
             if steps:
                 lines += heading(f"{title} {counted(len(steps), 'step')}")
             for shown in steps:
-                lines.append(Line(self._step(shown, bool(why.near), width), number))
+                lines.append(PageLine(self._step(shown, bool(why.near), width), number))
                 number += 1
         return lines
 
@@ -134,7 +134,7 @@ class WhyDialog(Dialog[None]):
         where = f"demonstration {number}" if number else shown.demonstration
         behaviour = clean(shown.step.behaviour)
         if elsewhere:
-            situation = self._house.activity.in_words(shown.step.state.situation)
+            situation = self._workspace.activity.in_words(shown.step.state.situation)
             behaviour = f"{clean(situation)} -> {behaviour}"
         tail = f"  step {shown.number} of {where}, {clean(shown.teacher)}"
         head = shorten(behaviour, max(12, width - 2 - cell_len(tail)))
@@ -145,7 +145,7 @@ class WhyDialog(Dialog[None]):
         )
 
 
-def vote_lines(why: Why, width: int) -> list[Line]:
+def vote_lines(why: Why, width: int) -> list[PageLine]:
     """Draw the votes as bars, most first."""
     votes = why.decision.votes
     label = min(max(cell_len(clean(b)) for b, _ in votes), max(8, width - 12))
@@ -155,7 +155,7 @@ def vote_lines(why: Why, width: int) -> list[Line]:
         decided = behaviour == why.decision.behaviour
         ink = "curve" if share >= SURE else "warn"
         lines.append(
-            Line(
+            PageLine(
                 (
                     ("  ", "text"),
                     (fit(clean(behaviour), label), "strong" if decided else "text"),
@@ -168,7 +168,7 @@ def vote_lines(why: Why, width: int) -> list[Line]:
     return lines
 
 
-def choice_lines(choice: Choice, name: str, width: int) -> list[Line]:
+def choice_lines(choice: StrategyChoice, name: str, width: int) -> list[PageLine]:
     """Tell how a strategy was chosen: the number of each, and the belief that it came from."""
     lines = heading(f"How to say it to {clean(name)}: {clean(choice.strategy)}")
     if choice.method:
@@ -176,7 +176,7 @@ def choice_lines(choice: Choice, name: str, width: int) -> list[Line]:
     label = min(14, max(cell_len(clean(strategy)) for strategy in choice.draws))
     points = min(LONGEST_CURVE, width - label - 34)
     head = f"  {fit('', label)}  number  done/asked  mean"
-    lines.append(Line(((head, "dim"),)))
+    lines.append(PageLine(((head, "dim"),)))
     off = [strategy for strategy in choice.beliefs if strategy not in choice.draws]
     for strategy, number in sorted(choice.draws.items(), key=lambda draw: -draw[1]):
         used = strategy == choice.strategy
@@ -187,7 +187,7 @@ def choice_lines(choice: Choice, name: str, width: int) -> list[Line]:
             (f"  {number:>6.3f}", "strong" if used else "text"),
             *_belief(choice.beliefs, strategy, points),
         ]
-        lines.append(Line(tuple(row)))
+        lines.append(PageLine(tuple(row)))
     if off:
         lines += paragraph(f"Switched off: {', '.join(map(clean, off))}.", width, "dim")
     return lines

@@ -14,7 +14,7 @@ from textual.content import Content
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row
 
 
@@ -47,7 +47,7 @@ class WordsDialog(Dialog[str | None]):
         """Show the words, and take note of the moment from which keys count."""
         words = self.query_one(ChoiceList)
         words.styles.height = len(self._words)
-        words.show(lambda width, height: [Line(_row(word), word) for word in self._words])
+        words.show(lambda width, height: [ChoiceLine(_row(word), word) for word in self._words])
         words.focus()
         self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
 

@@ -10,8 +10,8 @@ from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
-from tangy_tui.app.workspace import House
-from tangy_tui.learning.comparison import Row, compare
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.comparison import PolicyRow, compare
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import TangyScreen
@@ -22,7 +22,7 @@ from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.panels import key_line, panel
 from tangy_tui.ui.policy_options import DIGEST_SHOWN, comparison_options, policy_options
 from tangy_tui.ui.reasons import why_row
-from tangy_tui.ui.widgets.page import Line, Page
+from tangy_tui.ui.widgets.page import Page, PageLine
 from tangy_tui.ui.widgets.rows import Span, fit
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -39,9 +39,9 @@ NOTHING_TO_COMPARE = (
 )
 
 
-async def choose_two(app: App[Any], house: House, first: str | None) -> list[str]:
+async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> list[str]:
     """Let two policies or teachers be chosen; `first` is one already. Fewer than two: no choice."""
-    options = comparison_options(house.store, house.activity)
+    options = comparison_options(workspace.store, workspace.activity)
     if len(options) < 2:
         await app.push_screen_wait(MessageDialog(NOTHING_TO_COMPARE, title="Nothing to compare"))
         return []
@@ -55,9 +55,9 @@ async def choose_two(app: App[Any], house: House, first: str | None) -> list[str
     return wanted
 
 
-async def choose_policy(app: App[Any], house: House) -> str | None:
+async def choose_policy(app: App[Any], workspace: Workspace) -> str | None:
     """Let one of the policies that were kept be chosen."""
-    options = policy_options(house.store, house.activity)
+    options = policy_options(workspace.store, workspace.activity)
     return await app.push_screen_wait(ChooseDialog("Look at which policy?", options))
 
 
@@ -92,18 +92,20 @@ class CompareScreen(TangyScreen[None]):
         Binding("escape", "leave", "Back"),
     ]
 
-    def __init__(self, house: House, a: Policy, b: Policy, notices: Sequence[str] = ()) -> None:
+    def __init__(
+        self, workspace: Workspace, a: Policy, b: Policy, notices: Sequence[str] = ()
+    ) -> None:
         """Make the screen; `notices` are what must be said of the policies."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._pair = (a, b)
         self._notices = tuple(notices)
-        rows = compare(house.activity, a, b)
+        rows = compare(workspace.activity, a, b)
         self._all = sorted(rows, key=lambda row: row.same)
         self._only = False
 
     @property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[PolicyRow]:
         """What is shown."""
         return [row for row in self._all if not (self._only and row.same)]
 
@@ -130,7 +132,7 @@ class CompareScreen(TangyScreen[None]):
         chosen, rows = self.query_one(Page).chosen, self.rows
         if chosen is not None and chosen < len(rows):
             policy = self._pair[which]
-            self.app.push_screen(why_row(self._house, policy, rows[chosen].situation))
+            self.app.push_screen(why_row(self._workspace, policy, rows[chosen].situation))
 
     def on_page_chosen(self, event: Page.Chosen) -> None:
         """Tell why A does so."""
@@ -157,16 +159,16 @@ class CompareScreen(TangyScreen[None]):
         ]
         return clean(" ".join(["   ".join(names) + ".", said, *self._notices]))
 
-    def _write(self, width: int) -> list[Line]:
+    def _write(self, width: int) -> list[PageLine]:
         rows = self.rows
         if not rows:
-            return [Line((("They do the same everywhere; d shows all rows.", "dim"),))]
-        activity = self._house.activity
+            return [PageLine((("They do the same everywhere; d shows all rows.", "dim"),))]
+        activity = self._workspace.activity
         words = [clean(activity.in_words(row.situation)) for row in rows]
         label = max(cell_len(word) for word in words) + 2
         wide = width >= SIDE_BY_SIDE
         half = min(WIDEST, max(8, (width - (label if wide else 0) - 4) // 2))
-        lines: list[Line] = []
+        lines: list[PageLine] = []
         for number, (row, word) in enumerate(zip(rows, words, strict=True)):
             head: tuple[Span, ...] = (
                 ("  " if row.same else "! ", "warn"),
@@ -177,9 +179,9 @@ class CompareScreen(TangyScreen[None]):
                 *self._side("B", row.b, row.same, half),
             )
             if wide:
-                lines.append(Line((*head, *both), number))
+                lines.append(PageLine((*head, *both), number))
             else:
-                lines += [Line(head, number), Line((("    ", "text"), *both), number)]
+                lines += [PageLine(head, number), PageLine((("    ", "text"), *both), number)]
         return lines
 
     def _side(self, letter: str, decision: Decision, same: bool, width: int) -> tuple[Span, ...]:

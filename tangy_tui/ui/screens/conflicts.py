@@ -12,7 +12,7 @@ from textual.containers import Grid
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
@@ -54,12 +54,12 @@ class ConflictsScreen(TangyScreen[bool]):
         Binding("escape", "nothing", "Leave it open"),
     ]
 
-    def __init__(self, house: House, *, then: str = "go on") -> None:
+    def __init__(self, workspace: Workspace, *, then: str = "go on") -> None:
         """Make the screen; `then` says what follows when all were looked at."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._then = then
-        self._editor = Editor(house.store, house.activity)
+        self._editor = Editor(workspace.store, workspace.activity)
         self._library = self._editor.library
         self._conflicts: list[Conflict] = self._library.conflicts
         self._answered: list[Edit | None] = []
@@ -117,7 +117,9 @@ class ConflictsScreen(TangyScreen[bool]):
 
         event.stop()
         shown = event.shown
-        self.app.push_screen(DemonstrationScreen(self._house, shown.demonstration, shown.number))
+        self.app.push_screen(
+            DemonstrationScreen(self._workspace, shown.demonstration, shown.number)
+        )
 
     def action_nothing(self) -> None:
         """Do nothing: `on_key` has the keys, so that each can be looked at."""
@@ -131,7 +133,7 @@ class ConflictsScreen(TangyScreen[bool]):
             self._log.write(str(error), "bad")
             return
         self._answered.append(edit)
-        words = edit_words(self._house.activity, self._library, edit)
+        words = edit_words(self._workspace.activity, self._library, edit)
         aside = len(edit.body["wrong"])
         put = f" {counted(aside, 'step')} set aside." if aside else ""
         self._log.write(f"{words}{put}", "good")
@@ -139,7 +141,7 @@ class ConflictsScreen(TangyScreen[bool]):
 
     async def _other(self, conflict: Conflict) -> None:
         """Let another behaviour be chosen that nobody showed here."""
-        others = [b for b in self._house.activity.behaviours if b not in conflict.answers]
+        others = [b for b in self._workspace.activity.behaviours if b not in conflict.answers]
         dialog = WordsDialog("What is right here?", others)
         chosen = await self.app.push_screen_wait(dialog)
         if chosen is not None and conflict is self._present:
@@ -147,7 +149,7 @@ class ConflictsScreen(TangyScreen[bool]):
 
     async def _leave_open(self, conflict: Conflict) -> None:
         self._answered.append(None)
-        words = self._house.activity.in_words(conflict.situation)
+        words = self._workspace.activity.in_words(conflict.situation)
         self._log.write(f"{words}: left open. Tangy will ask when it comes up in a game.", "warn")
         await self._show()
 
@@ -193,7 +195,7 @@ class ConflictsScreen(TangyScreen[bool]):
             self.set_focus(None)
             return
         columns = [
-            panel(AnswerSteps(self._house, self._library, number, behaviour, steps))
+            panel(AnswerSteps(self._workspace, self._library, number, behaviour, steps))
             for number, (behaviour, steps) in enumerate(present.answers.items(), 1)
         ]
         grid.styles.grid_size_columns = min(len(columns), 4 if self.has_class("-wide") else 2)
@@ -209,7 +211,7 @@ class ConflictsScreen(TangyScreen[bool]):
         return [*answers, *undo, ("esc", "leave open"), ("?", "help")]
 
     def _situation(self, conflict: Conflict) -> str:
-        words = self._house.activity.in_words(conflict.situation)
+        words = self._workspace.activity.in_words(conflict.situation)
         return clean(f"Different answers were shown to this situation: {words}.")
 
     def _summary(self) -> str:
@@ -226,8 +228,8 @@ class ConflictsScreen(TangyScreen[bool]):
         return self.query_one(LogView)
 
 
-async def settle_conflicts(app: Any, house: House, then: str) -> bool:
+async def settle_conflicts(app: Any, workspace: Workspace, then: str) -> bool:
     """Let the conflicts be settled, if there are any; say whether to go on."""
-    if not Editor(house.store, house.activity).library.conflicts:
+    if not Editor(workspace.store, workspace.activity).library.conflicts:
         return True
-    return bool(await app.push_screen_wait(ConflictsScreen(house, then=then)))
+    return bool(await app.push_screen_wait(ConflictsScreen(workspace, then=then)))

@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import heard_words, state_of
 from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.quality import quality_notes
@@ -59,7 +59,7 @@ class DemonstrationScreen(TangyScreen[None]):
         Binding("escape", "leave", "Back"),
     ]
 
-    def __init__(self, house: House, id: str, number: int = 1) -> None:
+    def __init__(self, workspace: Workspace, id: str, number: int = 1) -> None:
         """Make the screen.
 
         Args:
@@ -67,11 +67,11 @@ class DemonstrationScreen(TangyScreen[None]):
             number: of the step that the cursor is on, from 1.
         """
         super().__init__()
-        self._house = house
-        self._library: Library = read_library(house.store, house.activity.name)
+        self._workspace = workspace
+        self._library: Library = read_library(workspace.store, workspace.activity.name)
         self._entry = self._library.find(id)
         self._number = number
-        self._heard = heard_words(house.store, self._shown)
+        self._heard = heard_words(workspace.store, self._shown)
 
     @property
     def _shown(self) -> Demonstration:
@@ -93,8 +93,8 @@ class DemonstrationScreen(TangyScreen[None]):
     def on_mount(self) -> None:
         """Show the steps and point at the one that is wanted."""
         steps = self.query_one(Transcript)
-        house = self._house
-        steps.fill([step_words(house.activity, s, house.name) for s in self._shown.steps])
+        workspace = self._workspace
+        steps.fill([step_words(workspace.activity, s, workspace.name) for s in self._shown.steps])
         self.call_after_refresh(steps.point, self._number)
         self._tell(min(max(1, self._number), len(self._shown.steps)))
 
@@ -115,7 +115,7 @@ class DemonstrationScreen(TangyScreen[None]):
 
     def _summary(self) -> str:
         entry, shown = self._entry, self._shown
-        notes = quality_notes(self._house.activity, entry, self._library)
+        notes = quality_notes(self._workspace.activity, entry, self._library)
         parts = [f"by {shown.teacher}", local_time(entry.at), counted(len(shown.steps), "step")]
         return clean(", ".join([*parts, *notes]))
 
@@ -126,7 +126,7 @@ class DemonstrationScreen(TangyScreen[None]):
             told.update(self._step_content(number, self._shown.steps[number - 1]))
 
     def _step_content(self, number: int, step: Step) -> Content:
-        activity, name = self._house.activity, self._house.name
+        activity, name = self._workspace.activity, self._workspace.name
         place = "at the front" if step.state.place == FRONT else f"with {name(step.state.place)}"
         done = step.behaviour + (f", for {name(step.target)}" if step.target else "")
         lines = [

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
@@ -61,11 +61,11 @@ class DemonstrationsScreen(TangyScreen[None]):
         Binding("escape", "leave", "Back"),
     ]
 
-    def __init__(self, house: House) -> None:
-        """Make the screen of a house's demonstrations."""
+    def __init__(self, workspace: Workspace) -> None:
+        """Make the screen of a workspace's demonstrations."""
         super().__init__()
-        self._house = house
-        self._editor = Editor(house.store, house.activity)
+        self._workspace = workspace
+        self._editor = Editor(workspace.store, workspace.activity)
         self._library = self._editor.library
         self._rows: dict[str, ListRow] = {}
         self._marked: list[str] = []
@@ -117,7 +117,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         from tangy_tui.ui.screens.demonstration import DemonstrationScreen
 
         if (row := self._chosen) is not None:
-            self.app.push_screen(DemonstrationScreen(self._house, row.id, self._step or 1))
+            self.app.push_screen(DemonstrationScreen(self._workspace, row.id, self._step or 1))
 
     # --------------------------------------------------------------------------- the changes
 
@@ -219,7 +219,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         from tangy_tui.ui.screens.conflicts import ConflictsScreen
 
         if self._library.conflicts:
-            self.app.push_screen(ConflictsScreen(self._house, then="go back to the list"))
+            self.app.push_screen(ConflictsScreen(self._workspace, then="go back to the list"))
         else:
             self._say("The demonstrations agree in every situation.")
 
@@ -252,7 +252,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._marked.clear()
         self._refusal = ""
         self._read()
-        words = edit_words(self._house.activity, self._library, edit)
+        words = edit_words(self._workspace.activity, self._library, edit)
         self._say(f"{before}: {words}" if before else f"{words} u takes it back.")
 
     def _say(self, sentence: str, *, bad: bool = False) -> None:
@@ -268,7 +268,7 @@ class DemonstrationsScreen(TangyScreen[None]):
 
     def _read(self) -> None:
         self._library = self._editor.library
-        every = list_rows(self._house.activity, self._library)
+        every = list_rows(self._workspace.activity, self._library)
         rows = [row for row in every if row.state != TAKEN_BACK]
         self._rows = {row.id: row for row in rows}
         conflicts = len(self._library.conflicts)
@@ -291,10 +291,10 @@ class DemonstrationsScreen(TangyScreen[None]):
         if row is None or row.id == self._shown:
             return
         self._shown = row.id
-        house = self._house
+        workspace = self._workspace
         self._show_notes()
         steps = self._library.entries[row.id].demonstration.steps
-        words = [step_words(house.activity, step, house.name) for step in steps]
+        words = [step_words(workspace.activity, step, workspace.name) for step in steps]
         transcript = self.query_one(Transcript)
         transcript.border_title = f"Steps of demonstration {row.number}"
         transcript.fill(words)

@@ -27,7 +27,7 @@ from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.panels import LOW, KeyLine, key_line, panel
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS, clock_of
-from tangy_tui.ui.widgets.page import Line, Page, heading, paragraph
+from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -80,7 +80,7 @@ class DrillScreen(TangyScreen[None]):
         page.border_title = "Rehearse"
         text = [self._drill.note, WELCOME, "There is no hurry: the time is told, and not scored."]
         page.show(lambda width: [
-            line for part in text if part for line in [*paragraph(part, width), Line()]
+            line for part in text if part for line in [*paragraph(part, width), PageLine()]
         ])  # fmt: skip
         self._ask("Ready?", (("enter", "the first round"),))
 
@@ -181,7 +181,7 @@ class DrillScreen(TangyScreen[None]):
             lambda width: [
                 line
                 for ink, text in sheet_lines(sheet, width, self._drill.before)
-                for line in ([Line(((text, ink),))] if len(text) <= width else
+                for line in ([PageLine(((text, ink),))] if len(text) <= width else
                              paragraph(text, width, ink))
             ]
         )  # fmt: skip
@@ -209,12 +209,12 @@ class DrillScreen(TangyScreen[None]):
         self._from = clock_of(self.app)() + SETTLE_SECONDS
 
 
-def _seen(drill: Drill, shown: Round, width: int) -> list[Line]:
+def _seen(drill: Drill, shown: Round, width: int) -> list[PageLine]:
     """Write what can be seen in a round, the labels beside it."""
-    lines: list[Line] = []
+    lines: list[PageLine] = []
     for label, text in round_parts(drill.tabletop, shown):
         for number, part in enumerate(wrap(clean(text), max(8, width - LABEL))):
             name = label if number == 0 else ""
             ink = "strong" if label == "Noticed" else "text"
-            lines.append(Line(((f"{name:{LABEL}}", "dim"), (part, ink))))
+            lines.append(PageLine(((f"{name:{LABEL}}", "dim"), (part, ink))))
     return lines

@@ -22,7 +22,7 @@ from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class MenuItem:
     """One line: the letter, the name (also its id, in lower case), and what it is for."""
 
     key: str
@@ -36,19 +36,19 @@ class Choice:
 
 
 CHOICES = (
-    Choice("t", "Teach", "show Tangy how the activity is run"),
-    Choice("g", "Guided", "teach in one game that shows everything"),
-    Choice("i", "Library", "all demonstrations: look, mend, delete"),
-    Choice("l", "Learn", "make a policy from what was shown"),
-    Choice("p", "Play", "let Tangy run the activity"),
-    Choice("v", "Live", "run it with the robot, or on its bench"),
-    Choice("r", "Rehearse", "practise what to do when things go wrong"),
-    Choice("o", "Policy", "what Tangy does in which situation"),
-    Choice("e", "People", "who takes part, and what persuades them"),
-    Choice("c", "Sensors", "cameras and devices, and the last card"),
-    Choice("d", "Demo", "the whole story in a minute"),
-    Choice("h", "Help", "keys, and how to begin"),
-    Choice("q", "Quit", "leave Tangy"),
+    MenuItem("t", "Teach", "show Tangy how the activity is run"),
+    MenuItem("g", "Guided", "teach in one game that shows everything"),
+    MenuItem("i", "Library", "all demonstrations: look, mend, delete"),
+    MenuItem("l", "Learn", "make a policy from what was shown"),
+    MenuItem("p", "Play", "let Tangy run the activity"),
+    MenuItem("v", "Live", "run it with the robot, or on its bench"),
+    MenuItem("r", "Rehearse", "practise what to do when things go wrong"),
+    MenuItem("o", "Policy", "what Tangy does in which situation"),
+    MenuItem("e", "People", "who takes part, and what persuades them"),
+    MenuItem("c", "Sensors", "cameras and devices, and the last card"),
+    MenuItem("d", "Demo", "the whole story in a minute"),
+    MenuItem("h", "Help", "keys, and how to begin"),
+    MenuItem("q", "Quit", "leave Tangy"),
 )
 
 States = Callable[[], Mapping[str, str]]
@@ -77,14 +77,14 @@ class Menu(Widget, can_focus=True):
             super().__init__()
             self.id = id
 
-    def __init__(self, choices: Sequence[Choice], id: str | None = "home") -> None:
+    def __init__(self, choices: Sequence[MenuItem], id: str | None = "home") -> None:
         super().__init__(id=id)
         self._choices = tuple(choices)
         self._states: Mapping[str, str] = {}
         self._at = 0
 
     @property
-    def chosen(self) -> Choice:
+    def chosen(self) -> MenuItem:
         """The choice that the cursor is on."""
         return self._choices[self._at]
 
@@ -152,7 +152,7 @@ class Menu(Widget, can_focus=True):
             return (("Teach a robot a group activity, and let it run that activity.", "dim"),)
         return ()
 
-    def _row(self, choice: Choice, here: bool, width: int) -> Row:
+    def _row(self, choice: MenuItem, here: bool, width: int) -> Row:
         name = fit(choice.name, 9)
         state = clean(self._states.get(choice.id, ""))
         head = 6 + len(name)
@@ -187,7 +187,7 @@ class HomeScreen(TangyScreen[None]):
             self.id = id
 
     def __init__(
-        self, states: States = dict, *, choices: Sequence[Choice] = CHOICES, note: str = ""
+        self, states: States = dict, *, choices: Sequence[MenuItem] = CHOICES, note: str = ""
     ) -> None:
         """Make the screen; `states` is asked each time that it is shown."""
         super().__init__()

@@ -24,7 +24,7 @@ from tangy_profiles.state import FRONT
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Decision
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -58,7 +58,7 @@ class LiveScreen(PlayScreen):
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         supervision: Supervision,
         world: LiveWorld,
         *,
@@ -66,7 +66,7 @@ class LiveScreen(PlayScreen):
         teacher: str = "",
     ) -> None:
         """Make the screen for games in a world that is there."""
-        super().__init__(house, supervision, games=games, speed=1, teacher=teacher)
+        super().__init__(workspace, supervision, games=games, speed=1, teacher=teacher)
         self._world = world
         self._autonomy = AUTONOMY[0]
         self._taking_over = False
@@ -79,8 +79,8 @@ class LiveScreen(PlayScreen):
         """Whoever has it has the supervision, and the robot."""
         self._seen_doing = ""
         self._frozen = 0.0
-        self._seats = Seats(house.name)
-        self._cards = LiveCards(house, supervision, world, self._write)
+        self._seats = Seats(workspace.name)
+        self._cards = LiveCards(workspace, supervision, world, self._write)
 
     def on_mount(self) -> None:
         """Show what is known of the robot, and follow it; the playing screen begins the game."""
@@ -165,7 +165,7 @@ class LiveScreen(PlayScreen):
 
         Whoever asks for help in the meantime does not wait for it.
         """
-        draws = self._house.activity.behaviours[decision.behaviour].effect == "draw"
+        draws = self._workspace.activity.behaviours[decision.behaviour].effect == "draw"
         if not draws or not self._world.calls_in:
             return False
         self._show_status()
@@ -187,9 +187,9 @@ class LiveScreen(PlayScreen):
 
     async def _confirm(self, decision: Decision, attended: str | None) -> bool:
         """Ask whether the next behaviour is to be done; if not, ask what else."""
-        behaviour = self._house.activity.behaviours[decision.behaviour]
+        behaviour = self._workspace.activity.behaviours[decision.behaviour]
         target = attended if behaviour.attends else None
-        whom = f" ({self._house.name(target)})" if target else ""
+        whom = f" ({self._workspace.name(target)})" if target else ""
         dialog = ConfirmDialog(
             f"Next: {behaviour.name}{whom}?",
             f"{decision.share:.0%} of the votes. After this, i turns the questions off.",
@@ -282,7 +282,7 @@ class LiveScreen(PlayScreen):
 
     async def _void_call(self) -> None:
         last = self._world.called[-1]
-        label = self._house.activity.deck.label(last)
+        label = self._workspace.activity.deck.label(last)
         text = "It counts as not called then, and comes again later."
         dialog = ConfirmDialog(f"Take {label} back?", text, yes="take it back", no="leave it")
         if not await self.app.push_screen_wait(dialog):
@@ -302,11 +302,11 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._ask_for(), name="ask", group="ask")
 
     async def _ask_for(self) -> None:
-        options = [Option(person.id, person.name) for person in self._house.people]
+        options = [Option(person.id, person.name) for person in self._workspace.people]
         person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
         if person is not None:
             self._world.requests.ask_for(person)
-            name = self._house.name(person)
+            name = self._workspace.name(person)
             self._faults.note(f"staff asked for help for {person}")
             self._tell_now(f"{name} asks for help.", "dim")
 
@@ -342,10 +342,13 @@ class LiveScreen(PlayScreen):
         """Make the screen of the devices that the robot process has."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
-        house, where = self._house, "on the bench" if isinstance(self._world, BenchedWorld) else ""
-        sensors = LinkedSensors(self._world.link, house.robot, house.activity.deck)
+        workspace, where = (
+            self._workspace,
+            "on the bench" if isinstance(self._world, BenchedWorld) else "",
+        )
+        sensors = LinkedSensors(self._world.link, workspace.robot, workspace.activity.deck)
         return SensorsScreen(
-            house, sensors, health=sensors.health, shown=shown, live=True, where=where
+            workspace, sensors, health=sensors.health, shown=shown, live=True, where=where
         )
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
@@ -398,7 +401,7 @@ class LiveScreen(PlayScreen):
         going = self._world.link.state.going
         if not going:
             return ""
-        return f"drives to {'the front' if going == FRONT else self._house.name(going)}"
+        return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
     def _until_call(self) -> str:
         left = 0.0 if self._working else self._world.calls_in

@@ -9,7 +9,7 @@ from textual.app import App
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.fault_console import FaultConsole
@@ -24,17 +24,17 @@ class LiveCards:
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         supervision: Supervision,
         world: LiveWorld,
         write: Callable[[str, Kind], None],
     ) -> None:
         """Prepare; `write` shows a line in a colour by its name."""
-        self._house = house
+        self._workspace = workspace
         self._supervision = supervision
         self._cards = world.cards
         self._write = write
-        self._news = CardNews(house.name)
+        self._news = CardNews(workspace.name)
 
     def tell(self, events: Sequence[Event] = ()) -> None:
         """Show and log what is new, as soon as it is known."""
@@ -48,9 +48,9 @@ class LiveCards:
 
         The card is one of those that were in sight last, or Tangy is to learn it anew.
         """
-        dealt, name = self._cards.dealt, self._house.name
+        dealt, name = self._cards.dealt, self._workspace.name
         people = []
-        for person in self._house.people:
+        for person in self._workspace.people:
             known = dealt.card_of(person.id)
             people.append(
                 Option(person.id, person.name, f"has card {known}" if known else "not known yet")

@@ -11,8 +11,8 @@ from textual.containers import Container
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GAME_WORLDS
-from tangy_tui.app.workspace import House
-from tangy_tui.interaction.feedback import Entry
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.interaction.saying import change_words, entry_words, on_day
 from tangy_tui.speech.aloud import hear
@@ -62,13 +62,13 @@ class PeopleScreen(TangyScreen[None]):
         Binding("escape", "leave", "Back"),
     ]
 
-    def __init__(self, house: House, leave_after: float | None = None) -> None:
+    def __init__(self, workspace: Workspace, leave_after: float | None = None) -> None:
         """Make the screen; `leave_after` so many seconds it closes by itself."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._leave_after = leave_after
-        self._feedback = house.memory().feedback
-        self._world = house.memory().world
+        self._feedback = workspace.memory().feedback
+        self._world = workspace.memory().world
         self._records: dict[str, Record] = {}
 
     def compose(self) -> ComposeResult:
@@ -94,12 +94,12 @@ class PeopleScreen(TangyScreen[None]):
 
     @property
     def _status(self) -> Status:
-        return Status(mode="people", note=f"{self._house.activity.title}, {self._world} games")
+        return Status(mode="people", note=f"{self._workspace.activity.title}, {self._world} games")
 
     def action_world(self) -> None:
         """Show what is known from the games of the next world."""
         self._world = GAME_WORLDS[(GAME_WORLDS.index(self._world) + 1) % len(GAME_WORLDS)]
-        self._feedback = self._house.memory(self._world).feedback
+        self._feedback = self._workspace.memory(self._world).feedback
         self.query_one(StatusLine).show(self._status)
         self._read()
         self._say(f"What is known from {self._world} games.")
@@ -154,7 +154,7 @@ class PeopleScreen(TangyScreen[None]):
         """Ask whether the chosen strategy is to be used with this person."""
         strategy, record = str(self._list("strategies").chosen), self._record
         on = strategy in record.known.off
-        among = self._house.activity.strategies
+        among = self._workspace.activity.strategies
         state = "on again" if on else "off"
         self._ask(
             f"Switch {strategy} {state} for {record.person.name}?",
@@ -166,7 +166,7 @@ class PeopleScreen(TangyScreen[None]):
     def action_method(self) -> None:
         """Choose how Tangy persuades this person."""
         person, known = self._record.person, self._record.known
-        default = self._house.activity.persuasion
+        default = self._workspace.activity.persuasion
 
         def take(answer: MethodChoice | None) -> None:
             if answer is not None:
@@ -176,13 +176,13 @@ class PeopleScreen(TangyScreen[None]):
 
     def action_pronounce(self) -> None:
         """Look at, hear or change how the person's name is said."""
-        person = self._house.find_person(self._record.person.id)
+        person = self._workspace.find_person(self._record.person.id)
 
         def take(new: NewPronunciation | None) -> None:
             if new is not None:
-                self._do(lambda: self._house.pronounce(person, new.phones))
+                self._do(lambda: self._workspace.pronounce(person, new.phones))
 
-        dialog = PronunciationDialog(person, self._hear, self._house.check_said)
+        dialog = PronunciationDialog(person, self._hear, self._workspace.check_said)
         self.app.push_screen(dialog, take)
 
     def _hear(self, phones: str) -> None:
@@ -221,14 +221,14 @@ class PeopleScreen(TangyScreen[None]):
     def _list(self, id: str) -> ChoiceList:
         return self.query_one(f"#{id}", ChoiceList)
 
-    def _entry(self) -> Entry | None:
+    def _entry(self) -> FeedbackEntry | None:
         """Return the chosen line of the history."""
         chosen = self._list("history").chosen
         return next((entry for entry in self._record.history if entry.seq == chosen), None)
 
     def _read(self) -> None:
         """Read everything from the log again."""
-        records = self._house.records(world=self._world)
+        records = self._workspace.records(world=self._world)
         self._records = {record.person.id: record for record in records}
         self._list("people").show(lambda width, _: people_lines(records, width))
         self._show_person()
@@ -244,7 +244,7 @@ class PeopleScreen(TangyScreen[None]):
 
     def _show_hint(self) -> None:
         strategies = self._list("strategies")
-        hint = strategy_hint(self._house.activity.strategies, strategies.chosen)
+        hint = strategy_hint(self._workspace.activity.strategies, strategies.chosen)
         strategies.border_subtitle = hint.replace("[", "\\[")
 
     def _ask(self, question: str, detail: str, yes: str, change: Callable[[], object]) -> None:

@@ -13,7 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.speech.aloud import hear
 from tangy_tui.speech.phrase_list import Item, items, list_phrases
 from tangy_tui.ui.base import TangyScreen
@@ -21,7 +21,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.pronunciation import NewPronunciation, PronunciationDialog
 from tangy_tui.ui.panels import key_line, panel
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import fit
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.wrapping import wrap
@@ -52,7 +52,7 @@ class SearchInput(Input):
 
 
 class PhrasesScreen(TangyScreen[None]):
-    """Everything that can be said among the people of a house, to be read, searched and heard."""
+    """Everything that can be said to the robot, to be read, searched and heard."""
 
     DEFAULT_CSS = """
     PhrasesScreen #phrases { height: 1fr; }
@@ -74,16 +74,16 @@ class PhrasesScreen(TangyScreen[None]):
         Binding("escape", "leave", "Back"),
     ]
 
-    def __init__(self, house: House, say: Hear = hear) -> None:
+    def __init__(self, workspace: Workspace, say: Hear = hear) -> None:
         """Make the screen; `say` says phones aloud."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._aloud = say
         self._items: tuple[Item, ...] = ()
 
     def compose(self) -> ComposeResult:
         """Lay out the list and the line to search with."""
-        yield StatusLine(Status(mode="phrases", note=self._house.activity.title))
+        yield StatusLine(Status(mode="phrases", note=self._workspace.activity.title))
         yield panel(ChoiceList("What can be said or typed", LIST_HELP, id="phrases"))
         search = SearchInput(
             placeholder="search for ...",
@@ -106,7 +106,7 @@ class PhrasesScreen(TangyScreen[None]):
     def on_mount(self) -> None:
         """Look the words up beside the screen."""
         self._list.focus()
-        self._list.show(lambda width, height: [Line((("Looking the words up ...", "dim"),))])
+        self._list.show(lambda width, height: [ChoiceLine((("Looking the words up ...", "dim"),))])
         self.run_worker(self._read(), group="read", exclusive=True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
@@ -143,17 +143,17 @@ class PhrasesScreen(TangyScreen[None]):
         if item is None or item.person is None:
             self._say("Choose a person: words of the activity are changed in its file.")
             return
-        person = self._house.find_person(item.person)
+        person = self._workspace.find_person(item.person)
 
         def take(new: NewPronunciation | None) -> None:
             if new is not None:
                 try:
-                    self._house.pronounce(person, new.phones)
+                    self._workspace.pronounce(person, new.phones)
                 except TangyError as error:
                     self._say(str(error), bad=True)
                 self.run_worker(self._read(), group="read", exclusive=True)
 
-        dialog = PronunciationDialog(person, self._hear, self._house.check_said)
+        dialog = PronunciationDialog(person, self._hear, self._workspace.check_said)
         self.app.push_screen(dialog, take)
 
     def action_leave(self) -> None:
@@ -174,8 +174,8 @@ class PhrasesScreen(TangyScreen[None]):
         return self._items[at] if isinstance(at, int) and at < len(self._items) else None
 
     async def _read(self) -> None:
-        house = self._house
-        listed = await asyncio.to_thread(list_phrases, house.activity, house.people)
+        workspace = self._workspace
+        listed = await asyncio.to_thread(list_phrases, workspace.activity, workspace.people)
         self._items = tuple(items(listed))
         self._show()
 
@@ -197,16 +197,16 @@ class PhrasesScreen(TangyScreen[None]):
         self.app.notify(clean(sentence), severity=severity, markup=False)  # type: ignore[arg-type]
 
 
-def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[Line]:
+def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[ChoiceLine]:
     """Write the entries that are searched for, under their headings; keys are their places."""
     about = min(ABOUT, width // 3)
-    lines: list[Line] = []
+    lines: list[ChoiceLine] = []
     found = [(place, item) for place, item in enumerate(entries) if item.has(wanted)]
     for heading, under in groupby(found, key=lambda one: one[1].heading):
         lines += (
-            [Line(()), Line(((clean(heading), "strong"),))]
+            [ChoiceLine(()), ChoiceLine(((clean(heading), "strong"),))]
             if lines
-            else [Line(((clean(heading), "strong"),))]
+            else [ChoiceLine(((clean(heading), "strong"),))]
         )
         for place, item in under:
             left = wrap(clean(item.about), about)
@@ -215,8 +215,8 @@ def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[Lin
                 name = fit(left[n] if n < len(left) else "", about + 2)
                 text = right[n] if n < len(right) else ""
                 ink = "person" if item.person else "robot"
-                lines.append(Line(((name, ink), (text, "text")), place))
-    return lines or [Line((("Nothing is found: esc shows everything again.", "dim"),))]
+                lines.append(ChoiceLine(((name, ink), (text, "text")), place))
+    return lines or [ChoiceLine((("Nothing is found: esc shows everything again.", "dim"),))]
 
 
 LIST_HELP = (

@@ -9,7 +9,7 @@ from typing import ClassVar
 from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House, teacher_name
+from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.interaction.facilitation import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -44,7 +44,7 @@ class PlayScreen(PlayAsking):
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         supervision: Supervision,
         *,
         games: int = 1,
@@ -60,7 +60,7 @@ class PlayScreen(PlayAsking):
             leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
         """
-        super().__init__(house, supervision, teacher or teacher_name())
+        super().__init__(workspace, supervision, teacher or teacher_name())
         self._games = games
         self._speed = speed
         self._leave_after = leave_after

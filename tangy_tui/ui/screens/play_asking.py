@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Unsure
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
@@ -17,11 +17,11 @@ from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, learn_answ
 class PlayAsking(PlayPanels):
     """Puts what Tangy asks in a game to the teacher, who may type the answer or say it."""
 
-    def __init__(self, house: House, supervision: Supervision, teacher: str) -> None:
+    def __init__(self, workspace: Workspace, supervision: Supervision, teacher: str) -> None:
         """Make the panels; `teacher` answers."""
-        super().__init__(house, supervision, teacher)
+        super().__init__(workspace, supervision, teacher)
         self._teacher = teacher
-        self._voice = GameVoice(house)
+        self._voice = GameVoice(workspace)
         self._stopped = False
         self._learning = False
 
@@ -37,7 +37,7 @@ class PlayAsking(PlayPanels):
         self.minimize()
         self.app.clear_notifications()  # they would lie over the question
         learnt, self._picture.lesson = self._picture.lesson, ""
-        asking = AskingPanel(self._house, self._supervision, question, learnt, wanted=wanted)
+        asking = AskingPanel(self._workspace, self._supervision, question, learnt, wanted=wanted)
         self.add_class("-asking")
         await self.mount(asking, before="#microphone" if self.query("#microphone") else "#keys")
         if self._stopped:

@@ -10,11 +10,11 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.base import TangyScreen
-from tangy_tui.ui.camera_session import Eyes
+from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.game_picture import GamePicture
 from tangy_tui.ui.hearing import HearingLine, hearing_of
@@ -41,14 +41,14 @@ class PlayPanels(TangyScreen[Tally]):
     """What the status line calls it."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
-    def __init__(self, house: House, supervision: Supervision, who: str) -> None:
+    def __init__(self, workspace: Workspace, supervision: Supervision, who: str) -> None:
         """Make the panels; `who` answers, acknowledges and clears."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._supervision = supervision
-        self._picture = GamePicture(self, house, supervision)
+        self._picture = GamePicture(self, workspace, supervision)
         self._faults = FaultConsole(
-            self, house, supervision, who, tell=self._tell, failed=self._fail
+            self, workspace, supervision, who, tell=self._tell, failed=self._fail
         )
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
@@ -65,8 +65,8 @@ class PlayPanels(TangyScreen[Tally]):
         yield FaultBanner()
         with Horizontal(id="body"):
             with Vertical(id="left"):
-                yield room_panel(self._house)
-                yield panel(FaultList(self._house.name))
+                yield room_panel(self._workspace)
+                yield panel(FaultList(self._workspace.name))
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
                 yield panel(Transcript(id="transcript"))
@@ -103,10 +103,10 @@ class PlayPanels(TangyScreen[Tally]):
         """Make the screen of devices: those of a simulated game, and cameras that are there."""
         from tangy_tui.ui.screens.sensors import SensorsScreen
 
-        eyes: Eyes | None = getattr(self.app, "eyes", None)
+        eyes: CameraSession | None = getattr(self.app, "eyes", None)
         sensors = None if eyes is None else eyes.sensors()
         health = self._supervision.world.health
-        return SensorsScreen(self._house, sensors, health=health, shown=shown)
+        return SensorsScreen(self._workspace, sensors, health=health, shown=shown)
 
     def action_why(self) -> None:
         """Tell why: of the chosen step, of what Tangy asks, or of the last step."""

@@ -9,7 +9,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
 from tangy_profiles.activity import Activity
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.situations import counted
@@ -61,11 +61,15 @@ class PolicyScreen(TangyScreen[None]):
     ]
 
     def __init__(
-        self, house: House, policy: Policy, effects: Effects, leave_after: float | None = None
+        self,
+        workspace: Workspace,
+        policy: Policy,
+        effects: Effects,
+        leave_after: float | None = None,
     ) -> None:
         """Make the screen; `leave_after` so many seconds it closes by itself."""
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._policy = policy
         self._effects = effects
         self._leave_after = leave_after
@@ -84,7 +88,7 @@ class PolicyScreen(TangyScreen[None]):
 
     def on_mount(self) -> None:
         """Fill both."""
-        activity = self._house.activity
+        activity = self._workspace.activity
         table = self.query_one(PolicyTable)
         table.show(policy_rows(activity, self._policy))
         table.focus()
@@ -109,8 +113,8 @@ class PolicyScreen(TangyScreen[None]):
         self._explain(event.index)
 
     def _explain(self, index: int) -> None:
-        situation = self._house.activity.situations[index]
-        self.app.push_screen(why_row(self._house, self._policy, situation))
+        situation = self._workspace.activity.situations[index]
+        self.app.push_screen(why_row(self._workspace, self._policy, situation))
 
     def action_compare(self) -> None:
         """Compare this policy with another, or with what a teacher shows."""
@@ -122,7 +126,7 @@ class PolicyScreen(TangyScreen[None]):
         close(self, None)
 
     def _summary(self) -> str:
-        policy, activity = self._policy, self._house.activity
+        policy, activity = self._policy, self._workspace.activity
         decisions = [policy.decide(s) for s in activity.situations]
         shown = sum(1 for decision in decisions if decision.seen)
         contested = sum(1 for decision in decisions if decision.contested)

@@ -16,7 +16,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 from textual.worker import WorkerFailed
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.facilitation import Unsure
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.explanation import Why
@@ -124,7 +124,7 @@ class AskingPanel(Vertical):
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         supervision: Supervision,
         question: Unsure,
         before: str = "",
@@ -136,11 +136,11 @@ class AskingPanel(Vertical):
         Where it was `wanted` to be asked, who leaves it lets Tangy go on by itself.
         """
         super().__init__(id="asking")
-        self._house = house
+        self._workspace = workspace
         self._supervision = supervision
         self._question = question
         self._verifier = supervision.verifier()
-        self._phrasebook = Phrasebook(house.activity, house.people)
+        self._phrasebook = Phrasebook(workspace.activity, workspace.people)
         self._acceptable = supervision.acceptable
         self._answer: asyncio.Future[Verified | Instead]
         self._answer = asyncio.get_running_loop().create_future()
@@ -389,11 +389,11 @@ class AskingPanel(Vertical):
             return clean(f"{words} If all is well, type: {ALL_RIGHT[0]}. If not, what to do?")
         if not self._question.fault and self._question.decision.seen:
             situation = self._question.state.situation
-            why = why_of(self._house, self._supervision.policy, situation)
+            why = why_of(self._workspace, self._supervision.policy, situation)
             words = f"{words} {answers_words(why)}"
         return clean(f"{words} What should Tangy do?")
 
     def _sees(self) -> str:
-        world, house = self._supervision.world, self._house
-        words = state_words(house.activity, self._question.state, world.scene(), house.name)
+        world, workspace = self._supervision.world, self._workspace
+        words = state_words(workspace.activity, self._question.state, world.scene(), workspace.name)
         return clean(f"Now: {words}")

@@ -13,7 +13,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tangy_profiles.health import Health
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words, rate_words, remark
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -21,9 +21,8 @@ from tangy_tui.ui.closing import close
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.block_picture import BlockPicture
 from tangy_tui.ui.widgets.card_lines import SEEN_LEGEND, seen_card_lines
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
-from tangy_tui.ui.widgets.page import Line as PageLine
-from tangy_tui.ui.widgets.page import Page, paragraph
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
+from tangy_tui.ui.widgets.page import Page, PageLine, paragraph
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
@@ -80,7 +79,7 @@ class SensorsScreen(TangyScreen[None]):
 
     def __init__(
         self,
-        house: House,
+        workspace: Workspace,
         sensors: Sensing | None = None,
         *,
         health: Callable[[], Health] = tuple,
@@ -91,7 +90,7 @@ class SensorsScreen(TangyScreen[None]):
         """Make the screen.
 
         Args:
-            house: whose robot it is.
+            workspace: whose robot it is.
             sensors: its cameras; they are opened here, and closed with the screen.
             health: what the devices of a game say of themselves.
             shown: what the status line says of that game.
@@ -99,9 +98,9 @@ class SensorsScreen(TangyScreen[None]):
             where: in what way it is there, in a few words.
         """
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._sensors = sensors
-        self._teller = Teller(house.robot, sensors, health, live=live)
+        self._teller = Teller(workspace.robot, sensors, health, live=live)
         self._no_source = NO_SOURCE.format("live" if live else "sensors")
         self._where = where
         self._shown = shown
@@ -221,7 +220,7 @@ class SensorsScreen(TangyScreen[None]):
     def _status(self) -> Status:
         if self._shown is not None:
             return self._shown()
-        return Status(mode="sensors", note=self._house.robot.title)
+        return Status(mode="sensors", note=self._workspace.robot.title)
 
     def _look(self) -> None:
         """Tell how everything is now, if anybody can see it."""
@@ -236,8 +235,8 @@ class SensorsScreen(TangyScreen[None]):
         self._tell_of_chosen()
         self._tell_of_card()
 
-    def _device_lines(self, width: int, height: int) -> list[Line]:
-        return [Line(device_row(told, width), name) for name, told in self._told.items()]
+    def _device_lines(self, width: int, height: int) -> list[ChoiceLine]:
+        return [ChoiceLine(device_row(told, width), name) for name, told in self._told.items()]
 
     def _tell_of_chosen(self) -> None:
         told = self._told.get(self._chosen)
@@ -275,7 +274,7 @@ class SensorsScreen(TangyScreen[None]):
             page.show(lambda width: paragraph(words, width, "dim"), None)
             return
         cards = sensors.cards
-        letters = [column.letter for column in self._house.activity.deck.columns]
+        letters = [column.letter for column in self._workspace.activity.deck.columns]
         page.show(lambda width: card_page(cards, letters, width), None)
 
 

@@ -15,7 +15,7 @@ from textual.widgets import Static
 from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.teaching_events import (
     Again,
@@ -29,7 +29,7 @@ from tangy_tui.learning.teaching_events import (
     TeachingEvent,
     Undo,
 )
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected, Say
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -70,8 +70,8 @@ class TeachScreen(TangyScreen[bool]):
 
     def __init__(
         self,
-        house: House,
-        teaching: Teaching,
+        workspace: Workspace,
+        teaching: TeachingSession,
         *,
         resume: bool = True,
         another: bool = False,
@@ -87,14 +87,14 @@ class TeachScreen(TangyScreen[bool]):
             begun: the session has begun already, and this is what followed.
         """
         super().__init__()
-        self._house = house
+        self._workspace = workspace
         self._teaching = teaching
         self._resume = resume
         self._scripted = scripted
         self._another = another
         self._begun = list(begun)
-        self._picture = TeachingPicture(self, house, teaching)
-        self._listener = TeachHearing(self, house, teaching, self._apply)
+        self._picture = TeachingPicture(self, workspace, teaching)
+        self._listener = TeachHearing(self, workspace, teaching, self._apply)
         self._thinking: Worker[None] | None = None
 
     def compose(self) -> ComposeResult:
@@ -104,7 +104,7 @@ class TeachScreen(TangyScreen[bool]):
         yield StatusLine()
         with Horizontal(id="body"):
             with Vertical(id="left"):
-                yield room_panel(self._house)
+                yield room_panel(self._workspace)
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
                 yield panel(Transcript(empty=f"No steps yet. {how} what Tangy should do first."))
@@ -262,7 +262,7 @@ class TeachScreen(TangyScreen[bool]):
         state = (
             self._teaching.world.observe() if number is None else present.steps[number - 1].state
         )
-        thinking = show_why(self, self._house, present, state.situation)
+        thinking = show_why(self, self._workspace, present, state.situation)
         self._thinking = self.run_worker(thinking, name="why")
 
     @property
@@ -348,7 +348,7 @@ class TeachScreen(TangyScreen[bool]):
                         self._listener.give_back(heard)
                 case Executed():
                     self._picture.step(event)
-                    preference = preference_of(self._house, event.action.target)
+                    preference = preference_of(self._workspace, event.action.target)
                     speaker_of(self.app).interject(event.speech, preference)
                 case StepUndone():
                     self.query_one(Transcript).remove_last()

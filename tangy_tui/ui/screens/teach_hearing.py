@@ -7,10 +7,10 @@ from typing import Any
 
 from textual.screen import Screen
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Say
 from tangy_tui.ui.hearing import Hearing
 from tangy_tui.ui.screens.teach_keys import BY_KEY, HANDS_FREE, HEARING_KEYS, KEYS
@@ -22,17 +22,21 @@ class TeachHearing:
     """Takes spoken commands for a session, one at a time. Without ears it only keeps count."""
 
     def __init__(
-        self, screen: Screen[Any], house: House, teaching: Teaching, apply: Callable[[Say], None]
+        self,
+        screen: Screen[Any],
+        workspace: Workspace,
+        teaching: TeachingSession,
+        apply: Callable[[Say], None],
     ) -> None:
         """Make the listener; `apply` puts a command to the session."""
         self.hearing: Hearing | None = None
         self.by_voice = False
         """Whether the present command was spoken."""
         self._screen = screen
-        self._house = house
+        self._workspace = workspace
         self._teaching = teaching
         self._apply = apply
-        self._people = house.people  # as they were when the session was made
+        self._people = workspace.people  # as they were when the session was made
         self._present = self._people
         self._changed: Phrasebook | None = None  # since they are others
         self._open = False
@@ -88,8 +92,8 @@ class TeachHearing:
     @property
     def spoken(self) -> Phrasebook:
         """What can be said, with the names as they are pronounced now."""
-        present = tuple(p for p in self._house.people if p.id in self._teaching.people)
-        if self._changed is None and self._people is self._house.people:
+        present = tuple(p for p in self._workspace.people if p.id in self._teaching.people)
+        if self._changed is None and self._people is self._workspace.people:
             return self._teaching.phrasebook
         if self._changed is None or self._present != present:
             self._present, self._changed = present, Phrasebook(self._teaching.activity, present)

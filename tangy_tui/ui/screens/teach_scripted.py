@@ -10,7 +10,7 @@ from textual.screen import Screen
 
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import TeachingEvent
-from tangy_tui.learning.teaching_session import Teaching
+from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Reply, Say
 from tangy_tui.ui.base import on_top
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -18,7 +18,7 @@ from tangy_tui.ui.widgets.command_bar import CommandBar
 
 async def follow_script(
     screen: Screen[Any],
-    teaching: Teaching,
+    teaching: TeachingSession,
     pace: float,
     tell: Callable[[Sequence[TeachingEvent]], None],
 ) -> None:

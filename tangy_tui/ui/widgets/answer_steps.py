@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 from textual.message import Message
 
-from tangy_tui.app.workspace import House
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.library import Library
 from tangy_tui.text.situations import counted
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.local_time import local_time
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import shorten
 
 LINES_OF_A_STEP = 3
@@ -35,7 +35,12 @@ class AnswerSteps(ChoiceList):
             return self.answer
 
     def __init__(
-        self, house: House, library: Library, number: int, behaviour: str, steps: Sequence[Shown]
+        self,
+        workspace: Workspace,
+        library: Library,
+        number: int,
+        behaviour: str,
+        steps: Sequence[Shown],
     ) -> None:
         super().__init__(
             f"{number} {clean(behaviour)}",
@@ -43,12 +48,12 @@ class AnswerSteps(ChoiceList):
             "before the answer says that it is right.",
         )
         self.border_subtitle = counted(len(steps), "time")
-        self._house = house
+        self._workspace = workspace
         self._steps = tuple(steps)
         self._library = library
         self._write = self._lines
 
-    def _lines(self, width: int, height: int) -> list[Line]:
+    def _lines(self, width: int, height: int) -> list[ChoiceLine]:
         lines = []
         for index, shown in enumerate(self._steps):
             name = self._library.name(shown.demonstration)
@@ -56,17 +61,17 @@ class AnswerSteps(ChoiceList):
             when = f", {local_time(entry.at)}" if entry is not None else ""
             where = f"{name}, step {shown.number}"
             who = f" {clean(shown.teacher)}{when}"
-            lines.append(Line(((shorten(where, width), "text"),), index))
-            lines.append(Line(((shorten(who, width), "dim"),), index))
+            lines.append(ChoiceLine(((shorten(where, width), "text"),), index))
+            lines.append(ChoiceLine(((shorten(who, width), "dim"),), index))
             if height >= LINES_OF_A_STEP:
-                lines.append(Line(((shorten(self._followed(shown), width), "dim"),), index))
+                lines.append(ChoiceLine(((shorten(self._followed(shown), width), "dim"),), index))
         return lines
 
     def _followed(self, shown: Shown) -> str:
         """Say whom the step was for, and which situation it led to."""
         step = shown.step
-        whom = f"for {self._house.name(step.target)}, " if step.target else ""
-        then = self._house.activity.in_words(step.after.situation)
+        whom = f"for {self._workspace.name(step.target)}, " if step.target else ""
+        then = self._workspace.activity.in_words(step.after.situation)
         return clean(f" {whom}then {then}")
 
     def _tell(self, index: int) -> None:

@@ -11,7 +11,7 @@ from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row
 
 
-class Line(NamedTuple):
+class ChoiceLine(NamedTuple):
     """One line; `key` is what it stands for, None where it cannot be chosen.
 
     Lines with the same key stand together and are chosen together.
@@ -21,7 +21,7 @@ class Line(NamedTuple):
     key: Hashable | None = None
 
 
-Lines = Callable[[int, int], Sequence[Line]]
+Lines = Callable[[int, int], Sequence[ChoiceLine]]
 """Writes the lines for a panel of so many columns and lines."""
 
 

@@ -10,7 +10,7 @@ from textual.message import Message
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.local_time import local_time
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
 WIDEST_TEACHER = 12
@@ -53,19 +53,23 @@ class DemonstrationList(ChoiceList):
         self.post_message(self.Chosen(self))
 
 
-def demonstration_lines(rows: Sequence[ListRow], marked: Collection[str], width: int) -> list[Line]:
+def demonstration_lines(
+    rows: Sequence[ListRow], marked: Collection[str], width: int
+) -> list[ChoiceLine]:
     """Write the table for so many columns; with no demonstrations, how to begin."""
     if not rows:
-        return [Line((("No demonstrations yet: press t at home to show Tangy a game.", "dim"),))]
+        return [
+            ChoiceLine((("No demonstrations yet: press t at home to show Tangy a game.", "dim"),))
+        ]
     teacher = min(WIDEST_TEACHER, max(7, *(cell_len(clean(row.teacher)) for row in rows)))
     state = max(5, *(cell_len(clean(row.state)) for row in rows))
     notes = width - (teacher + state + BESIDE)
     notes = notes if notes >= SHORTEST_NOTES else 0
     head = f"   no  {fit('teacher', teacher)}  {'date':<16}  steps  seen   {fit('state', state)}"
     head += "  notes" if notes else ""
-    lines = [Line(((shorten(head, width), "dim"),))]
+    lines = [ChoiceLine(((shorten(head, width), "dim"),))]
     for row in rows:
-        lines.append(Line(_row(row, row.id in marked, (teacher, state, notes)), row.id))
+        lines.append(ChoiceLine(_row(row, row.id in marked, (teacher, state, notes)), row.id))
     return lines
 
 

@@ -21,7 +21,7 @@ from tangy_tui.ui.fault_words import (
     short_state,
     state_words,
 )
-from tangy_tui.ui.widgets.choice_list import ChoiceList, Line
+from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
 LONGEST = 40
@@ -160,12 +160,12 @@ def columns_for(width: int, name: int) -> Columns:
     return Columns(TIME, 0, name, SHORT_STATE, 0)
 
 
-def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[Line]:
+def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[ChoiceLine]:
     """Write the list for so many columns."""
     if not faults:
-        return [Line(((none, "dim"),))]
+        return [ChoiceLine(((none, "dim"),))]
     columns = columns_for(width, max(cell_len(clean(fault.name)) for fault in faults))
-    return [Line(_row(fault, columns), fault.id) for fault in faults]
+    return [ChoiceLine(_row(fault, columns), fault.id) for fault in faults]
 
 
 def _row(fault: Fault, columns: Columns) -> Row:

@@ -16,25 +16,25 @@ PAGE = 10
 """Steps of the cursor that are a page."""
 
 
-class Line(NamedTuple):
+class PageLine(NamedTuple):
     """One line, and the choice that it belongs to (from 0), if it does to any."""
 
     row: Row = ()
     choice: int | None = None
 
 
-Write = Callable[[int], Sequence[Line]]
+Write = Callable[[int], Sequence[PageLine]]
 """Writes the page for so many columns; the choices come in order."""
 
 
-def paragraph(text: str, width: int, ink: str = "text") -> list[Line]:
+def paragraph(text: str, width: int, ink: str = "text") -> list[PageLine]:
     """Write a sentence on as many lines as it needs."""
-    return [Line(((line, ink),)) for line in wrap(text, width)]
+    return [PageLine(((line, ink),)) for line in wrap(text, width)]
 
 
-def heading(text: str) -> list[Line]:
+def heading(text: str) -> list[PageLine]:
     """Write a heading with an empty line above it."""
-    return [Line(), Line(((text, "robot"),))]
+    return [PageLine(), PageLine(((text, "robot"),))]
 
 
 class Page(Choosable):

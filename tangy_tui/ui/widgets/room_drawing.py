@@ -10,7 +10,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.scene import CardView, Scene
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
-from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan
+from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan
 from tangy_tui.ui.widgets.rows import Row, shorten
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -21,16 +21,16 @@ BELOW = 12  # lines for what does not fit, which are cut off
 class RoomDrawing:
     """Draws one scene; `lines` are the result, from the wall down."""
 
-    def __init__(self, plan: Plan, grid: Grid, people: Sequence[Person]) -> None:
+    def __init__(self, plan: RoomPlan, grid: Grid, people: Sequence[Person]) -> None:
         self._plan = plan
         self._grid = grid
         self._people = people
-        self._lines = [Line(plan.width) for _ in range(plan.height + BELOW)]
+        self._lines = [PlanLine(plan.width) for _ in range(plan.height + BELOW)]
         self._wall()
         self._floor()
 
     @property
-    def lines(self) -> list[Line]:
+    def lines(self) -> list[PlanLine]:
         """What was drawn, cut to the height of the plan."""
         return self._lines[: self._plan.height]
 
@@ -133,7 +133,7 @@ class RoomDrawing:
 
 
 def draw_room(
-    plan: Plan,
+    plan: RoomPlan,
     grid: Grid,
     people: Sequence[Person],
     scene: Scene,
@@ -141,7 +141,7 @@ def draw_room(
     speech: str,
     label: Callable[[int], str],
     robot: int | None,
-) -> list[Line]:
+) -> list[PlanLine]:
     """Draw a scene without its robot.
 
     Args:

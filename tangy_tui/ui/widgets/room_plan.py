@@ -16,7 +16,7 @@ ROOMY_SLOT = 14
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RoomPlan:
     """The rows of a room view; a height of 0 means that there was no room for it.
 
     From the top: wall, board (numbers called), speech, floor, table, head and name and doings of
@@ -62,7 +62,7 @@ class Plan:
         return 2 if self.floor >= 4 else 1
 
 
-def plan(width: int, height: int, people: int = 4) -> Plan:
+def plan(width: int, height: int, people: int = 4) -> RoomPlan:
     """Give the rows out: what a teacher must see first, then comfort, then floor to drive on."""
     crowded = width < people * ROOMY_SLOT
     rows = {"board": 0, "speech": 0, "floor": 2, "table": 1, "doing": 1}
@@ -83,13 +83,13 @@ def plan(width: int, height: int, people: int = 4) -> Plan:
             rows[part] += step
             spare -= step
     rows["floor"] += max(0, spare)
-    return Plan(width, height, **rows)
+    return RoomPlan(width, height, **rows)
 
 
 class Grid:
     """Turns metres into columns and rows: zoomed to the table, a slot for each person."""
 
-    def __init__(self, room: Room, people: int, plan: Plan) -> None:
+    def __init__(self, room: Room, people: int, plan: RoomPlan) -> None:
         seats = [seat.x for seat in room.seated(people)]
         gaps = [b - a for a, b in pairwise(seats)]
         left, near, right, _ = room.table
@@ -125,7 +125,7 @@ class Grid:
         return self.column(point.x), row
 
 
-class Line:
+class PlanLine:
     """One line of cells to place pieces of text on, later ones over earlier ones."""
 
     def __init__(self, width: int) -> None:
@@ -146,9 +146,9 @@ class Line:
                 self._cells[column - 1] += character
             column += cells
 
-    def copy(self) -> Line:
+    def copy(self) -> PlanLine:
         """Return the same line, to place more on."""
-        line = Line(0)
+        line = PlanLine(0)
         line._cells = self._cells[:]
         line._inks = self._inks[:]
         return line

@@ -24,7 +24,7 @@ from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.type_ahead_guard import Clock, clock_of
 from tangy_tui.ui.widgets.room_drawing import draw_room
-from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, Line, Plan, plan
+from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan, plan
 from tangy_tui.ui.widgets.rows import Row, draw
 
 FRAME_SECONDS = 0.1
@@ -107,9 +107,9 @@ class RoomView(Widget):
         self._last = 0.0
         self._heading = ""
         self._timer: Timer | None = None
-        self._plan: Plan = plan(1, 1)
+        self._plan: RoomPlan = plan(1, 1)
         self._grid: Grid | None = None
-        self._base: list[Line] = []
+        self._base: list[PlanLine] = []
         self._rows: dict[int, Row] = {}
         self._strips: dict[int, Strip] = {}
         self._sprite_at = (0, 0)
@@ -335,10 +335,10 @@ class RoomView(Widget):
         if changed:
             self.refresh(*changed)
 
-    def _row(self, y: int) -> Line:
+    def _row(self, y: int) -> PlanLine:
         """Return a line of the scene with the robot on it."""
         if y >= len(self._base):
-            return Line(self._plan.width)
+            return PlanLine(self._plan.width)
         line = self._base[y]
         marked = [(x, mark) for (x, row), mark in self._marks.items() if row == y]
         if marked:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards import extent, synthesis
 from tangy_hw.perception.cards.rectification import RIM, SIDE, Flat
-from tangy_profiles.card_face import Face
+from tangy_profiles.card_face import CardLayout
 from tangy_profiles.card_picture import draw_number
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class Measured:
         return column
 
 
-def features_of(flat: Flat, face: Face, numbers: tuple[int, ...]) -> Measured:
+def features_of(flat: Flat, face: CardLayout, numbers: tuple[int, ...]) -> Measured:
     """Measure the cells of a card."""
     import cv2
     import numpy as np
@@ -251,7 +251,7 @@ def _light_and_tint(picture: Real) -> tuple[Real, Real]:
     return light, cv2.max(cv2.max(blue, green), red) - cv2.min(cv2.min(blue, green), red)
 
 
-def _numbers_read(light: Real, face: Face, numbers: tuple[int, ...], scale: float) -> Real:
+def _numbers_read(light: Real, face: CardLayout, numbers: tuple[int, ...], scale: float) -> Real:
     """Compare what stands in each cell with the numbers that can stand there.
 
     Returns, for each cell, the best correlation with its own number, with any other of its column,
@@ -289,12 +289,12 @@ def _numbers_read(light: Real, face: Face, numbers: tuple[int, ...], scale: floa
 
 
 @lru_cache(maxsize=1000)
-def _drawn(face: Face, number: int) -> Picture:
+def _drawn(face: CardLayout, number: int) -> Picture:
     return draw_number(face, number, SIDE)
 
 
 @lru_cache(maxsize=256)
-def _prints(face: Face, low: int, high: int, scale: float) -> Real:
+def _prints(face: CardLayout, low: int, high: int, scale: float) -> Real:
     """Return numbers as they look at a scale, each as a row of length 1 and mean 0."""
     import cv2
     import numpy as np

@@ -23,7 +23,7 @@ LARGEST_JSON = 20_000_000  # bytes: a hundred thousand pictures
 
 
 @dataclass(frozen=True)
-class Label:
+class CardLabel:
     """What is really in a picture; cells in `hidden` nobody can tell."""
 
     path: Path
@@ -68,7 +68,7 @@ class Counted:
         return told + [plain(f"  {m['file']}: {m['what']}") for m in self.mistakes]
 
 
-def labelled(folder: Path, deck: Deck) -> list[Label]:
+def labelled(folder: Path, deck: Deck) -> list[CardLabel]:
     """Read what is in the pictures of a folder.
 
     That stands in its labels.json, a list in the form that reading pictures prints; or, as
@@ -118,14 +118,14 @@ def _json(path: Path) -> Any:
         raise TangyError(f"{name}: is not JSON.") from None
 
 
-def _label(entry: Any, folder: Path, deck: Deck, where: str) -> Label:
+def _label(entry: Any, folder: Path, deck: Deck, where: str) -> CardLabel:
     try:
         card = entry["card"]
         if card is not None and (isinstance(card, bool) or not isinstance(card, int)):
             raise TypeError
         marked, hidden = (_mask(entry.get(key, []), deck) for key in ("marked", "hidden"))
         file = folder / Path(str(entry["file"])).name
-        return Label(file, card, marked, hidden & ~deck.free)
+        return CardLabel(file, card, marked, hidden & ~deck.free)
     except (KeyError, TypeError, ValueError, AttributeError):
         raise TangyError(
             f"{where} needs `file`, `card` (a number or null) and `marked` "
@@ -143,7 +143,7 @@ def _mask(places: Any, deck: Deck) -> int:
     return mask
 
 
-def count_labelled(labels: list[Label], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
+def count_labelled(labels: list[CardLabel], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
     """Read each picture and compare it with its label.
 
     Raises:

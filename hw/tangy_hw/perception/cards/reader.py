@@ -12,7 +12,7 @@ from tangy_hw.perception.cards.classifier import HIDDEN, MARKED, UNMARKED, load_
 from tangy_hw.perception.cards.features import Measured, features_of
 from tangy_hw.perception.cards.likeness import unlike_others
 from tangy_hw.perception.cards.rectification import flatten
-from tangy_profiles.card_face import USUAL_SEED, Face, called_cells, numbers_of
+from tangy_profiles.card_face import USUAL_SEED, CardLayout, called_cells, numbers_of
 from tangy_profiles.cards import CardState, Deck, judge_partly
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class CardReader:
     def __init__(self, deck: Deck, deck_seed: int = USUAL_SEED) -> None:
         self.deck = deck
         self.deck_seed = deck_seed
-        self.face = Face(deck)
+        self.face = CardLayout(deck)
 
     def read(self, picture: Picture) -> CardReading:
         """Read the card in a picture (blue, green, red); of several, none."""

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.cards.card_detection import Sighting, project
-from tangy_profiles.card_face import Face
+from tangy_profiles.card_face import CardLayout
 from tangy_profiles.card_picture import draw_face
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Flat:
 
 
 @lru_cache(maxsize=64)
-def expected_grid(face: Face, card: int, seed: int) -> Picture:
+def expected_grid(face: CardLayout, card: int, seed: int) -> Picture:
     """Return how the grid of a card is printed, as it should look straight on."""
     import cv2
 
@@ -56,11 +56,11 @@ def expected_grid(face: Face, card: int, seed: int) -> Picture:
     )
 
 
-def _size(face: Face) -> tuple[int, int]:
+def _size(face: CardLayout) -> tuple[int, int]:
     return len(face.deck.columns) * SIDE + 2 * RIM, face.deck.rows * SIDE + 2 * RIM
 
 
-def _to_flat(face: Face) -> Plane:
+def _to_flat(face: CardLayout) -> Plane:
     """Return what takes mm on the card to pixels straight on."""
     import numpy as np
 
@@ -74,7 +74,7 @@ def _to_flat(face: Face) -> Plane:
     )
 
 
-def flatten(picture: Picture, seen: Sighting, face: Face, seed: int) -> Flat | None:
+def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> Flat | None:
     """See a card's grid straight on; None where too few of its crossings match."""
     import cv2
     import numpy as np
@@ -109,7 +109,7 @@ def flatten(picture: Picture, seen: Sighting, face: Face, seed: int) -> Flat | N
     return Flat(flat, expected, scale, scores, matched, plane)
 
 
-def _corners(face: Face) -> Plane:
+def _corners(face: CardLayout) -> Plane:
     import numpy as np
 
     return np.array(
@@ -122,7 +122,7 @@ def _corners(face: Face) -> Plane:
     )
 
 
-def _warped(picture: Picture, plane: Plane, face: Face) -> tuple[Picture, float]:
+def _warped(picture: Picture, plane: Plane, face: CardLayout) -> tuple[Picture, float]:
     """See the grid straight on; return it and how many pixels of the picture make one of it."""
     import cv2
     import numpy as np

@@ -9,7 +9,7 @@ from tangy_hw.perception.faces.reader import NO_FACE
 
 if TYPE_CHECKING:
     from tangy_hw.perception.faces.face_embedding import Vector
-    from tangy_hw.perception.faces.reader import Face, FaceReader
+    from tangy_hw.perception.faces.reader import FaceReader, FaceReading
     from tangy_hw.perception.pictures import Picture
 
 ADVISED = 10
@@ -123,7 +123,7 @@ class Enrolment:
         return np.array(self._vectors, np.float32)
 
 
-def one_face(faces: list[Face]) -> tuple[str, Vector | None]:
+def one_face(faces: list[FaceReading]) -> tuple[str, Vector | None]:
     """Choose the face that a picture is of: the only one, or by far the largest.
 
     Returns:

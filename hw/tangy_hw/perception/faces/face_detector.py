@@ -36,7 +36,7 @@ APART = (0.28, 0.52)  # of the face's width
 STEEPEST = 0.5  # rise of the line between them
 
 
-class Found(NamedTuple):
+class DetectedFace(NamedTuple):
     """A face: where it is, and its eyes, the one on the left of the picture first.
 
     Without eyes it is turned away, covered or no face.
@@ -50,15 +50,15 @@ class FaceError(TangyError):
     """Faces cannot be told apart as things are; one sentence that says why."""
 
 
-def find_faces(grey: Grey) -> list[Found]:
+def find_faces(grey: Grey) -> list[DetectedFace]:
     """Find the faces in a grey picture, the largest first.
 
     Raises:
         FaceError: this OpenCV comes without cascades.
     """
-    first: list[Found] = []
+    first: list[DetectedFace] = []
     for boxes in _searches(grey):
-        found = [Found(box, find_eyes(grey, box)) for box in sorted(boxes, key=_smaller)]
+        found = [DetectedFace(box, find_eyes(grey, box)) for box in sorted(boxes, key=_smaller)]
         if any(face.eyes is not None for face in found):
             return found
         first = first or found

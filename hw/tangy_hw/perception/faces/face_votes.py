@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tangy_hw.perception.faces.gallery import Match
+from tangy_hw.perception.faces.gallery import FaceMatch
 
 FRAMES = 5
 """So many frames with a face that is seen well are voted over."""
@@ -23,7 +23,7 @@ class Vote:
     likeness: float
 
 
-def vote(matches: Iterable[Match]) -> Vote:
+def vote(matches: Iterable[FaceMatch]) -> Vote:
     """Count votes: somebody needs three in five, and nobody is chosen by fewer than two frames.
 
     `likeness` is the mean to whoever is chosen, or to the nearest.

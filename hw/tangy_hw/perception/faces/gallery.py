@@ -28,7 +28,7 @@ LEAST_GAP = 0.01  # between others and the threshold: pictures may be the very s
 
 
 @dataclass(frozen=True, slots=True)
-class Match:
+class FaceMatch:
     """Whose face it is: None is unknown. `nearest` is who is most alike, `likenesses` are all."""
 
     person: str | None
@@ -52,10 +52,10 @@ class Gallery:
         self.stranger, self.threshold = self._scale()
         """The mean similarity (a cosine) to another person, and that which is enough."""
 
-    def compare(self, vector: Vector) -> Match:
+    def compare(self, vector: Vector) -> FaceMatch:
         """Say whose face it is; unknown where it is not clearly anybody's."""
         if not self.people:
-            return Match(None, None, 0.0)
+            return FaceMatch(None, None, 0.0)
         similar = self._all @ vector
         unit = (self.threshold - self.stranger) / ENOUGH
         likenesses = {
@@ -92,15 +92,15 @@ class Gallery:
         return min(stranger, enough - LEAST_GAP), enough
 
 
-def decide(likenesses: Mapping[str, float]) -> Match:
+def decide(likenesses: Mapping[str, float]) -> FaceMatch:
     """Say who it is by the likeness to everybody who is enrolled."""
     ranked = sorted(likenesses, key=lambda person: -likenesses[person])
     if not ranked:
-        return Match(None, None, 0.0)
+        return FaceMatch(None, None, 0.0)
     first = likenesses[ranked[0]]
     ahead = len(ranked) < 2 or first - likenesses[ranked[1]] >= AHEAD
     sure = first >= ENOUGH and ahead
-    return Match(ranked[0] if sure else None, ranked[0], first, dict(likenesses))
+    return FaceMatch(ranked[0] if sure else None, ranked[0], first, dict(likenesses))
 
 
 def _most(similar: Any) -> float:

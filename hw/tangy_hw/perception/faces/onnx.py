@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.perception.faces.face_detector import FaceError
-from tangy_hw.perception.faces.quality import Limits
-from tangy_hw.perception.faces.reader import NO_EYES, Face
+from tangy_hw.perception.faces.quality import FaceQualityLimits
+from tangy_hw.perception.faces.reader import NO_EYES, FaceReading
 from tangy_profiles.given_file import read_given
 from tangy_profiles.reading import plain
 
@@ -20,14 +20,14 @@ SURE = 0.7  # that it is a face
 LARGEST, SMALLEST = 1280, 240  # pixels that the longer side is brought down to, the shorter up
 MOST_ENLARGED = 4.0
 LARGEST_FILE = 500_000_000  # bytes; those of OpenCV's have 0.2 and 39 million
-LIMITS = Limits(contrast=12, evenness=0.15, symmetry=0.0)
+LIMITS = FaceQualityLimits(contrast=12, evenness=0.15, symmetry=0.0)
 """These see turned faces and shadows through better than the usual reader."""
 
 
 class OnnxReader:
     """A finder (as YuNet: boxes with five points) and a recogniser (as SFace: a vector)."""
 
-    def __init__(self, finder: Path, recogniser: Path, limits: Limits = LIMITS) -> None:
+    def __init__(self, finder: Path, recogniser: Path, limits: FaceQualityLimits = LIMITS) -> None:
         """Load both files.
 
         Raises:
@@ -46,7 +46,7 @@ class OnnxReader:
             recogniser, "tells apart", lambda: cv2.FaceRecognizerSF.create(str(recogniser), "")
         )
 
-    def read(self, picture: Picture) -> list[Face]:
+    def read(self, picture: Picture) -> list[FaceReading]:
         """Find and describe the faces of a picture (BGR), the largest first.
 
         Raises:
@@ -74,7 +74,7 @@ class OnnxReader:
                 x, y, w, h, ax, ay, bx, by = (float(value) / scale for value in row[:8])
                 box = (x, y, w, h)
                 if bx <= ax:
-                    faces.append(Face(box, NO_EYES))
+                    faces.append(FaceReading(box, NO_EYES))
                     continue
                 quality = judge(grey, box, align(grey, ((ax, ay), (bx, by))))
                 problem = quality.problem(self.limits)
@@ -83,7 +83,7 @@ class OnnxReader:
                     cut = self._recogniser.alignCrop(seen, row)
                     vector = np.array(self._recogniser.feature(cut), np.float32).ravel()
                     vector /= max(float(np.linalg.norm(vector)), 1e-9)
-                faces.append(Face(box, problem, quality, vector))
+                faces.append(FaceReading(box, problem, quality, vector))
         except (cv2.error, ValueError, IndexError, TypeError):
             raise FaceError(
                 "The ONNX files of the robot's profile do not do with a picture what "

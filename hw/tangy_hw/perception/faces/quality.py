@@ -13,7 +13,7 @@ FINE, COARSE = 1.0, 4.0  # pixels: of the two blurs whose differences are compar
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class FaceQualityLimits:
     """What a face must have."""
 
     size: float = 24  # pixels across
@@ -25,12 +25,12 @@ class Limits:
     symmetry: float = 0.75
 
 
-USUAL = Limits()
+USUAL = FaceQualityLimits()
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """How a face is seen: pixels across, and the rest as in `Limits`."""
+    """How a face is seen: pixels across, and the rest as in `FaceQualityLimits`."""
 
     size: float
     sharpness: float
@@ -39,7 +39,7 @@ class Quality:
     evenness: float
     symmetry: float
 
-    def problem(self, limits: Limits = USUAL) -> str:
+    def problem(self, limits: FaceQualityLimits = USUAL) -> str:
         """Say why it is not seen well enough; "" if it is."""
         if self.size < limits.size:
             return f"the face is too small ({self.size:.0f} pixels across): come closer"

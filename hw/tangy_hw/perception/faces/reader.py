@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from tangy_hw.perception.faces.quality import USUAL, Limits, Quality
+from tangy_hw.perception.faces.quality import USUAL, FaceQualityLimits, Quality
 
 if TYPE_CHECKING:
     from tangy_hw.perception.faces.face_detector import Box
@@ -18,7 +18,7 @@ NO_EYES = "the eyes are not both seen: look at the camera"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Face:
+class FaceReading:
     """A face in a picture: where, how it is seen, and what it looks like.
 
     `vector` is None where it is not seen well enough, and `problem` says why.
@@ -37,7 +37,7 @@ class FaceReader(Protocol):
     def kind(self) -> str:
         """Its name, in letters and digits."""
 
-    def read(self, picture: Picture) -> list[Face]:
+    def read(self, picture: Picture) -> list[FaceReading]:
         """Find and describe the faces of a picture (BGR), the largest first."""
 
 
@@ -46,11 +46,11 @@ class HaarReader:
 
     kind = "hoglbp1"
 
-    def __init__(self, limits: Limits = USUAL) -> None:
+    def __init__(self, limits: FaceQualityLimits = USUAL) -> None:
         """Read faces that are seen as well as `limits` say."""
         self.limits = limits
 
-    def read(self, picture: Picture) -> list[Face]:
+    def read(self, picture: Picture) -> list[FaceReading]:
         """Find and describe the faces of a picture (BGR or grey), the largest first."""
         import cv2
 
@@ -64,12 +64,12 @@ class HaarReader:
         faces = []
         for box, eyes in find_faces(grey):
             if eyes is None:
-                faces.append(Face(box, NO_EYES))
+                faces.append(FaceReading(box, NO_EYES))
                 continue
             aligned = align(grey, eyes)
             quality = judge(grey, box, aligned)
             problem = quality.problem(self.limits)
-            faces.append(Face(box, problem, quality, None if problem else describe(aligned)))
+            faces.append(FaceReading(box, problem, quality, None if problem else describe(aligned)))
         return faces
 
 

@@ -18,7 +18,7 @@ from tangy_hw.drivers.camera import Camera
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL as USUAL_CAMERA
 from tangy_hw.perception.requests.help_request_source import DEVICE, RequestError, RequestSource
-from tangy_hw.perception.requests.triangles import USUAL, Limits, find_triangles
+from tangy_hw.perception.requests.triangles import USUAL, TriangleLimits, find_triangles
 from tangy_profiles.health import OK, STALE, Reading
 from tangy_profiles.room import Point, Room
 
@@ -109,7 +109,7 @@ class Persistence:
 class SignWatcher:
     """Says of one picture after the other at which seats signs are up."""
 
-    def __init__(self, view: TableView, limits: Limits = USUAL) -> None:
+    def __init__(self, view: TableView, limits: TriangleLimits = USUAL) -> None:
         self._view = view
         self._limits = limits
         self._persistence = Persistence()

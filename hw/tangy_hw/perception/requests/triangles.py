@@ -32,7 +32,7 @@ class Triangle(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class TriangleLimits:
     """What counts as a triangle; set by `tests/bench/requests.py --tune`.
 
     `brighter`: than what is behind it, of 255. `size`: from the shortest to the longest side, in
@@ -49,11 +49,11 @@ class Limits:
     three: float = 0.10
 
 
-USUAL = Limits()
+USUAL = TriangleLimits()
 
 
 class Shape(NamedTuple):
-    """The shape of a spot, as `Limits` has it, and its enclosing triangle in the picture."""
+    """The shape of a spot (see `TriangleLimits`), and its enclosing triangle in the picture."""
 
     fills: float
     solid: float
@@ -65,7 +65,7 @@ class Shape(NamedTuple):
     size: float
 
 
-def find_triangles(image: Image, limits: Limits = USUAL) -> list[Triangle]:
+def find_triangles(image: Image, limits: TriangleLimits = USUAL) -> list[Triangle]:
     """Return the triangles in a picture (grey, or BGR), the surest first."""
     found = [
         Triangle(shape.x, shape.y, shape.size, sure)
@@ -75,7 +75,7 @@ def find_triangles(image: Image, limits: Limits = USUAL) -> list[Triangle]:
     return sorted(found, key=lambda one: -one.sure)
 
 
-def how_sure(shape: Shape, limits: Limits = USUAL) -> float:
+def how_sure(shape: Shape, limits: TriangleLimits = USUAL) -> float:
     """Return how sure it is that a shape is a triangle, from 0 (it is none) to 1."""
     least, most = limits.corner
     if (
@@ -88,7 +88,7 @@ def how_sure(shape: Shape, limits: Limits = USUAL) -> float:
     return 1 / (1 + exp(-40 * (shape.fills - limits.fills) - 0.5))
 
 
-def shapes(image: Image, limits: Limits = USUAL) -> list[Shape]:
+def shapes(image: Image, limits: TriangleLimits = USUAL) -> list[Shape]:
     """Return the shapes of all bright spots in a picture that are of a size for a sign."""
     import cv2
     import numpy as np
