@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from importlib.resources import files
 from os.path import isdir
 from pathlib import Path
@@ -17,6 +17,7 @@ from types import MappingProxyType
 
 from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
+from tangy_profiles.defaults import PRESSING_STRATEGIES
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
@@ -254,21 +255,12 @@ def _strategies(table: Table) -> dict[str, str]:
 
 
 def _pressing(top: Table, strategies: dict[str, str]) -> tuple[str, ...]:
-    usual = tuple(name for name in _usually_pressing() if name in strategies)
+    usual = tuple(name for name in PRESSING_STRATEGIES if name in strategies)
     usual = usual if len(usual) < len(strategies) else ()
     pressing = top.words("pressing_strategies", strategies, usual)
     if set(pressing) == set(strategies):
         raise top.wrong("pressing_strategies", "must leave a strategy for people who refuse.")
     return pressing
-
-
-@cache
-def _usually_pressing() -> tuple[str, ...]:
-    """Return the strategies that press people in every activity that does not say otherwise."""
-    top = read_toml(Path(str(files("tangy_profiles"))) / "persuasion.toml")
-    names = top.words("pressing_strategies")
-    top.close()
-    return names
 
 
 def _user_states(top: Table) -> tuple[CardState, ...]:

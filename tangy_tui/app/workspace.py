@@ -12,6 +12,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
 from tangy_profiles.reading import plain
@@ -66,7 +67,7 @@ class Workspace:
         self,
         folder: Path,
         *,
-        activity: str = "bingo",
+        activity: str = DEFAULT_ACTIVITY,
         users: int = 4,
         write: bool = True,
         robot: str = "tangy",

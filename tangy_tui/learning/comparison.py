@@ -18,7 +18,7 @@ from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
-class PolicyRow:
+class SituationComparison:
     """One situation and what two policies decide there."""
 
     situation: Situation
@@ -33,9 +33,9 @@ class PolicyRow:
         return self.a.sure == self.b.sure
 
 
-def compare(activity: Activity, a: Policy, b: Policy) -> list[PolicyRow]:
+def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationComparison]:
     """Return what two policies decide in every situation that can come about."""
-    return [PolicyRow(s, a.decide(s), b.decide(s)) for s in activity.situations]
+    return [SituationComparison(s, a.decide(s), b.decide(s)) for s in activity.situations]
 
 
 def choices(store: Store, activity: Activity) -> list[str]:

@@ -78,6 +78,8 @@ class Labels:
         }
         self._intents |= {words_of(phrase): UtteranceLabel(STOP) for phrase in STOPS}
         self._longest = max(map(len, self._intents))
+        names = [phrase.behaviour for phrase in phrases.values()]
+        self._example = next((name for name in names if " " in name), names[0])
         self._to_people = frozenset(phrasebook.nouns)
         self._ids = {words_of(id): id for id in phrasebook.people}
         self._numbers = phrasebook.table.numbers
@@ -129,9 +131,12 @@ class Labels:
             which = f"none of its {len(unnamed)} recordings ({unnamed[0]}, ...) is"
             if len(unnamed) == 1:
                 which = f"its one recording, {unnamed[0]}, is not"
+            name = f"{self._example.replace(' ', '_')}-1.wav"
             raise TangyError(
-                plain(f"{shown}: {which} named by what is said in it, ")
-                + "as call_number-1.wav is, and call number/1.wav (none/1.wav: no command)."
+                plain(
+                    f"{shown}: {which} named by what is said in it, as {name} is, and "
+                    f"{self._example}/1.wav (none/1.wav: no command)."
+                )
             )
         if not found:
             why = f" ({left_out[0][0]} {left_out[0][1]})" if left_out else ""

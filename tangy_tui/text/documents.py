@@ -9,7 +9,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction import saying
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.learning.comparison import PolicyRow
+from tangy_tui.learning.comparison import SituationComparison
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
 from tangy_tui.learning.explanation import Why, why_words
@@ -162,7 +162,7 @@ def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
 
 
 def comparison_document(
-    workspace: Workspace, a: Policy, b: Policy, rows: list[PolicyRow]
+    workspace: Workspace, a: Policy, b: Policy, rows: list[SituationComparison]
 ) -> dict[str, Any]:
     """Describe where two policies differ."""
     return {

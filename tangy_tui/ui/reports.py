@@ -17,7 +17,7 @@ from tangy_profiles.beliefs import Beliefs, leading, probability_best
 from tangy_profiles.reading import plain
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.learning.comparison import PolicyRow
+from tangy_tui.learning.comparison import SituationComparison
 from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
@@ -101,7 +101,9 @@ def print_demonstrations(rows: Sequence[ListRow]) -> None:
     console.print(table)
 
 
-def print_comparison(activity: Activity, a: Policy, b: Policy, rows: Sequence[PolicyRow]) -> None:
+def print_comparison(
+    activity: Activity, a: Policy, b: Policy, rows: Sequence[SituationComparison]
+) -> None:
     """Print two policies side by side, and mark the rows that differ."""
     console = Console(highlight=False)
     table = _table("", "", "situation", plain(a.name), plain(b.name))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import ProfileError, TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Users, print_json
@@ -101,7 +102,9 @@ def activity_check(
 
 @app.command("phrases")
 def activity_phrases(
-    activity: Annotated[str, typer.Argument(help="A shipped activity, or its TOML.")] = "bingo",
+    activity: Annotated[
+        str, typer.Argument(help="A shipped activity, or its TOML.")
+    ] = DEFAULT_ACTIVITY,
     data: Data = None,
     users: Users = 4,
     as_json: Json = False,
@@ -122,12 +125,12 @@ def activity_phrases(
 @app.command("hear")
 def activity_hear(
     text: Annotated[
-        str, typer.Argument(metavar="WORDS_OR_PHONES", help="bingo, or the phones in capitals.")
+        str, typer.Argument(metavar="WORDS_OR_PHONES", help="Words, or the phones in capitals.")
     ],
     sink: Annotated[
         str, typer.Option(help="What plays it: auto, the name of a program, or null.")
     ] = "auto",
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
     """Say words, or ARPAbet phones, as Tangy expects to hear them, and print the phones."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.card_face import USUAL_SEED
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.text.sensors import CAMERA_STATES
@@ -136,7 +137,7 @@ def capture(
         bool, typer.Option("--cards", help="Read the card in each picture, as read-card does.")
     ] = False,
     deck_seed: DeckSeed = USUAL_SEED,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.card_face import LAST_CARD, USUAL_SEED
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import ActivityName, Json, print_json
@@ -44,7 +45,7 @@ def cards_print(
         ),
     ] = "a4",
     deck_seed: DeckSeed = USUAL_SEED,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
     """Write cards as a PDF to print and cut, with a call sheet for staff, or as pictures.
@@ -88,7 +89,7 @@ def cards_list(
     count: Count = 40,
     first: First = 1,
     deck_seed: DeckSeed = USUAL_SEED,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
     """List the numbers that stand on cards."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
@@ -31,7 +32,10 @@ Some = Annotated[list[str], typer.Argument(metavar="N...", help="Numbers in the 
 
 @app.command("list")
 def list_them(
-    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+    activity: ActivityName = DEFAULT_ACTIVITY,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
 ) -> None:
     """List the demonstrations: teacher, date, length, coverage, and what to mind of them."""
     from tangy_tui.learning.demonstration_rows import list_rows
@@ -49,7 +53,7 @@ def list_them(
 @app.command()
 def show(
     demonstration: One,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -79,7 +83,7 @@ def show(
 @app.command()
 def delete(
     demonstrations: Some,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -91,7 +95,7 @@ def delete(
 @app.command()
 def restore(
     demonstrations: Some,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -103,7 +107,7 @@ def restore(
 @app.command()
 def merge(
     demonstrations: Some,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -116,7 +120,7 @@ def merge(
 def split(
     demonstration: One,
     step: Annotated[int, typer.Argument(help="The first part ends with this step.")],
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -127,7 +131,10 @@ def split(
 
 @app.command()
 def undo(
-    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+    activity: ActivityName = DEFAULT_ACTIVITY,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
 ) -> None:
     """Take back the last of these changes."""
     _change(data, activity, as_json, lambda editor: editor.undo(), "Taken back: ")
@@ -135,7 +142,10 @@ def undo(
 
 @app.command()
 def redo(
-    activity: ActivityName = "bingo", seed: Seed = None, data: Data = None, as_json: Json = False
+    activity: ActivityName = DEFAULT_ACTIVITY,
+    seed: Seed = None,
+    data: Data = None,
+    as_json: Json = False,
 ) -> None:
     """Make the change again that was taken back last."""
     _change(data, activity, as_json, lambda editor: editor.redo(), "Done again: ")
@@ -144,7 +154,7 @@ def redo(
 @app.command()
 def conflicts(
     unfinished: Unfinished = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -184,7 +194,7 @@ def resolve(
     ] = None,
     both: Annotated[bool, typer.Option("--both", help="All answers are right.")] = False,
     unfinished: Unfinished = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,
@@ -266,7 +276,7 @@ def accepted(
     take_back: Annotated[
         int | None, typer.Option(metavar="N", help="Take back the one of this number.")
     ] = None,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

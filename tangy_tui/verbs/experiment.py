@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
@@ -43,7 +44,7 @@ def first(
         bool, typer.Option("--no-typing", help="Do not type a game in real time (minutes).")
     ] = False,
     report: Report = None,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     jobs: Jobs = -1,
     dask: Dask = None,
     fresh: Fresh = False,
@@ -65,7 +66,7 @@ def second(
     people: Annotated[int, typer.Option(min=1, help="Simulated people in all.")] = 2000,
     users: Annotated[int, typer.Option(min=1, max=8, help="People in a group.")] = 4,
     report: Report = None,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     jobs: Jobs = -1,
     dask: Dask = None,
     fresh: Fresh = False,
@@ -89,7 +90,7 @@ def third(
         typer.Option("--simulated", help="Simulate all of it (seconds, not hours on the bench)."),
     ] = False,
     report: Report = None,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     jobs: Jobs = -1,
     dask: Dask = None,
     fresh: Fresh = False,

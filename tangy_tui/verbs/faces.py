@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
@@ -96,7 +97,7 @@ def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> N
     """List whose faces are known, and who agreed to it how."""
     from tangy_hw.perception.faces.face_store import CONSENT, consented, kept_faces, read_face
 
-    with open_workspace(data, "bingo", MOST_PEOPLE, write=False) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE, write=False) as workspace:
         names, agreed = names_of(workspace), consented(workspace.store)
         how = {
             event.person: event
@@ -142,7 +143,7 @@ def faces_forget(
     """Forget a person's face, and that they agreed; the rest of what is known of them stays."""
     from tangy_hw.perception.faces.face_store import forget_face
 
-    with open_workspace(data, "bingo", MOST_PEOPLE) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE) as workspace:
         known = find_anybody(workspace, person)
         forgotten = forget_face(workspace.store, known.id)
         if as_json:
@@ -164,7 +165,7 @@ def knowing(
     from tangy_profiles.robot import load_robot
 
     reader = open_reader(load_robot(robot).faces)
-    with open_workspace(data, "bingo", MOST_PEOPLE, write=write) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE, write=write) as workspace:
         yield workspace, reader, Gallery(read_faces(workspace.store, reader.kind))
 
 

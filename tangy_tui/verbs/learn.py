@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
@@ -25,7 +26,7 @@ MOST_SHOWN = 8
 
 
 def learn(
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     forest: Annotated[str, typer.Option(help="exact, or paper for its bagging.")] = "exact",
     name: Annotated[str, typer.Option(help="What to call the policy.")] = "",
     unfinished: Annotated[
@@ -91,7 +92,7 @@ def learn(
 
 
 def policy(
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     name: Annotated[
         str, typer.Option(help="A policy by its name or digest, or last~1; default the last.")
     ] = "last",

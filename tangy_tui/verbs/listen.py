@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
@@ -42,7 +43,7 @@ def listen(
         bool,
         typer.Option("--forget-recordings", help="Delete all that `teach --record` has kept."),
     ] = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

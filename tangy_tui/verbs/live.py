@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
@@ -48,7 +49,7 @@ def live(
     headless: Annotated[
         bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
     ] = False,
-    activity: common.ActivityName = "bingo",
+    activity: common.ActivityName = DEFAULT_ACTIVITY,
     policy: PolicyName = "",
     inject: Annotated[
         list[str] | None,

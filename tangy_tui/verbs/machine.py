@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 
@@ -13,7 +14,7 @@ def doctor(
     robot: Annotated[
         str | None, typer.Option(help="Try this robot's devices, too: its name, or its TOML.")
     ] = None,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace
@@ -34,7 +35,7 @@ def check(
     listed: Annotated[
         bool, typer.Option("--list", help="Print what is to be said, and check nothing.")
     ] = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     data: Data = None,
     as_json: Json = False,
 ) -> None:

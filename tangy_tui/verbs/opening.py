@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
 from tangy_tui.ui.terminal import terminal_kind
 
@@ -48,7 +49,7 @@ def open_program(
     from tangy_profiles.fault_file import load_faults
     from tangy_tui.ui.run import run_program
 
-    with open_workspace(data, "bingo", 4, robot=robot) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, 4, robot=robot) as workspace:
         load_faults(workspace.robot)  # what is wrong with its file is said before a screen opens
         return run_program(workspace, ascii_only=ascii_only)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
@@ -41,7 +42,7 @@ Strategy = Annotated[str, typer.Argument(help="A persuasive strategy of the acti
 @app.callback(invoke_without_command=True)
 def people(
     context: typer.Context,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -50,14 +51,14 @@ def people(
     """List the people, where no verb is given."""
     if context.invoked_subcommand is None:
         people_list(activity, seed, data, users, as_json=as_json)
-    elif (activity, seed, data, users, as_json) != ("bingo", None, None, 4, False):
+    elif (activity, seed, data, users, as_json) != (DEFAULT_ACTIVITY, None, None, 4, False):
         verb = context.invoked_subcommand
         raise TangyError(f"Options of `tangy people {verb}` stand after {verb}.")
 
 
 @app.command("list")
 def people_list(
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -79,7 +80,7 @@ def people_list(
 @app.command("show")
 def people_show(
     person: Who,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -98,7 +99,7 @@ def people_show(
 @app.command("history")
 def people_history(
     person: Who,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -124,7 +125,7 @@ def people_void(
         int | None, typer.Argument(help="Its number in the history; without one, the last.")
     ] = None,
     why: Annotated[str, typer.Option(help="The reason, for the log.")] = "",
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -151,7 +152,7 @@ def people_feedback(
     seen: Annotated[
         bool, typer.Option("--seen", help="Staff asked themselves: the log has no request for it.")
     ] = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -178,7 +179,7 @@ def people_switch(
     person: Who,
     strategy: Strategy,
     state: Annotated[str, typer.Argument(metavar="on|off")],
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -204,7 +205,7 @@ def people_method(
             "stays as it is. Or: default.",
         ),
     ],
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -225,7 +226,7 @@ def people_method(
 @app.command("undo")
 def people_undo(
     person: Who,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     users: Users = 4,
@@ -256,7 +257,7 @@ def people_rename(
     from tangy_tui.speech.name_conflicts import find_clash
     from tangy_tui.speech.name_pronunciation import how_said, naming_lines
 
-    with open_workspace(data, "bingo", users) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, users) as workspace:
         found = workspace.find_person(person)
         workspace.rename(found, name)
         named = workspace.find_person(found.id)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
@@ -43,7 +44,7 @@ def people_forget(
     of the data folder. What worked with them is still counted, under an id that says nobody's
     name. Copies in other folders are yours to delete.
     """
-    with open_workspace(data, "bingo", MOST_PEOPLE) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE) as workspace:
         known = find_anybody(workspace, person)
         if not yes and not _agreed(workspace, known):
             print(plain(f"Nothing was forgotten: {known.name} is known as before."))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, print_json
@@ -45,7 +46,7 @@ def people_pronounce(
     changes = phones is not None or accept or forget
     if (phones is not None) + accept + forget > 1:
         raise TangyError("Choose one: phones, --accept or --forget.")
-    with open_workspace(data, "bingo", users, write=changes) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, users, write=changes) as workspace:
         found = workspace.find_person(person)
         if accept:
             phones = accept_suggested(found)
@@ -86,7 +87,7 @@ def people_voice(
     if usual and (rate, voice) != (None, None):
         raise TangyError("Choose one: --usual, or a --rate and a --voice.")
     changes = usual or (rate, voice) != (None, None)
-    with open_workspace(data, "bingo", users, write=changes) as workspace:
+    with open_workspace(data, DEFAULT_ACTIVITY, users, write=changes) as workspace:
         found = workspace.find_person(person)
         if voice is not None:
             _check_voice(wanted)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
@@ -40,7 +41,7 @@ def play(
     games: common.Games = 1,
     users: common.Users = 4,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
-    activity: common.ActivityName = "bingo",
+    activity: common.ActivityName = DEFAULT_ACTIVITY,
     policy: PolicyName = "",
     teacher: Teacher = None,
     inject: Annotated[
@@ -166,7 +167,7 @@ def demo(
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory(prefix="tangy-demo-") as scratch, open_workspace(
-        data or Path(scratch), "bingo", 4
+        data or Path(scratch), DEFAULT_ACTIVITY, 4
     ) as workspace:  # fmt: skip
         if full_screen() and not (plain_lines or as_json):
             from tangy_tui.ui.run import run_demo

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tangy_profiles.card_face import USUAL_SEED
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.verbs.cards import DeckSeed
@@ -48,7 +49,7 @@ def read_card(
         str, typer.Option(help="tags, or paper (grid lines, textures, red blobs) to compare.")
     ] = "tags",
     deck_seed: DeckSeed = USUAL_SEED,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     as_json: Json = False,
 ) -> None:
     """Read Tangy's printed cards in pictures.

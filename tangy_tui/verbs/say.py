@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
@@ -30,7 +31,7 @@ def say(
     forget: Annotated[
         bool, typer.Option("--forget", help="Delete the spoken lines that are kept.")
     ] = False,
-    activity: ActivityName = "bingo",
+    activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
     as_json: Json = False,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.verbs import common
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def teach(
-    activity: common.ActivityName = "bingo",
+    activity: common.ActivityName = DEFAULT_ACTIVITY,
     script: Annotated[Path | None, typer.Option(help="Take the lines from a file.")] = None,
     mic: Mic = None,
     hands_free: HandsFree = False,

@@ -81,9 +81,9 @@ def test_closing_ends_it() -> None:
 
 ENDS = """
 import os, signal, sys
-from tangy_tui.speech import beside
-beside._processors = lambda: range(2)
-one = beside.Beside(lambda asked: os.getpid())
+from tangy_tui.speech import forked_worker
+forked_worker._processors = lambda: range(2)
+one = forked_worker.ForkedWorker(lambda asked: os.getpid())
 one.ask(0)
 print(one.answer(), flush=True)
 os.kill(os.getpid(), signal.SIGKILL)

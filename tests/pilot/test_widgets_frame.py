@@ -15,7 +15,6 @@ from textual.widgets import Input, Label
 from tangy_tui.ui.app import TangyApp
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.gallery import GalleryScreen
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
@@ -23,6 +22,7 @@ from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, LIGHT, THEMES
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.transcript import Transcript
+from tests.support.gallery import GalleryScreen
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run

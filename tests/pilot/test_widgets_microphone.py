@@ -9,8 +9,8 @@ from textual.app import ComposeResult
 
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import to_ascii
-from tangy_tui.ui.gallery import HEARD, SampleEars
 from tangy_tui.ui.widgets.microphone_line import BAR, MicrophoneLine
+from tests.support.gallery import HEARD, SampleEars
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run

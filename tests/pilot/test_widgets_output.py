@@ -23,7 +23,6 @@ from tangy_tui.ui.clean_output import OBEYED, CleanOutput, clean, harmless, to_a
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import QuestionDialog
-from tangy_tui.ui.gallery import GalleryScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.command_bar import CommandBar
@@ -33,6 +32,7 @@ from tangy_tui.ui.widgets.posteriors import Posteriors
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript
+from tests.support.gallery import GalleryScreen
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, Sample

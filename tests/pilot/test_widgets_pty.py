@@ -12,6 +12,7 @@ import subprocess
 import sys
 import termios
 from collections.abc import Iterator
+from pathlib import Path
 from time import monotonic
 
 import pyte
@@ -32,7 +33,8 @@ class Window:
         self.resize(columns, lines)
         kept = {k: v for k, v in os.environ.items() if k != "NO_COLOR"}
         self.process = subprocess.Popen(  # noqa: S603 - our own program
-            [sys.executable, "-m", "tangy_tui.ui.gallery", *options],
+            [sys.executable, "-m", "tests.support.gallery", *options],
+            cwd=Path(__file__).parents[2],
             stdin=child,
             stdout=child,
             stderr=child,

@@ -6,11 +6,13 @@ from pathlib import Path
 
 from tangy_hw.perception.faces import face_store
 from tangy_profiles.events import BODIES
+from tangy_profiles.game_world import BENCH
 from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import LOST, Store
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import AWAITED, Feedback
+from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.policies import load_policy
@@ -83,6 +85,7 @@ def _play(workspace: Workspace) -> None:
     workspace.store.append(ACCEPTED, {**about, "fault": fault.body["fault"], **kept})
     assert read_accepted(workspace.store, "bingo")
     take_back(workspace.store, "bingo", 1)
+    GameWorlds(workspace.store).set(fault.body["game"], BENCH, "Ada")
     workspace.store.append(ACCEPTED, {**about, "fault": fault.body["fault"], **kept})
 
 

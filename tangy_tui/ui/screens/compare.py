@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import Static
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.comparison import PolicyRow, compare
+from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.situations import counted
 from tangy_tui.ui.base import TangyScreen
@@ -105,7 +105,7 @@ class CompareScreen(TangyScreen[None]):
         self._only = False
 
     @property
-    def rows(self) -> list[PolicyRow]:
+    def rows(self) -> list[SituationComparison]:
         """What is shown."""
         return [row for row in self._all if not (self._only and row.same)]
 

@@ -1,6 +1,6 @@
 """A gallery for developers: every widget and dialog on one screen, with data that tries them.
 
-`python -m tangy_tui.ui.gallery [--ascii] [--ansi] [--light] [--people N]`
+`python -m tests.support.gallery [--ascii] [--ansi] [--light] [--people N]`
 """
 
 from __future__ import annotations

@@ -1,0 +1,18 @@
+"""What holds where nobody says otherwise: the activity, and the strategies that press people."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+from tangy_profiles.reading import read_toml
+
+_TOP = read_toml(Path(str(files("tangy_profiles"))) / "defaults.toml")
+
+DEFAULT_ACTIVITY = _TOP.text("activity")
+"""The name of the activity that the command line means where none is named."""
+
+PRESSING_STRATEGIES = _TOP.words("pressing_strategies")
+"""The strategies that press people in an activity that does not name its own."""
+
+_TOP.close()
