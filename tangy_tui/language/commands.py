@@ -50,7 +50,7 @@ class Command:
 
     `arguments` is empty or names the person to go to ({"user": id}); `confidence` runs from 0 to
     1; `heard` is the text it was understood from; `alternatives` are up to three other
-    behaviours, likeliest first.
+    behaviours, likeliest first, none where the text is a phrase as it stands.
     """
 
     behaviour: str
@@ -107,7 +107,7 @@ class Phrasebook:
         if words not in self._phrases and self._breaks_off(words):
             return None
         if (exact := self._exact(words)) is not None:
-            return self._command(exact, 1.0, heard, words)
+            return _command(exact, 1.0, heard)  # it leaves no doubt, and so no alternatives
         if self._refuses(words) or self._stranger(words) is not None:
             return None
         mended, trust = self._mend(words)
@@ -115,7 +115,7 @@ class Phrasebook:
         confidence *= trust
         if found is None or confidence < NEAREST_AT_LEAST or not self._numbers_fit(mended, found):
             return None
-        return self._command(found, confidence, heard, mended)
+        return _command(found, confidence, heard, self._others(found, mended))
 
     def choices(self, text: str) -> tuple[Command, ...]:
         """Return up to three commands that a text may mean, the likeliest first."""
@@ -124,7 +124,9 @@ class Phrasebook:
             return ()
         words, _ = self._mend(words_of(clean(text)))
         others = [
-            self._command(phrase, command.confidence * likeness, command.heard, words)
+            _command(
+                phrase, command.confidence * likeness, command.heard, self._others(phrase, words)
+            )
             for likeness, phrase in self._ranking(words)
             if phrase.behaviour != command.behaviour and likeness >= ALTERNATIVE_AT_LEAST
         ]
@@ -283,15 +285,14 @@ class Phrasebook:
         """Return what a seat is called, where words name one; its number is then no person's."""
         return next((noun for noun in self.table.seat_nouns if in_order(noun, words)), ())
 
-    def _command(self, found: Phrase, confidence: float, heard: str, words: Words) -> Command:
+    def _others(self, found: Phrase, words: Words) -> tuple[str, ...]:
+        """Return up to three other behaviours that words may mean, the likeliest first."""
         others = [
             phrase.behaviour
             for likeness, phrase in self._ranking(words)
             if phrase.behaviour != found.behaviour and likeness >= ALTERNATIVE_AT_LEAST
         ]
-        arguments = MappingProxyType({} if found.user is None else {"user": found.user})
-        alternatives = tuple(others[:MOST_ALTERNATIVES])
-        return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
+        return tuple(others[:MOST_ALTERNATIVES])
 
     def _ranking(self, words: Words) -> list[tuple[float, Phrase]]:
         """Return each behaviour's phrase that is most like the words, the likest first."""
@@ -317,6 +318,13 @@ class Phrasebook:
                 swap = 0.0 if word == known else cost + weight
                 row.append(min(last[place + 1] + cost, row[-1] + weight, last[place] + swap))
         return max(0.0, 1 - row[-1] / (sum(told) + sum(spent)))
+
+
+def _command(
+    found: Phrase, confidence: float, heard: str, alternatives: tuple[str, ...] = ()
+) -> Command:
+    arguments = MappingProxyType({} if found.user is None else {"user": found.user})
+    return Command(found.behaviour, arguments, round(confidence, 3), heard, alternatives)
 
 
 def _of_one_meaning(phrases: Iterable[Phrase], key: Callable[[Phrase], str]) -> dict[str, Phrase]:

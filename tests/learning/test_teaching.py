@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
+from types import FrameType
 
 import pytest
 
@@ -260,3 +262,24 @@ def test_the_scripted_teacher_teaches_a_made_up_activity_too(
 def test_the_scripted_teacher_needs_to_know_what_is_expected(store: Store) -> None:
     with pytest.raises(TangyError, match=r"does not say what is expected"):
         ScriptedTeacher(session(store, activity=replace(BINGO, expected={})))
+
+
+def test_a_phrase_typed_exactly_is_understood_and_done_in_few_calls(store: Store) -> None:
+    """A fifth of the 1,822 calls that it took while the unneeded alternatives were ranked too."""
+    teaching = begun(store)
+    teach(teaching, "greet everyone")
+    calls = 0
+
+    def count(frame: FrameType, event: str, _: object) -> None:
+        nonlocal calls
+        calls += event == "call" and "tangy" in frame.f_globals.get("__name__", "")
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        asked = teaching.apply(Say("call a number"))
+        done = teaching.apply(YES)
+    finally:
+        sys.setprofile(before)
+    assert isinstance(asked[0], Asked) and isinstance(done[0], Executed)
+    assert 0 < calls <= 364
