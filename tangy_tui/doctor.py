@@ -7,7 +7,7 @@ import locale
 import os
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -27,7 +27,15 @@ from tangy_tui.monitoring.log_check import log_problems
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sources
     from tangy_profiles.activity import Activity
+    from tangy_profiles.extensions import Group
     from tangy_profiles.robot import Robot
+
+
+NOUNS: Mapping[Group, str] = {
+    "drivers": "driver",
+    "activities": "activity",
+    "methods": "method of persuasion",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +72,56 @@ def examine(folder: Path, which: Callable[[str], str | None] = shutil.which) -> 
         _sound_output(which),
         _microphone(which("arecord")),
         _camera(),
+        *_extensions(),
     ]
+
+
+def _extensions() -> Iterator[Finding]:
+    """Say of everything that other packages add whether it can be used."""
+    from tangy_hw.drivers.registry import DRIVERS, driver_kind
+    from tangy_profiles.activity import read_activity, shipped_activities
+    from tangy_profiles.extensions import (
+        GROUPS,
+        Extension,
+        activity_files,
+        extensions,
+        problems,
+    )
+    from tangy_profiles.persuading import METHODS
+    from tangy_tui.interaction.methods import added_method
+
+    if not any(extensions(group) for group in GROUPS):
+        return
+
+    def driver(one: Extension) -> str:
+        driver_kind(one)
+        return ""
+
+    def activity(one: Extension) -> str:
+        path = activity_files().get(one.name)
+        if path is None:
+            return f"{one.value} has no {one.name}.toml."
+        read_activity(path)
+        return ""
+
+    def method(one: Extension) -> str:
+        added_method(one)
+        return ""
+
+    own: dict[Group, Iterable[str]] = {
+        "drivers": DRIVERS,
+        "activities": shipped_activities(),
+        "methods": METHODS,
+    }
+    checks: dict[Group, Callable[[Extension], str]] = {
+        "drivers": driver,
+        "activities": activity,
+        "methods": method,
+    }
+    for one, problem in problems(own, checks):
+        part = f"{NOUNS[one.group]} {one.name}"
+        text = problem or f"of {one.package} can be used."
+        yield Finding(plain(part), not problem, plain(text), broken=bool(problem))
 
 
 def examine_robot(

@@ -19,6 +19,7 @@ from tangy_profiles.behaviour import Action, Behaviour, read_behaviour
 from tangy_profiles.cards import CHECKERS, CardState, Deck, read_deck
 from tangy_profiles.defaults import PRESSING_STRATEGIES
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.extensions import activity_files
 from tangy_profiles.persuading import PAPER, PersuasionConfig, read_persuading
 from tangy_profiles.phones import read_pronunciations
 from tangy_profiles.reading import Table, nearest, plain, read_toml
@@ -188,6 +189,11 @@ def shipped_activities() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
+def known_activities() -> dict[str, Path]:
+    """The activities that come with Tangy and those that other packages bring, by name."""
+    return {**activity_files(), **shipped_activities()}
+
+
 def load_activity(name: str) -> Activity:
     """Load an activity by name, or by the path of its TOML file.
 
@@ -202,7 +208,10 @@ def load_activity(name: str) -> Activity:
         return read_activity(Path(name))
     if isdir(name):  # noqa: PTH112 - it says no to a name too long, where Path raises
         raise ProfileError(plain(f"{name}: is a folder; name the TOML file in it."))
-    raise ProfileError(f"There is no activity {name!r}: {nearest(name, shipped)}")
+    known = known_activities()
+    if name in known:
+        return read_activity(known[name])
+    raise ProfileError(f"There is no activity {name!r}: {nearest(name, known)}")
 
 
 def read_activity(path: Path) -> Activity:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tangy_profiles.game_world import GAME_WORLDS
-from tangy_profiles.persuading import LEAST_KEPT, METHODS, PERIODS, PRIORS
+from tangy_profiles.persuading import LEAST_KEPT, METHODS, PERIODS, PRIORS, is_method
 from tangy_profiles.shapes import (
     LARGEST,
     Check,
@@ -141,10 +141,14 @@ def _kept(value: Any) -> str:
     return share or ("" if LEAST_KEPT <= value <= 1 else "is not a share that can be kept")
 
 
+def _method(value: Any) -> str:
+    return "" if isinstance(value, str) and is_method(value) else one_of(*METHODS)(value)
+
+
 _METHOD = Fields(
     {},
     {
-        "method": one_of(*METHODS),
+        "method": _method,
         "prior": one_of(*PRIORS),
         "forgetting": _kept,
         "forgetting_per": one_of(*PERIODS),

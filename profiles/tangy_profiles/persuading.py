@@ -5,13 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal, cast, get_args
+from typing import Any, Literal, get_args
 
 from tangy_profiles.errors import ProfileError
+from tangy_profiles.extensions import extensions
 from tangy_profiles.reading import Table, nearest, plain
 
 MethodName = Literal["thompson", "bayes-ucb"]
 METHODS: tuple[MethodName, ...] = get_args(MethodName)
+
+
+def known_methods() -> tuple[str, ...]:
+    """Return the names of our methods, and of those that other packages add."""
+    return tuple(dict.fromkeys((*METHODS, *extensions("methods"))))
+
+
+def is_method(name: str) -> bool:
+    """Say whether there is a method of that name, ours or of another package."""
+    return name in METHODS or name in extensions("methods")
+
+
 PRIORS = ("uniform", "people")
 PERIODS = ("interaction", "day")
 DEFAULT = "default"
@@ -30,7 +43,7 @@ class PersuasionConfig:
     interaction, or from one day, to the next (1: everything).
     """
 
-    method: MethodName = "thompson"
+    method: str = "thompson"
     prior: str = "uniform"
     forgetting: float = 1.0
     forgetting_per: str = "interaction"
@@ -47,8 +60,9 @@ class PersuasionConfig:
             ProfileError: there is no such method.
         """
         method = str(body.get("method", cls.method))
-        if method not in METHODS:
-            raise ProfileError(plain(f"There is no method {method!r}: {nearest(method, METHODS)}"))
+        if not is_method(method):
+            known = nearest(method, known_methods())
+            raise ProfileError(plain(f"There is no method {method!r}: {known}"))
         return cls(
             method,
             str(body.get("prior", cls.prior)),
@@ -67,7 +81,7 @@ def read_persuading(table: Table) -> PersuasionConfig:
         ProfileError: one line that says file, key, value and the nearest valid word.
     """
     chosen = PersuasionConfig(
-        cast(MethodName, table.choice("method", METHODS, PAPER.method)),
+        table.choice("method", known_methods(), PAPER.method),
         table.choice("prior", PRIORS, PAPER.prior),
         table.number("forgetting", LEAST_KEPT, 1, PAPER.forgetting),
         table.choice("forgetting_per", PERIODS, PAPER.forgetting_per),
@@ -98,13 +112,13 @@ def spoken_persuading(words: Iterable[str]) -> PersuasionConfig:
 
 def _meant(word: str) -> tuple[str, Any]:
     """Return the key that a word is for, and its value."""
-    for key, known in (("method", METHODS), ("prior", PRIORS), ("forgetting_per", PERIODS)):
+    for key, known in (("method", known_methods()), ("prior", PRIORS), ("forgetting_per", PERIODS)):
         if word.casefold() in known:
             return key, word.casefold()
     try:
         share = float(word)
     except ValueError:
-        known_words = (*METHODS, *PRIORS, *PERIODS, DEFAULT)
+        known_words = (*known_methods(), *PRIORS, *PERIODS, DEFAULT)
         raise ProfileError(
             plain(f"There is no method {word!r}: {nearest(word, known_words)}")
         ) from None

@@ -11,10 +11,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
-from typing import Protocol, assert_never
+from typing import Protocol, assert_never, cast
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
-from tangy_profiles.persuading import MethodName, PersuasionConfig
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.extensions import Extension, extensions
+from tangy_profiles.persuading import METHODS, PersuasionConfig
+from tangy_profiles.reading import plain
 
 Counts = Mapping[str, tuple[int, int]]
 """One person's responses: strategy -> how often they complied, and did not."""
@@ -55,6 +58,10 @@ class Method(Protocol):
     def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
         """Return a score for each strategy; the highest is used."""
         ...
+
+
+METHOD_PARTS = ("words", "forgets", "prior", "faded", "updated", "scores")
+"""What a method has; `Plain` brings all of it but `words` and `scores`."""
 
 
 class Plain:
@@ -187,14 +194,34 @@ class Forgetting:
         return self.inner.scores(beliefs, rng)
 
 
-def _plain(name: MethodName) -> Method:
-    match name:
+def _plain(name: str) -> Method:
+    own = next((method for method in METHODS if method == name), None)
+    if own is None:
+        return added_method(extensions("methods")[name])
+    match own:
         case "thompson":
             return Thompson()
         case "bayes-ucb":
             return BayesUcb()
         case forgotten:
             assert_never(forgotten)
+
+
+def added_method(extension: Extension) -> Method:
+    """Make the method that another package adds: what it names, called without arguments.
+
+    Raises:
+        ProfileError: it cannot be loaded, or does not have all that a `Method` has.
+    """
+    made = extension.load()
+    try:
+        method = made()
+    except Exception as error:
+        raise ProfileError(plain(f"{extension}: {extension.value}() fails: {error}")) from None
+    lacks = [name for name in METHOD_PARTS if not hasattr(method, name)]
+    if lacks:
+        raise ProfileError(plain(f"{extension}: {extension.value} has no {', '.join(lacks)}."))
+    return cast(Method, method)
 
 
 def method_of(chosen: PersuasionConfig, earlier: Sequence[Counts] = ()) -> Method:

@@ -39,10 +39,18 @@ def activities(context: typer.Context, as_json: Json = False) -> None:
 
 @app.command("list")
 def activity_list(as_json: Json = False) -> None:
-    """List the activities that come with Tangy."""
-    from tangy_profiles.activity import load_activity, shipped_activities
+    """List the activities that come with Tangy, and those that other packages bring."""
+    from tangy_profiles.activity import known_activities, load_activity, shipped_activities
+    from tangy_profiles.errors import ProfileError
 
-    found = [(name, load_activity(name)) for name in shipped_activities()]
+    shipped = shipped_activities()
+    found = []
+    for name in sorted(known_activities()):
+        try:
+            found.append((name, load_activity(name)))
+        except ProfileError:
+            if name in shipped:
+                raise  # of what others bring, `tangy doctor` says what is wrong
     if as_json:
         print_json([_activity_document(name, activity) for name, activity in found])
         return

@@ -174,10 +174,10 @@ def _activities(games: Sequence[Game], file: str) -> dict[str, Activity]:
     Raises:
         TangyError: the file that was named has a mistake, or none of the games is of it.
     """
-    from tangy_profiles.activity import load_activity, shipped_activities
+    from tangy_profiles.activity import known_activities, load_activity
 
     wanted = {game.activity for game in games}
-    known = {name: load_activity(name) for name in sorted(wanted & shipped_activities().keys())}
+    known = {name: load_activity(name) for name in sorted(wanted & known_activities().keys())}
     if file:
         own = load_activity(file)
         if own.name not in wanted:

@@ -298,10 +298,10 @@ def _changed(chosen: PersuasionConfig, words: list[str]) -> PersuasionConfig:
     """Change what the words say of a choice of method, and nothing else."""
     from dataclasses import replace
 
-    from tangy_profiles.persuading import METHODS, PERIODS, PRIORS, spoken_persuading
+    from tangy_profiles.persuading import PERIODS, PRIORS, known_methods, spoken_persuading
 
     spoken = spoken_persuading(words)  # which refuses what is none of them
-    known = dict.fromkeys(METHODS, "method") | dict.fromkeys(PRIORS, "prior")
+    known = dict.fromkeys(known_methods(), "method") | dict.fromkeys(PRIORS, "prior")
     known |= dict.fromkeys(PERIODS, "forgetting_per")
     said = {known.get(word.casefold(), "forgetting") for word in words}
     return replace(chosen, **{key: getattr(spoken, key) for key in said})

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from tangy_hw.device_protocols import Clock, Device, DeviceError, Pose
 from tangy_hw.drivers.ros_status import RosDiagnostics
@@ -16,6 +18,8 @@ from tangy_hw.drivers.simulated_clock import SteppedClock
 from tangy_hw.robot_setup import Setting
 from tangy_hw.watchdogs import DRIVES_BY
 from tangy_profiles.activity import Activity
+from tangy_profiles.errors import ProfileError
+from tangy_profiles.extensions import Extension, extensions
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.robot import Robot
 
@@ -240,14 +244,48 @@ def _dynamixel(wiring: Wiring, settings: DriverSettings) -> Device:
     )
 
 
-DRIVERS: Mapping[str, tuple[tuple[str, ...], Opens]] = {
-    "rosbridge": (("base", "laser", "stop_button", "arms", "voice", "navigator"), _rosbridge),
-    "scip": (("laser",), _scip),
-    "page": (("screen",), _page),
-    "spoken": (("voice",), _spoken),
-    "dynamixel": (("arms",), _dynamixel),
+class DriverKind(NamedTuple):
+    """A kind of driver: for which devices of a robot it is, and what opens it.
+
+    `opens(wiring, settings)` returns a device (see `device_protocols`) that is not started yet.
+    """
+
+    devices: tuple[str, ...]
+    opens: Opens
+
+
+DRIVERS: Mapping[str, DriverKind] = {
+    "rosbridge": DriverKind(
+        ("base", "laser", "stop_button", "arms", "voice", "navigator"), _rosbridge
+    ),
+    "scip": DriverKind(("laser",), _scip),
+    "page": DriverKind(("screen",), _page),
+    "spoken": DriverKind(("voice",), _spoken),
+    "dynamixel": DriverKind(("arms",), _dynamixel),
 }
-"""The kinds of drivers: for which devices each is, and what opens it."""
+"""The kinds of drivers that are ours; others come by the entry points `tangy.drivers`."""
+
+
+def driver_kind(extension: Extension) -> DriverKind:
+    """Return the kind of driver that another package adds.
+
+    Raises:
+        ProfileError: it cannot be loaded, or is no kind of driver.
+    """
+    kind = extension.load()
+    if not isinstance(kind, DriverKind):
+        raise ProfileError(plain(f"{extension}: {extension.value} is no DriverKind."))
+    return kind
+
+
+def known_drivers() -> dict[str, DriverKind]:
+    """Return all kinds of drivers; those of other packages that cannot be loaded are left out."""
+    known = dict(DRIVERS)
+    for name, extension in extensions("drivers").items():
+        if name not in known:
+            with suppress(ProfileError):  # `tangy doctor` says why
+                known[name] = driver_kind(extension)
+    return known
 
 
 def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> Device:
@@ -257,12 +295,18 @@ def open_device(wiring: Wiring, device: str, values: Mapping[str, Setting]) -> D
         DeviceError: there is no such kind, or it is set wrongly.
     """
     kind = str(values.get("kind", ""))
-    known = {name for name, (devices, _) in DRIVERS.items() if device in devices}
-    if kind not in known:
+    drivers = DRIVERS if kind in DRIVERS else known_drivers()
+    if kind not in drivers and kind in extensions("drivers"):
+        try:
+            driver_kind(extensions("drivers")[kind])
+        except ProfileError as error:
+            raise DeviceError(f"drivers.{device}: {error}") from None
+    if kind not in drivers or device not in drivers[kind].devices:
+        known = {name for name, driver in known_drivers().items() if device in driver.devices}
         raise DeviceError(
             plain(f"drivers.{device}: {kind!r} drives no {device}; {nearest(kind, known)}")
         )
     settings = DriverSettings(device, kind, {k: v for k, v in values.items() if k != "kind"})
-    opened = DRIVERS[kind][1](wiring, settings)
+    opened = drivers[kind].opens(wiring, settings)
     settings.close()
     return opened

@@ -11,7 +11,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import Device, DeviceError, MachineClock
 from tangy_hw.drivers.camera import Camera
-from tangy_hw.drivers.registry import DRIVERS, Wiring, open_device
+from tangy_hw.drivers.registry import Wiring, known_drivers, open_device
 from tangy_hw.perception.camera_hub import Sources
 from tangy_hw.perception.requests.help_request_source import DEVICE as REQUESTS
 from tangy_hw.perception.requests.source_names import requests_named
@@ -94,7 +94,7 @@ async def try_robot(
         if device.looks_at and name not in found:
             what = "nothing says where its pictures come from; name its source in"
             found[name] = Trial(name, False, f"{what} {robot.file.name}.", absent=True)
-    driven = {device for devices, _ in DRIVERS.values() for device in devices}
+    driven = {device for driver in known_drivers().values() for device in driver.devices}
     for name in driven - {"navigator"}:  # without one of its own, Tangy finds the way
         if name in robot.devices and name not in found:
             what = f"nothing drives it; say what does under [drivers] in {robot.file.name}."

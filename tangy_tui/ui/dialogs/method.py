@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_profiles.persuading import MethodName, PersuasionConfig
+from tangy_profiles.persuading import MethodName, PersuasionConfig, known_methods
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
@@ -34,6 +34,11 @@ FORGETTING = {
     (0.97, "day"): "3% with each day",
 }
 """What can be chosen here; the command line takes any share."""
+
+
+def _method_words(name: str) -> str:
+    """Return what a method is called here; that of another package by its name."""
+    return next((words for known, words in METHODS.items() if known == name), name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +107,12 @@ class MethodDialog(Dialog[MethodChoice | None]):
             case "d":
                 self._set(self._default, own=False)
             case "1":
-                self._set(replace(self._chosen, method=_next(METHODS, self._chosen.method)))
+                self._set(
+                    replace(
+                        self._chosen,
+                        method=_next(dict.fromkeys(known_methods(), ""), self._chosen.method),
+                    )
+                )
             case "2":
                 self._set(replace(self._chosen, prior=_next(PRIORS, self._chosen.prior)))
             case "3":
@@ -122,7 +132,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
         fades = (chosen.forgetting, chosen.forgetting_per)
         other = f"{100 * (1 - chosen.forgetting):.3g}% with each {chosen.forgetting_per}"
         settings = (
-            ("1", "choose by ", METHODS[chosen.method]),
+            ("1", "choose by ", _method_words(chosen.method)),
             ("2", "begin from", PRIORS[chosen.prior]),
             ("3", "forget    ", FORGETTING.get(fades, other)),
         )
