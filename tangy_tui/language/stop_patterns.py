@@ -23,9 +23,10 @@ DETERMINER = (
 )
 PASSION = (
     "whole|entire|bloody|stupid|damn(?:ed)?|darn|silly|crazy|mad|blasted|poor|big|little|horrible"
+    "|left|right|other|front|rear"
 )
 BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
-LIMBS = "base|wheels?|motors?|engines?|arms?|hands?|head|movements?|motions?|moving|driving"
+LIMBS = "base|wheels?|motors?|engines?|drives?|arms?|hands?|head|movements?|motions?|moving|driving"
 PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"
 DOINGS = "lot|nonsense|madness|noise|talking|experiment|simulation|action"
 ROBOT = f"(?:(?:{DETERMINER}) )?(?:(?:{PASSION}|game) )*(?:{BODY})"
@@ -83,6 +84,13 @@ _HARMS = (
     "hurting|hitting|pushing|crushing|squeezing|squashing|ramming|trapping|pinning|blocking"
     "|bumping|chasing|following|knocking"
 )
+_HITS = "banging|bashing|bumping|knocking|running|scraping|slamming|smashing|crashing|driving"
+_TAKES = "grabbing|grasping|gripping|clutching|twisting|catching"
+_TAKEN = (
+    "arms?|hands?|wrists?|fingers?|shoulders?|sleeves?|clothes|jacket|coat|skirt|dress|foot|feet"
+    "|chair|wheelchair|walker|frame|stick"
+)
+_MINE = "my|our|her|his|their"
 _SPEAKS = (
     "playing|calling(?: out)?|drawing|talking|speaking|announcing|celebrating|doing|counting"
     "|reading"
@@ -109,6 +117,10 @@ _OF_PLAY = f"to (?:{_WHOM})|(?:the |any )?(?:more )?numbers?|jokes|{ROBOT}|{GAME
 _MOVING = _any(
     f"(?:{_DRIVES}|{_HARMS})(?: (?:{_WHERE}|{_PLACE}|{_WHOM}|{ROBOT}|{GAME})){{0,4}}",
     rf"(?:{_HARMS}) (?:(?:the|my|our|a) )?(?!your)\w+",
+    rf"(?:{_HITS}) (?:into|against) (?:(?:the|a|{_MINE}) )?\w+",
+    rf"(?:{_TAKES}) (?:on ?to )?(?:{_MINE}) (?:\w+ )?(?:{_TAKEN})",
+    f"(?:getting|being) (?:so |too )?(?:closer|nearer|close|near)(?: to (?:{_WHOM}))?",
+    f"(?:getting|being) in (?:{_MINE}) way",
     f"(?:{_SPEAKS})(?: (?:{_OF_PLAY}))?",
 )
 _OTHERWISE = rf"(?!(?:{PEOPLE_DO})\b)\w+ing"
@@ -131,12 +143,15 @@ _MUST = (
 _YOU = f"you|we|i|{ROBOT}|somebody|someone|anybody|anyone"
 _WISH = "want|wants|wanted|need|needs|would like|order|command|beg|ask|tell|am telling"
 _WISHED = "asked|told|ordered|commanded|begged"
+_ASKING = "asking|telling|begging|ordering|commanding|imploring|warning"
 _CAUSE = "make|get|have|let|tell|ask|order|force|command|help|bring"
 _NOBODY = "dont|didnt|doesnt|never|not|nobody"
 ASK = _any(
-    f"(?:{_YOU}|youd|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
+    f"(?:{_YOU}|youd|wed|id|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
     "you (?:can|could|will|would|may|might)",
-    f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt) (?:{_YOU})",
+    f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt|shouldnt)"
+    f" (?:{_YOU})",
+    f"(?:im|i am|were|we are) (?:just |really |now )*(?:{_ASKING}) (?:{ITSELF}|you) to",
     f"why (?:dont|cant|wont|wouldnt|couldnt) (?:{_YOU})",
     rf"(?!{_NOBODY})\w+ (?:just |really |now )*(?:{_WISH}) (?:{ITSELF}|you) to",
     f"(?:i|we) (?:just |already )*(?:{_WISHED}) (?:{ITSELF}|you) to",
@@ -168,6 +183,8 @@ _STILL = _any(
     "(?:do not|dont|dont you|dont you dare) (?:you )?move(?: any ?more| any further| a muscle)?",
     "(?:do not|dont) move another (?:inch|step|metre|centimetre)|full stop (?:now|tangy|robot)",
     "(?:do not|dont) (?:come|go|move|drive) (?:any )?(?:closer|nearer|further|on|anywhere)",
+    "(?:do not|dont) (?:come|get|go|move|drive) (?:so |too )?(?:near|close)"
+    "(?: to)?(?: (?:me|us|him|her|them|people|anybody|anyone))?",
     "(?:do not|dont) (?:drive|do anything)|do nothing|go no further|no (?:further|closer)",
     "not another (?:inch|step|move|metre|centimetre)|nobody move|emergency|e ?stop|enough",
     "that(?: i)?s enough|cut it out|knock it off|shut ?down|power (?:off|down)|switch off",
@@ -181,7 +198,9 @@ _SWITCHED = _any(
     f"(?:{_CANCEL}|hold) (?:{ROBOT}|{GAME})|quit (?:{ITSELF}|{_MOVING})|unplug (?:{ROBOT}|it)",
     f"bring {ITSELF} to a (?:complete |full )?(?:stop|halt|standstill)|stop button",
     f"put (?:a stop|an end) to {ITSELF}|call a halt(?: to {ITSELF})?|pull the plug",
-    "cut (?:the|its) (?:power|engines?|motors?)|put the brakes on|slam on the brakes",
+    "(?:cut|kill|disable|disengage) (?:(?:the|its|your|all) )*(?:power|engines?|motors?|drives?"
+    "|wheels?)|put the brakes on|slam on the brakes",
+    f"call (?:{GAME}|it) off",
     f"(?:{_PRESS}) (?:(?:the|that|its) )?(?:red |big |emergency )*(?:e ?)?"
     "(?:stop|brake|emergency button)(?: button| switch)?",
     "(?:safety|emergency) (?:stop|halt|brakes?|off|shutdown)",
@@ -201,6 +220,7 @@ SENTENCE = re.compile(
         f"(?:{ROBOT}|{GAME}|it|this|that) (?:{_MUST}) be stopped{AFTER}",
         f"(?:can|could) (?:{ROBOT}|{GAME}|it|this|that) be stopped{AFTER}",
         f"(?:(?:would|do) you mind|how about) stopping{_WHAT}",
+        f"(?:i|we|she|he|they) (?:cant|cannot|can not|couldnt) (?:{STOP}) (?:{ROBOT}){AFTER}",
         f"stop(?:s|ped) (?:{ROBOT}|it|at once|right (?:now|away|there))",  # as it may be heard
     )
 )

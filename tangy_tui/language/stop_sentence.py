@@ -121,6 +121,8 @@ def _mend(word: str, game: Collection[str]) -> str:
         return word
     if word in game:
         return "game"
+    if word[:1] == "t" and len(word) in (2, 3) and set(word) <= set("the"):
+        return "the"
     hurried = sorted(word) == _LETTERS and word not in _WORDS_OF_THESE_LETTERS
     if hurried or _DRAWN_OUT.fullmatch(word):
         return "stop"
