@@ -29,15 +29,18 @@ def open_log(path: Path) -> BinaryIO:
         with suppress(PermissionError):  # it is another user's
             os.fchmod(log.fileno(), 0o600)  # whatever the umask, and whoever began it
         if os.fstat(log.fileno()).st_size > MOST:
-            _cut(path)
+            cut(path)
     except BaseException:
         log.close()
         raise
     return log
 
 
-def _cut(path: Path) -> None:
-    """Move the last lines to the beginning; whoever appends to the file goes on behind them."""
+def cut(path: Path) -> None:
+    """Cut a log that has become too long: its last lines move to its beginning.
+
+    Other processes that append to it go on behind them.
+    """
     with path.open("r+b") as file:
         file.seek(-KEPT, os.SEEK_END)
         end = file.read(KEPT)

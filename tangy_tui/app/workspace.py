@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -15,6 +15,7 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
+from tangy_profiles.process_log import logging_to
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.room import Room, load_room
@@ -87,11 +88,15 @@ class Workspace:
         self.room: Room = load_room()
         self._sample = load_people(users)
         self.store = Store.open(folder, write=write, now=now)
+        self._logging = ExitStack()
+        if write:
+            self._logging.enter_context(logging_to(folder))
         self.people: tuple[Person, ...] = ()
         self.read_people()
 
     def close(self) -> None:
-        """Close the store."""
+        """Close the store, and the log of what the program decides."""
+        self._logging.close()
         self.store.close()
 
     def read_people(self) -> None:

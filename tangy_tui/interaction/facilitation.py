@@ -6,6 +6,7 @@ What happens is in the log before it is told.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -27,6 +28,8 @@ from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.teaching_session import NOTHING_SAID
 from tangy_tui.learning.verification import Verifier
 from tangy_tui.world import World
+
+_LOG = logging.getLogger(__name__)
 
 BEGUN = "game begun"
 STEP = "game step"
@@ -361,9 +364,15 @@ class Facilitation:
             without = activity.pressing if self._refused == target else ()
             choice = self.persuasion.choose(self.world.who(target), without)
         action = activity.action(behaviour, target, choice.strategy if choice else None)
+        _LOG.info("%s for %s begins", behaviour.name, target or "everybody")
         outcome = self.world.execute(action)
         after = self.observation.after(lambda seen: self.contradicts(action, state, outcome, seen))
         self.steps += 1
+        _LOG.info(
+            "step %d: %s for %s, %s, %.1f s",
+            *(self.steps, behaviour.name, target or "everybody"),
+            *("done" if outcome.completed else "not done", outcome.seconds),
+        )
         if state.place != after.place:
             self._refused = None
         elif refused(behaviour, state, outcome, after):

@@ -6,6 +6,7 @@ come out. Every verified step is in the log before its event is returned.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeAlias
@@ -15,6 +16,7 @@ from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
+from tangy_profiles.process_log import serving
 from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.editing import new_id
@@ -42,6 +44,8 @@ from tangy_tui.learning.verification import (
     Verifier,
 )
 from tangy_tui.world import World
+
+_LOG = logging.getLogger(__name__)
 
 NOTHING_SAID = "(nothing: there are no numbers to say)"
 
@@ -158,6 +162,13 @@ class TeachingSession:
 
     def apply(self, command: TeacherCommand) -> list[TeachingEvent]:
         """Carry out one command of the teacher and return what followed."""
+        with serving():
+            events = self._heed(command)
+            followed = ", ".join(type(event).__name__ for event in events)
+            _LOG.info("teaching: %s -> %s", type(command).__name__, followed)
+        return events
+
+    def _heed(self, command: TeacherCommand) -> list[TeachingEvent]:
         match command:
             case Say():
                 return self._say(command)

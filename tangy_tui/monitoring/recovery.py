@@ -8,6 +8,7 @@ recovery loops. All of it is in the log before it is told.
 
 from __future__ import annotations
 
+import logging
 from collections import Counter
 from collections.abc import Callable
 from typing import TypeAlias
@@ -38,6 +39,8 @@ from tangy_tui.monitoring.fault import (
     rule_texts,
 )
 from tangy_tui.monitoring.telling import evidence_words
+
+_LOG = logging.getLogger(__name__)
 
 Event: TypeAlias = GameEvent | FaultEvent
 
@@ -139,6 +142,7 @@ class Recovery:
         if rule.critical:
             self.remedy(fault, "halt")  # before it is written down, which can fail
         self._store.append(FAULT, fault.to_json(), person=person)
+        _LOG.warning("fault %s (%s): %s", fault.id, fault.code, fault.why)
         self.faults.append(fault)
         self._there.append(fault)
         told: list[Event] = [Diagnosed(fault)]
@@ -289,6 +293,7 @@ class Recovery:
         """Log that something was done about a fault, and tell it."""
         body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
         self._store.append(RECOVERY, body, person=fault.person)
+        _LOG.info("fault %s (%s): %s", fault.id, fault.code, move.kind)
         told = move.called(fault.called)
         fault.add(told)
         if fault.status == OVER:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.faults import Evidence, FaultBook
+from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
 from tangy_tui.interaction.facilitation import (
@@ -162,6 +163,10 @@ class Supervision:
 
     def step(self) -> list[Event]:
         """Do the next thing: one move against the most urgent fault, or else one behaviour."""
+        with serving():
+            return self._step()
+
+    def _step(self) -> list[Event]:
         if self.over or self.halted is not None or self.question is not None:
             return []
         told = self.look()
@@ -264,6 +269,10 @@ class Supervision:
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Do what a teacher answered, and go on."""
+        with serving():
+            return self._answer(behaviour, target, teacher)
+
+    def _answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         told = self.look()  # what came up while the teacher was thinking comes first
         question = self.question
         if question is None:

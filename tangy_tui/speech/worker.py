@@ -25,15 +25,19 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import logging
 import os
 import sys
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any, get_args
 
+from tangy_profiles.process_log import log_to_stderr
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
+
+_LOG = logging.getLogger(__name__)
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it
@@ -231,6 +235,8 @@ def _sound(encoded: str) -> bytes:
 
 def main() -> None:
     """Answer requests until standard input closes."""
+    log_to_stderr()
+    _LOG.info("the speech worker begins")
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # the C library prints on standard output; the protocol has its own copy of it
 

@@ -2,18 +2,45 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
+
+
+def _print_logs(folder: Path, *, as_json: bool) -> None:
+    """Say where the logs of a data folder are, and how to follow one command through them."""
+    from tangy_profiles.process_log import LEVEL, LOGS
+
+    rows = [
+        {
+            "file": str(folder / name),
+            "of": of,
+            "bytes": (folder / name).stat().st_size if (folder / name).is_file() else None,
+        }
+        for name, of in LOGS.items()
+    ]
+    if as_json:
+        print_json(rows)
+        return
+    for row in rows:
+        size = "not yet" if row["bytes"] is None else f"{row['bytes']:,} bytes"
+        print(plain(f"{row['file']}: {row['of']} ({size})"))
+    print("Each line has the id of its command in brackets, the same in every file: grep for it.")
+    print(f"{LEVEL}=debug in the environment writes more, {LEVEL}=error less.")
 
 
 def doctor(
     robot: Annotated[
         str | None, typer.Option(help="Try this robot's devices, too: its name, or its TOML.")
     ] = None,
+    logs: Annotated[
+        bool, typer.Option("--logs", help="Say where each process writes down what it does.")
+    ] = False,
     activity: ActivityName = DEFAULT_ACTIVITY,
     seed: Seed = None,
     data: Data = None,
@@ -25,6 +52,10 @@ def doctor(
     exit status is 1 where the data folder, or a device of that robot, is broken.
     """
     from tangy_tui.app.workspace import data_folder
+
+    if logs:
+        _print_logs(data_folder(data), as_json=as_json)
+        return
     from tangy_tui.doctor import examine, examine_robot
 
     findings = examine(data_folder(data))

@@ -6,6 +6,7 @@ import asyncio
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any, cast
 from unittest.mock import patch
 
@@ -25,6 +26,7 @@ from tangy_hw.robot_process.control_loop import TICK
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
 from tangy_hw.robot_process.process import RobotProcess
+from tangy_profiles.process_log import PROGRAM_LOG, logging_to
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
 from tests.hw.navigated import MAP
@@ -218,3 +220,15 @@ async def test_a_second_line_of_an_id_that_is_under_way_is_refused() -> None:
         await one.take(id=2, do="cancel", why="enough")
         await until(lambda: len(one.said) == 3)
         assert [said.get("failed") for said in one.said if said["id"] == 1][1] == "enough"
+
+
+async def test_the_id_of_a_command_goes_from_its_line_to_the_driver_and_back(
+    tmp_path: Path,
+) -> None:
+    with logging_to(tmp_path):
+        async with spoken() as one:
+            await one.take(id=1, do="relax", command="c0ffee42")
+            await until(lambda: any(said.get("id") == 1 for said in one.said))
+    logged = (tmp_path / PROGRAM_LOG).read_text(encoding="utf-8").splitlines()
+    served = [line.partition(" [c0ffee42] ")[2] for line in logged if "[c0ffee42]" in line]
+    assert served == ["begins relax", "has done relax"]

@@ -20,6 +20,7 @@ It ends when its input closes; what C libraries print goes to standard error.
 from __future__ import annotations
 
 import json
+import logging
 import os
 import sys
 import time
@@ -30,9 +31,12 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
+from tangy_profiles.process_log import log_to_stderr
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
+
+_LOG = logging.getLogger(__name__)
 
 ALIVE_SECONDS = 0.25  # between two heartbeats
 AGAIN_SECONDS = 0.3  # until a source that has gone is opened anew
@@ -183,6 +187,7 @@ def fitted(image: Image, columns: int, rows: int) -> Image:
 
 def main() -> None:
     """Read what the first line of standard input names, until standard input closes."""
+    log_to_stderr()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # C libraries print on standard output; the protocol has its own copy of it
     with suppress(ImportError, AttributeError, OSError):
@@ -194,6 +199,7 @@ def main() -> None:
     if order is None:
         return
     source, first = CameraSource.from_json(order["source"]), int(order["first"])
+    _LOG.info("opens a camera")
     Thread(target=_reads, args=(child, source, first), daemon=True).start()
     for line in sys.stdin.buffer:
         try:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import math
 import socket
 import sys
@@ -22,6 +23,8 @@ from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
+
+_LOG = logging.getLogger(__name__)
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.drivers.chest_child")
 PORT = 8765
@@ -135,6 +138,7 @@ class WebChestScreen:
         Raises:
             DeviceError: a page is open, and none has drawn it within a second.
         """
+        _LOG.info("shows a picture on the chest screen")
         self._number += 1
         mine = self._number
         self._picture = picture

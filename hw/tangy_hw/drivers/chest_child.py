@@ -17,12 +17,16 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import os
 import sys
 from contextlib import suppress
 
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.drivers.chest_server import ChestServer, Said
+from tangy_profiles.process_log import log_to_stderr
+
+_LOG = logging.getLogger(__name__)
 
 AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
 NICER = 5  # than what drives the robot
@@ -71,6 +75,8 @@ async def run() -> None:
 
 def main() -> None:
     """Run it."""
+    log_to_stderr()
+    _LOG.info("the page of the chest screen is served")
     with suppress(OSError):
         os.nice(NICER)
     with suppress(KeyboardInterrupt):

@@ -6,6 +6,7 @@ Robotis' own package speaks to the bus, in a thread of its own; it comes with th
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -21,6 +22,8 @@ from tangy_hw.drivers.ros_newest import Newest
 from tangy_profiles.health import ERROR, OK, Reading
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Limb
+
+_LOG = logging.getLogger(__name__)
 
 POLL_SECONDS = 0.1  # between two looks at where joints are
 ERRORS_EVERY = 5  # looks, at one of which servos are asked for errors as well
@@ -161,6 +164,7 @@ class DynamixelArms:
             DeviceError: there is no such limb, a servo reports an error or cannot turn so far,
                 other angles are wanted meanwhile, or it is not there in time.
         """
+        _LOG.info("poses %s within %.1f s", ", ".join(angles), seconds)
         goals: dict[str, float] = {}
         for name, degrees in angles.items():
             joints = self._limbs[name].joints if name in self._limbs else ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,8 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import ERROR, OK, WARN, Reading
 from tangy_profiles.voice import VoicePreference
+
+_LOG = logging.getLogger(__name__)
 
 
 class SpokenVoice:
@@ -114,6 +117,7 @@ class SpokenVoice:
         Raises:
             DeviceError: it cannot be heard.
         """
+        _LOG.info("says %d characters by espeak-ng", len(text))
         voice, hushes = self._voice, self._hushes
         if voice is None or self._dead:
             raise DeviceError(self._dead)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -15,6 +16,8 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, Reading
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Limb
+
+_LOG = logging.getLogger(__name__)
 
 HOLD_SECONDS = 0.1  # in which joints are back where they were when they were told to hold
 KNOWN_SECONDS = 0.5  # for which it holds where a joint was; back to where it was before is no hold
@@ -92,6 +95,7 @@ class RosArms:
             DeviceError: there is no such limb, no link, a servo reports an error, other angles are
                 wanted meanwhile, or it is not there in time.
         """
+        _LOG.info("poses %s within %.1f s", ", ".join(angles), seconds)
         goals: dict[str, float] = {}
         for limb, degrees in angles.items():
             joints = self._joints.get(limb, ())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 from contextlib import suppress
 
@@ -12,6 +13,8 @@ from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import Reading
+
+_LOG = logging.getLogger(__name__)
 
 HOLDS_SECONDS = 0.5  # for which a command holds; so long bases hold one themselves
 REPEAT_SECONDS = 0.1  # between two of the same command; bases want 10 a second
@@ -91,6 +94,7 @@ class RosBase:
 
     async def stop(self) -> None:
         """Stand still now: what was to be driven and waits to be sent is never sent."""
+        _LOG.info("stops the wheels")
         self._twist = STILL
         with suppress(DeviceError):
             self._say(STILL)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 from contextlib import suppress
 from itertools import count
 
@@ -14,6 +15,8 @@ from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, STALE, Reading
 from tangy_profiles.reading import plain
+
+_LOG = logging.getLogger(__name__)
 
 PATIENCE_SECONDS = 5.0  # beyond what a sentence takes, until the voice is taken to be dead
 CHARACTER_SECONDS = 0.15  # twice what slow speech takes
@@ -93,6 +96,7 @@ class RosVoice:
             return
         key = str(next(self._numbers)) if self._with_id else text
         data = json.dumps({"id": int(key), "text": text}) if self._with_id else text
+        _LOG.info("says %d characters on %s", len(text), self._say)
         self._bridge.publish(self._say, {"data": data})
         over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         before = sum(length for _, length in self._waiting.values())

@@ -9,6 +9,7 @@ screen hangs: a screen says itself that it is `alive`.
 from __future__ import annotations
 
 import json
+import logging
 import os
 import subprocess
 import sys
@@ -18,16 +19,21 @@ from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError, Pose
+from tangy_hw.robot_process.protocol import level_of
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.write_queue import WriteQueue
 from tangy_profiles.health import STALE, Health, Reading
+from tangy_profiles.process_log import NO_COMMAND, command_id, serving
 from tangy_profiles.worker_log import open_log
+
+_LOG = logging.getLogger(__name__)
 
 CHILD = (sys.executable, "-P", "-m", "tangy_hw.robot_process")
 BEAT_SECONDS = 0.05
@@ -293,10 +299,12 @@ class RobotLink:
         asked: Future[dict[str, Any]] = Future()
         with self._lock:  # an end of the process is answered either here or by whoever hears of it
             self._number += 1
-            line = json.dumps({"id": self._number, "do": do, **what})
+            line = json.dumps({"id": self._number, **self._command(do), **what})
             heard = not self._told.ended and self._write(line)
             if heard:
                 self._asked[self._number] = asked
+                answered = partial(_note_answer, do, command_id())
+                asked.add_done_callback(answered)
         if not heard:
             asked.set_exception(Preempted(self.silent or ENDED))
         return asked
@@ -333,7 +341,15 @@ class RobotLink:
 
     def tell(self, do: str, **what: Any) -> None:
         """Tell the robot something, and wait for no answer."""
-        self._write(json.dumps({"do": do, **what}))
+        self._write(json.dumps({**self._command(do), **what}))
+
+    @staticmethod
+    def _command(do: str) -> dict[str, str]:
+        """Begin a line: what is to be done, and the id of the command that it serves."""
+        command = command_id()
+        level = logging.WARNING if do == "stop" else level_of(do)
+        _LOG.log(level, "asks the robot to %s", do)
+        return {"do": do} if command == NO_COMMAND else {"do": do, "command": command}
 
     def stop(self, why: str, by: str = STAFF) -> None:
         """Stop the robot now; it waits behind nothing, and latches until `by` releases it."""
@@ -397,3 +413,13 @@ class RobotLink:
             asked.set_exception(kind(said["failed"]))
         else:
             asked.set_result(said.get("done", {}))
+
+
+def _note_answer(do: str, command: str, asked: Future[dict[str, Any]]) -> None:
+    """Log what came of something that the robot was asked for; this is another thread."""
+    with serving(command):
+        failed = None if asked.cancelled() else asked.exception()
+        if failed is None:
+            _LOG.log(level_of(do), "the robot has done %s", do)
+        else:
+            _LOG.warning("the robot has not done %s: %s", do, failed)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import gc
+import logging
 import os
 import signal
 import sys
@@ -37,6 +38,7 @@ from tangy_hw.robot_process.protocol import (
     Asked,
     LineError,
     id_of,
+    level_of,
     number_of,
     picture_of,
     pose_of,
@@ -47,6 +49,9 @@ from tangy_hw.robot_process.startup import switched_on
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.errors import TangyError
+from tangy_profiles.process_log import NO_COMMAND, log_to_stderr, serving
+
+_LOG = logging.getLogger(__name__)
 
 BEAT_SECONDS = 0.1
 SILENT_SECONDS = 0.15
@@ -132,6 +137,10 @@ class RobotProcess:
             return
         if "beat" in asked:
             return
+        with serving(asked.get("command", NO_COMMAND)):
+            await self._take(asked)
+
+    async def _take(self, asked: Asked) -> None:
         try:
             if asked.get("do") == "stop":  # it waits behind nothing, nor for what is wrong with it
                 await self._stop(asked)
@@ -146,6 +155,7 @@ class RobotProcess:
     async def _stop(self, asked: Asked) -> None:
         why, by = asked.get("why"), asked.get("by")
         why = why if isinstance(why, str) else "stopped"
+        _LOG.warning("stops: %s", why)
         await self.robot.stop(why, by if isinstance(by, str) else STAFF)
         self._break_off(why)
 
@@ -184,6 +194,7 @@ class RobotProcess:
 
     def _begin(self, asked: Asked) -> None:
         number = id_of(asked)
+        _LOG.log(level_of(asked["do"]), "begins %s", asked["do"])
         if number is None or number in self._doing:
             raise LineError(f"{asked['do']} needs an id of its own, to be answered by.")
         task = asyncio.create_task(self._do(asked))
@@ -191,6 +202,10 @@ class RobotProcess:
         task.add_done_callback(lambda task: self._over(task, asked))
 
     def _answer(self, asked: Asked, **what: Any) -> None:
+        if "failed" in what:
+            _LOG.warning("has not done %s: %s", asked.get("do"), what["failed"])
+        else:
+            _LOG.log(level_of(asked.get("do")), "has done %s", asked.get("do"))
         if id_of(asked) is not None:
             self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
 
@@ -371,6 +386,7 @@ async def _serve(lines: asyncio.StreamReader, pipe: asyncio.ReadTransport) -> in
 
 def main() -> None:
     """Run it."""
+    log_to_stderr()
     status = asyncio.run(run())
     gc.freeze()  # or Python looks through all that was loaded once more
     sys.exit(status)

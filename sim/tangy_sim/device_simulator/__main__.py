@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import logging
 import signal
 import sys
 from collections.abc import Sequence
@@ -19,10 +20,13 @@ from typing import Any
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, load_people
+from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.world import BenchWorld
+
+_LOG = logging.getLogger(__name__)
 
 LONGEST_LINE = 1 << 20
 
@@ -30,6 +34,7 @@ LONGEST_LINE = 1 << 20
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the bench until its stdin is closed or it is told to stop."""
     told = _parser().parse_args(arguments)
+    log_to_stderr()
     try:
         people = _people(told.users, told.person)
         world = BenchWorld(
@@ -100,6 +105,7 @@ def _answer(bench: DeviceServers, line: bytes) -> dict[str, Any]:
     except (KeyError, TypeError, ValueError) as error:
         said = line.decode(errors="replace").strip()
         answer = {"failed": f"The bench does not understand {said:.200} ({error!r})."}
+    _LOG.info("asked for %s: %s", told.get("do") if isinstance(told, dict) else None, *answer)
     if isinstance(told, dict) and "id" in told:
         answer["id"] = told["id"]
     return answer

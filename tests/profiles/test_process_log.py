@@ -1,0 +1,112 @@
+"""What processes write down: a line a decision, with the id of the command that it serves."""
+
+from __future__ import annotations
+
+import contextvars
+import logging
+import os
+import re
+import stat
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.process_log import (
+    LEVEL,
+    LOGS,
+    NO_COMMAND,
+    PROGRAM_LOG,
+    command_id,
+    logging_to,
+    serving,
+)
+from tangy_profiles.worker_log import KEPT, MOST
+
+LOG = logging.getLogger("tangy_tui.test")
+
+
+def lines(folder: Path) -> list[str]:
+    return (folder / PROGRAM_LOG).read_text(encoding="utf-8").splitlines()
+
+
+def test_a_line_has_its_time_process_module_and_command(tmp_path: Path) -> None:
+    with logging_to(tmp_path):
+        LOG.info("before")
+        with serving() as command:
+            LOG.warning("within")
+            with serving() as inner:
+                assert inner == command == command_id()
+    LOG.info("after")
+    first, second = lines(tmp_path)
+    form = r"\d{4}-\d\d-\d\d [\d:,]+ (\d+) (\w+) +tangy_tui\.test \[(.+)\] (\w+)"
+    mine = str(os.getpid())
+    assert re.fullmatch(form, first, re.ASCII)
+    found = [re.fullmatch(form, line) for line in (first, second)]
+    assert [one and one.groups() for one in found] == [
+        (mine, "INFO", NO_COMMAND, "before"),
+        (mine, "WARNING", command, "within"),
+    ]
+
+
+@pytest.mark.parametrize("told", ["abc123", "0" * 32])
+def test_an_id_that_another_process_tells_is_taken_over(told: str) -> None:
+    with serving(told) as command:
+        assert command == told
+    assert command_id() == NO_COMMAND
+
+
+@pytest.mark.parametrize("told", ["", "x" * 33, "a b", "a\nb", 7, ["a"], "\x1b[2J"])
+def test_what_can_be_no_id_is_none(told: object) -> None:
+    with serving(told) as command:
+        assert command == NO_COMMAND
+
+
+def test_each_command_has_an_id_of_its_own() -> None:
+    with serving() as first:
+        pass
+    with serving() as second:
+        pass
+    assert first != second
+
+
+def test_what_goes_on_beside_it_keeps_its_own_id() -> None:
+    with serving() as command:
+        beside = contextvars.copy_context()
+    assert beside.run(command_id) == command and command_id() == NO_COMMAND
+
+
+def test_it_is_for_its_owner_alone_and_cut_when_it_is_long(tmp_path: Path) -> None:
+    with logging_to(tmp_path):
+        LOG.info("x" * MOST)
+        LOG.info("one more")
+    path = tmp_path / PROGRAM_LOG
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert path.stat().st_size <= KEPT + 200 and lines(tmp_path)[-1].endswith("one more")
+
+
+def test_nothing_is_written_before_there_is_something_to_say(tmp_path: Path) -> None:
+    with logging_to(tmp_path):
+        logging.getLogger("others").warning("not ours")
+    assert not (tmp_path / PROGRAM_LOG).exists()
+
+
+@pytest.mark.parametrize(("level", "count"), [("", 1), ("debug", 2), ("ERROR", 0), ("loud", 1)])
+def test_the_environment_says_how_much_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str, count: int
+) -> None:
+    monkeypatch.setenv(LEVEL, level)
+    with logging_to(tmp_path):
+        LOG.debug("little")
+        LOG.info("more")
+    assert len(lines(tmp_path) if count else []) == count
+    assert (tmp_path / PROGRAM_LOG).exists() is bool(count)
+
+
+def test_a_log_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
+    (tmp_path / PROGRAM_LOG).mkdir()
+    with logging_to(tmp_path):
+        LOG.error("nowhere to go")
+
+
+def test_every_file_says_whose_it_is() -> None:
+    assert PROGRAM_LOG in LOGS and all(LOGS.values())
