@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tangy_hw.robot_client.live_world import LiveWorld
@@ -77,6 +77,15 @@ class LiveGames:
         self.faults += fault_documents(game.faults, stopped)
         if isinstance(world, BenchedWorld):
             self.tally.add_injections(world.came, world.still_to_come)
+
+    def take(self, events: Sequence[Event]) -> list[str]:
+        """Count events, and say what is new of cards and of who sits where."""
+        self.tally.add(list(events))
+        self._look_at_cards(list(events))
+        world = self._supervision.world
+        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
+        cards = [note.words for note in self._card_notes]
+        return [*cards, *self._seats.news(list(events), world.sitting)]
 
     def lines(self, events: list[Event]) -> list[str]:
         """Say what happened, for whoever waits, and who was seen where somebody else sits."""

@@ -232,20 +232,20 @@ def _told(
             seen = state_words(world.activity, state, world.scene(), name)
             return [f"Now: {world.activity.in_words(state.situation)}. {seen}"]
         case "why":
-            return _why(supervision, demonstrations)
+            return why_lines(supervision, demonstrations)
     return None
 
 
-def _why(supervision: Supervision, demonstrations: Demonstrations | None) -> list[str]:
-    """Say on what grounds Tangy asks; without the demonstrations, at least by which votes."""
-    question = supervision.question
-    if question is None:
-        return []
-    activity = supervision.world.activity
-    if demonstrations is None:
-        votes = ", ".join(
-            f"{behaviour} {share:.0%}" for behaviour, share in question.decision.votes
-        )
-        return [question.reason, f"Votes of the trees: {votes}."]
-    why = explain(supervision.policy, demonstrations(), question.state.situation)
-    return why_words(activity, why)
+def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -> list[str]:
+    """Say on what grounds Tangy asks, or else does what it does now.
+
+    Without the demonstrations it is said at least by which votes.
+    """
+    question, world = supervision.question, supervision.world
+    situation = world.observe().situation if question is None else question.state.situation
+    if demonstrations is not None:
+        return why_words(world.activity, explain(supervision.policy, demonstrations(), situation))
+    decision = supervision.policy.decide(situation) if question is None else question.decision
+    votes = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
+    reason = world.activity.in_words(situation) if question is None else question.reason
+    return [reason, f"Votes of the trees: {votes}."]

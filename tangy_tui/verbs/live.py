@@ -21,9 +21,11 @@ from tangy_tui.verbs.playing import (
     INJECT_HELP,
     SCRIPTED,
     Expert,
+    Plain,
     PolicyName,
     Teacher,
     list_injections,
+    play_with_staff,
     recall,
     who_answers,
 )
@@ -49,6 +51,7 @@ def live(
     headless: Annotated[
         bool, typer.Option("--headless", help="Without a screen, on the bench as fast as it goes.")
     ] = False,
+    plain_lines: Plain = False,
     activity: common.ActivityName = DEFAULT_ACTIVITY,
     policy: PolicyName = "",
     inject: Annotated[
@@ -126,7 +129,9 @@ def live(
     faults = _listed(inject or [])
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
-    screen = not (headless or as_json) and full_screen()
+    if plain_lines and (headless or as_json):
+        raise TangyError("--plain is for staff at the lines: leave --headless and --json out.")
+    screen = not (headless or as_json or plain_lines) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens in a live game on the screen; there is none here.")
     with open_workspace(data, activity, users, robot=robot) as workspace:
@@ -168,12 +173,15 @@ def live(
             print("Switching the robot on ...", file=sys.stderr)
         from tangy_tui.app.switching_on import switched_on
 
-        with switched_on(opening, stepped=bench) as world:
+        with switched_on(opening, stepped=bench and not plain_lines) as world:
             if not (as_json or bench) and world.link.tablet:
                 print(plain(world.link.tablet), file=sys.stderr)
-            asks = who == SCRIPTED
+            asks = plain_lines or who == SCRIPTED
             supervision = workspace.supervision(learnt, number, asks=asks, world=world)
-            to_their_end = _play(workspace, supervision, games, as_json, expert=bool(expert))
+            if plain_lines:
+                to_their_end = play_with_staff(workspace, supervision, games, who, robot=world)
+            else:
+                to_their_end = _play(workspace, supervision, games, as_json, expert=bool(expert))
         if not to_their_end:
             raise typer.Exit(1)  # so that a script knows that games did not come to their end
 

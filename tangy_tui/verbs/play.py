@@ -23,9 +23,11 @@ from tangy_tui.verbs.playing import (
     INJECT_HELP,
     SCRIPTED,
     Expert,
+    Plain,
     PolicyName,
     Teacher,
     list_injections,
+    play_with_staff,
     recall,
     who_answers,
 )
@@ -37,10 +39,14 @@ if TYPE_CHECKING:
     from tangy_tui.monitoring.supervision import Supervision
 
 
+SPEED = 20.0  # times life, as on the screen
+
+
 def play(
     games: common.Games = 1,
     users: common.Users = 4,
     headless: Annotated[bool, typer.Option("--headless", help="Without a screen.")] = False,
+    plain_lines: Plain = False,
     activity: common.ActivityName = DEFAULT_ACTIVITY,
     policy: PolicyName = "",
     teacher: Teacher = None,
@@ -91,7 +97,9 @@ def play(
     listening.check()
     listens = mic == "-" and not (headless or as_json)
     sound = keys_from_terminal(None) if listens else 0  # before it is asked for a screen
-    screen = not (headless or as_json) and full_screen()
+    if plain_lines and (headless or as_json):
+        raise TangyError("--plain is for staff at the lines: leave --headless and --json out.")
+    screen = not (headless or as_json or plain_lines) and full_screen()
     if mic is not None and not screen:
         raise TangyError("--mic: Tangy listens to answers on the screen; here they are typed.")
     if camera and not screen:
@@ -131,6 +139,11 @@ def play(
         supervision = workspace.supervision(
             learnt, seed, asks=by_lines or scripted, injections=faults
         )
+        if plain_lines:
+            pace = speed or SPEED
+            if not play_with_staff(workspace, supervision, games, who, speed=pace):
+                raise typer.Exit(1)
+            return
         if not by_lines:
             _play_headless(
                 workspace, supervision, games, as_json, expert=bool(expert), injected=bool(faults)

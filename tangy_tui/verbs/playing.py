@@ -8,12 +8,15 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.verbs.common import print_json
+from tangy_tui.verbs.common import print_json, print_line
 from tangy_tui.verbs.opening import say_notices
 
 if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+    from tangy_profiles.demonstration import Demonstration
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policy import Policy
+    from tangy_tui.monitoring.supervision import Supervision
 
 PolicyName = Annotated[
     str,
@@ -22,6 +25,12 @@ PolicyName = Annotated[
 Teacher = Annotated[
     str | None,
     typer.Option("--teacher", help="Who answers where Tangy asks; 'scripted' knows the game."),
+]
+Plain = Annotated[
+    bool,
+    typer.Option(
+        "--plain", help="By lines, for any terminal: type help for all that staff can do."
+    ),
 ]
 Expert = Annotated[
     str,
@@ -85,3 +94,51 @@ def list_injections(as_json: bool) -> None:
         when = kind.shows if kind.shows == "at once" else f"while {kind.shows}"
         print(f"{kind.name:<{width}}  {kind.words} (shows {when})")
     print(f"\nAs in: --inject {next(iter(KINDS))}@12. After @ comes a step, after ~ a chance.")
+
+
+def play_with_staff(
+    workspace: Workspace,
+    supervision: Supervision,
+    games: int,
+    teacher: str,
+    *,
+    robot: LiveWorld | None = None,
+    speed: float | None = None,
+) -> bool:
+    """Play games with staff at the lines of standard input; return whether all came to their end.
+
+    Args:
+        workspace: of the games.
+        supervision: what runs them.
+        games: how many.
+        teacher: who types.
+        robot: the world of a robot that is there.
+        speed: times life, for simulated games.
+    """
+    from tangy_tui.app.game_controller import GameController
+    from tangy_tui.app.live_games import LiveGames
+    from tangy_tui.console.inputs import line_reader
+    from tangy_tui.console.staff import StaffLines
+    from tangy_tui.interaction.voiding import void_last
+    from tangy_tui.learning.library import read_library
+
+    def void(person: str) -> bool:
+        return void_last(workspace.store, supervision.game.game, person, teacher)
+
+    def shown() -> list[Demonstration]:
+        entries = read_library(workspace.store, workspace.activity.name).entries.values()
+        return [entry.demonstration for entry in entries]
+
+    live = None if robot is None else LiveGames(workspace, supervision)
+    lines = StaffLines(
+        GameController(supervision, teacher, robot=robot, void=void),
+        workspace.name,
+        lambda wanted: workspace.find_person(wanted).id,
+        line_reader(None),
+        print_line,
+        teacher=teacher,
+        speed=speed,
+        also=(lambda events: ()) if live is None else live.take,
+        demonstrations=shown,
+    )
+    return lines.run(games)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.fault_file import load_faults
+from tangy_profiles.store import Store
 from tangy_sim.worlds.injection import read_injection
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.simulated_devices_world import BenchedWorld
@@ -177,3 +179,38 @@ def test_faults_can_stand_in_a_file(folder: Path, tmp_path: Path) -> None:
     )
     assert done.returncode == 2 and "laser-disconnected" in done.stderr
     assert json.dumps(done.stdout) == '""'
+
+
+def test_staff_run_a_live_game_by_lines_and_the_log_says_who_did_what(folder: Path) -> None:
+    lines = [
+        "pause", "where", "go on", "wait until called", "stop the robot", "drive left", "go on",
+        "drive left 1", "wait until called", "call again", "call back", "take over",
+        "wait until asked", "tell a joke", "y", "ask for user1", "wait 2", "end",
+    ]  # fmt: skip
+    done = subprocess.run(  # noqa: S603
+        [TANGY, "live", "--bench", "--plain", "--pace", "2", "--seed", "4", "--teacher", "Ada",
+         "--data", str(folder)],
+        input="\n".join(lines), capture_output=True, text=True, timeout=180,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    for words in (
+        "Paused: ", "Tangy goes on.", "STOP: Tangy stands still.", "Type first: go on.",
+        "Tangy has driven.", " again.", "counts as not called", "joke, as Ada said",
+        "asks for help.", "You ended the game.",
+    ):  # fmt: skip
+        assert words in done.stdout, words
+    with Store.open(folder, write=False) as store:
+        did = [(e.body["what"], e.body["by"]) for e in store.events("staff action")]
+    for what in (
+        "the robot was stopped", "the robot was let go on", "staff drove the robot by hand",
+        "staff had the last number called again", "staff take over", "staff ended the game",
+    ):  # fmt: skip
+        assert (what, "Ada") in did
+    # one command can be followed from the program to the driver and back
+    program = (folder / "program.log").read_text(encoding="utf-8")
+    robot = (folder / "robot.log").read_text(encoding="utf-8")
+    ids = re.findall(r"facilitation \[([0-9a-f]{8})\] joke for everybody begins", program)
+    assert len(ids) == 1
+    assert re.search(rf"ros_voice \[{ids[0]}\] says \d+ characters", robot)
+    assert f"[{ids[0]}] has done perform" in robot
+    assert f"[{ids[0]}] the robot has done perform" in program

@@ -1,0 +1,125 @@
+"""What staff may type or say in a game, and which command it is: one grammar for every door.
+
+Words that are no command are left to whoever asks (`None`): while Tangy asks they are the answer,
+which the phrasebook understands. A sentence whose aim is to stop is a STOP, whatever else it says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection
+from difflib import get_close_matches
+
+from tangy_profiles.errors import TangyError
+from tangy_profiles.reading import plain
+from tangy_tui.app.game_commands import (
+    AUTONOMY,
+    DIRECTIONS,
+    LONGEST_DRIVE,
+    Accept,
+    AskFor,
+    CallAgain,
+    CallExpert,
+    Clear,
+    Drive,
+    EndGame,
+    GameCommand,
+    GiveBack,
+    GoOn,
+    OneStep,
+    Pause,
+    Seen,
+    SetAutonomy,
+    StopRobot,
+    TakeBackCall,
+    TakeOver,
+    VoidResponse,
+)
+from tangy_tui.language.stop_sentence import stops
+
+FIXED: dict[str, GameCommand] = {
+    **dict.fromkeys(("pause", "wait a moment"), Pause()),
+    **dict.fromkeys(("go on", "continue", "resume", "go"), GoOn()),
+    **dict.fromkeys(("step", "one step", "next step"), OneStep()),
+    **dict.fromkeys(("take over", "let me say"), TakeOver()),
+    **dict.fromkeys(("give back", "go on by yourself"), GiveBack()),
+    **dict.fromkeys(("call again", "repeat the number", "say it again"), CallAgain()),
+    **dict.fromkeys(("take back", "take the call back", "call back"), TakeBackCall()),
+    **dict.fromkeys(("seen", "acknowledge", "i have seen it"), Seen()),
+    **dict.fromkeys(("expert", "call expert", "call the expert"), CallExpert()),
+    **dict.fromkeys(("clear", "cleared", "all is well"), Clear()),
+    **dict.fromkeys(("all right", "that is all right"), Accept()),
+    **dict.fromkeys(("end", "quit", "exit", "leave"), EndGame()),
+}
+"""Words that are a command as they stand; the first of a command is the one that help shows."""
+
+MEANINGS: tuple[tuple[str, str], ...] = (
+    ("stop", "the robot stands at once; so does any sentence that aims at it"),
+    ("pause", "nothing more is done after what is done now"),
+    ("go on", "goes on after a pause or a stop"),
+    ("step", "does one thing, and pauses"),
+    ("take over", "you say what Tangy does next: then type it in words"),
+    ("give back", "Tangy goes on by itself after all"),
+    ("autonomy alone", "Tangy does all of it by itself; or: unsure, each (it asks you first)"),
+    ("call again", "says the last number once more"),
+    ("take back", "the last number counts as not called"),
+    ("ask for NAME", "asks for help for somebody who cannot"),
+    ("void NAME", "the last response of somebody does not count"),
+    ("drive left 2", "drives by hand for 2 s: forward, back, left, right"),
+    ("where, why", "says what Tangy sees, and why it does the next thing"),
+    ("what, faults", "says what to do about a fault, and all faults of this game"),
+    ("seen, expert, clear", "about a fault that halts Tangy"),
+    ("wait 3", "reads the next line after 3 s (for scripts); or: wait until asked, called, over"),
+    ("end", "ends the game"),
+)
+"""What help lists."""
+
+_DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
+_ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
+_DIAL = re.compile(r"autonomy (\w+)")
+
+
+def read_command(
+    text: str, find_person: Callable[[str], str], game: Collection[str] = ()
+) -> GameCommand | None:
+    """Return the command that words are; None: they are none of these.
+
+    Args:
+        text: what was typed or heard.
+        find_person: returns the id of a person by name or id.
+        game: the words that the activity is called by.
+
+    Raises:
+        TangyError: they are nearly one, and something in them is wrong; one sentence.
+    """
+    said = " ".join(text.split()).strip(" .!")
+    words = said.casefold()
+    if words in FIXED:
+        return FIXED[words]
+    if words == "stop" or stops(text, game):
+        return StopRobot()
+    if dial := _DIAL.fullmatch(words):
+        level = next((one for one in AUTONOMY if one == dial[1]), None)
+        if level is None:
+            raise TangyError(plain(f"There is no autonomy {dial[1]!r}: {', '.join(AUTONOMY)}."))
+        return SetAutonomy(level)
+    if about := _ABOUT.fullmatch(said):
+        person = find_person(about[2])
+        voids = about[1].casefold().startswith("void")
+        return VoidResponse(person) if voids else AskFor(person)
+    if drive := _DRIVE.fullmatch(words):
+        direction = next((one for one in DIRECTIONS if one == drive[1]), None)
+        if direction is None:
+            known = ", ".join(DIRECTIONS)
+            raise TangyError(plain(f"Tangy cannot drive {drive[1]!r}: {known}."))
+        seconds = float(drive[2] or 1)
+        if seconds > LONGEST_DRIVE:
+            raise TangyError(f"One line drives for {LONGEST_DRIVE:g} s at most.")
+        return Drive(direction, seconds)
+    return None
+
+
+def nearest_command(text: str) -> str:
+    """Return the command that words come nearest to, "" if none is near."""
+    close = get_close_matches(text.casefold().strip(), [*FIXED, "stop", "autonomy", "drive"], 1)
+    return close[0] if close else ""

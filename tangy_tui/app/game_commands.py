@@ -1,0 +1,201 @@
+"""What staff can do in a game, and what they are told: closed sets, the same for every door.
+
+A screen's key, a line and a sentence that was heard become one of these commands; the controller
+carries it out (see `game_controller`) and answers with events of the game, or with a `Noted`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+Autonomy = Literal["alone", "unsure", "each"]
+AUTONOMY: tuple[Autonomy, ...] = get_args(Autonomy)
+"""How much Tangy does of itself: all of it, or it asks about what it is less sure of, or always."""
+
+Direction = Literal["forward", "back", "left", "right", "still"]
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+
+Phase = Literal["idle", "running", "paused", "stopped", "asking", "halted", "staff"]
+"""How a game stands. Without a game it is idle; `staff` drive by hand, or say what comes next."""
+
+LONGEST_DRIVE = 5.0  # s that one command drives by hand
+TWISTS: dict[Direction, tuple[float, float]] = {
+    "forward": (0.3, 0.0),
+    "back": (-0.1, 0.0),
+    "left": (0.0, 0.6),
+    "right": (0.0, -0.6),
+    "still": (0.0, 0.0),
+}
+"""m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """Do nothing more after what is done now."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoOn:
+    """Go on after a pause; after a STOP this is what lets the robot move again."""
+
+
+@dataclass(frozen=True, slots=True)
+class OneStep:
+    """Do one thing, and pause."""
+
+
+@dataclass(frozen=True, slots=True)
+class StopRobot:
+    """Stop the robot now, whatever it does."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeOver:
+    """Let staff say what is done next, as soon as what is done now is over."""
+
+
+@dataclass(frozen=True, slots=True)
+class GiveBack:
+    """Let Tangy go on by itself after all."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetAutonomy:
+    """Turn the dial of how much Tangy does of itself."""
+
+    level: Autonomy
+
+
+@dataclass(frozen=True, slots=True)
+class CallAgain:
+    """Say and show the last number once more."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeBackCall:
+    """Take the last call back: it counts as not called."""
+
+
+@dataclass(frozen=True, slots=True)
+class AskFor:
+    """Ask for help for somebody, by id, who cannot ask."""
+
+    person: str
+
+
+@dataclass(frozen=True, slots=True)
+class VoidResponse:
+    """Let the last response of a person, by id, not count: it was otherwise than it was seen."""
+
+    person: str
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Drive by hand for so many s, at most `LONGEST_DRIVE`."""
+
+    direction: Direction
+    seconds: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Confirm:
+    """Answer what Tangy proposes to do next: do it, or let staff say what else."""
+
+    yes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """Say that the fault that halts Tangy was seen."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallExpert:
+    """Note that the expert is called about it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clear:
+    """Say that it is over, so that Tangy goes on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Accept:
+    """Say that what Tangy asks about is all right."""
+
+
+@dataclass(frozen=True, slots=True)
+class EndGame:
+    """End the game; the robot stands."""
+
+
+GameCommand: TypeAlias = (
+    Pause
+    | GoOn
+    | OneStep
+    | StopRobot
+    | TakeOver
+    | GiveBack
+    | SetAutonomy
+    | CallAgain
+    | TakeBackCall
+    | AskFor
+    | VoidResponse
+    | Drive
+    | Confirm
+    | Seen
+    | CallExpert
+    | Clear
+    | Accept
+    | EndGame
+)
+
+NoteKind = Literal[
+    "paused",
+    "goes on",
+    "one step",
+    "stopped",
+    "takes over",
+    "given back",
+    "autonomy",
+    "call again",
+    "call taken back",
+    "asked for",
+    "voided",
+    "driven",
+    "ended",
+    "seen before",
+    # what cannot be done, and why
+    "stopped first",
+    "asks first",
+    "halted first",
+    "no game",
+    "no robot",
+    "nothing called",
+    "nothing to void",
+    "not halted",
+    "not seen yet",
+    "nothing asked",
+    "not acceptable",
+    "cannot",
+]
+"""What staff are told of a command."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """What came of a command, where it is no event of the game; `about` names what it is about."""
+
+    kind: NoteKind
+    about: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What Tangy would do next, for whom, by which share of the votes: staff are asked first."""
+
+    behaviour: str
+    target: str | None
+    share: float

@@ -1,0 +1,105 @@
+"""What staff do with a robot in a game: call again, take a call back, ask for help, drive."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tangy_hw.robot_process.stop_latch import STAFF
+from tangy_tui.app.game_commands import (
+    LONGEST_DRIVE,
+    TWISTS,
+    AskFor,
+    CallAgain,
+    Drive,
+    Noted,
+    TakeBackCall,
+)
+from tangy_tui.learning.policy import Decision
+
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+
+STOPPED, ENDED = "staff stopped it", "staff ended the game"
+DRIVE_AGAIN = 0.1  # s from one twist to the next: a robot that hears none stands
+
+
+class RobotControls:
+    """A robot that is there, or (None) none: then each says so."""
+
+    def __init__(
+        self, robot: LiveWorld | None, note: Callable[[str], None], stopped: Callable[[], bool]
+    ) -> None:
+        """Take the world of a robot; `note` logs what staff did, `stopped` tells of their STOP."""
+        self._robot = robot
+        self._note = note
+        self._stopped = stopped
+        self.driving = False
+        """Whether it is driven by hand now."""
+
+    def stop(self, why: str = STOPPED) -> None:
+        """Stop it now; it waits behind nothing, and latches until staff let it go on."""
+        if self._robot is not None:
+            self._robot.link.stop(why, by=STAFF)
+
+    def release(self, *, everybody: bool = False) -> None:
+        """Let it move again as far as staff are concerned, or whoever stopped it."""
+        if self._robot is not None:
+            self._robot.link.release(**({} if everybody else {"by": STAFF}))
+
+    @property
+    def frozen(self) -> bool:
+        """Whether its control stood still, and staff have not let it go on since."""
+        return self._robot is not None and bool(self._robot.link.state.frozen)
+
+    def rests(self, decision: Decision) -> bool:
+        """Say whether it is too early for the next call."""
+        if self._robot is None or not decision.sure:
+            return False
+        behaviour = self._robot.activity.behaviours[decision.behaviour]
+        return behaviour.effect == "draw" and self._robot.calls_in > 0
+
+    def do(self, command: CallAgain | TakeBackCall | AskFor | Drive) -> Noted:
+        """Do what only a robot that is there can do.
+
+        Raises:
+            TangyError: it cannot.
+        """
+        robot = self._robot
+        if robot is None:
+            return Noted("no robot")
+        match command:
+            case AskFor(person):
+                robot.requests.ask_for(person)
+                self._note(f"staff asked for help for {person}")
+                return Noted("asked for", person)
+            case Drive():
+                return self._drive(robot, command)
+        if not robot.called:
+            return Noted("nothing called")
+        label = robot.activity.deck.label(robot.called[-1])
+        if isinstance(command, CallAgain):
+            self._note("staff had the last number called again")
+            robot.call_again()
+            return Noted("call again", label)
+        robot.void_call()
+        self._note(f"staff took a call back: {label}")
+        return Noted("call taken back", label)
+
+    def _drive(self, robot: LiveWorld, command: Drive) -> Noted:
+        """Drive by hand for a while; a STOP, which waits for nothing, ends it."""
+        forward, turn = TWISTS[command.direction]
+        until = time.monotonic() + min(command.seconds, LONGEST_DRIVE)
+        self.driving = True
+        try:
+            while not self._stopped() and time.monotonic() < until:
+                robot.link.tell("drive", forward=forward, turn=turn)
+                time.sleep(DRIVE_AGAIN)
+        finally:
+            robot.link.tell("drive", forward=0.0, turn=0.0)
+            self.driving = False
+        self._note("staff drove the robot by hand")
+        return Noted(
+            "driven", robot.link.silent or robot.link.state.hazard or robot.link.state.held
+        )

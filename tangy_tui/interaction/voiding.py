@@ -1,0 +1,23 @@
+"""Letting the last response of a person in a game not count: it was otherwise than it was seen."""
+
+from __future__ import annotations
+
+from tangy_profiles.store import Store
+from tangy_tui.interaction.feedback import Feedback
+
+
+def void_last(store: Store, game: str, person: str, by: str) -> bool:
+    """Let the last response of a person in a game not count; return whether there was one.
+
+    Args:
+        store: the log.
+        game: the id of the game.
+        person: whose response it is.
+        by: who says so.
+    """
+    feedback = Feedback(store)
+    entries = [e for e in feedback.history(person) if e.game == game and e.counts]
+    if not entries:
+        return False
+    feedback.void(person, entries[-1].seq, f"said by {by} in the game")
+    return True

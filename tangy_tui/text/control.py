@@ -1,0 +1,97 @@
+"""What staff are told of what they do in a game."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import assert_never
+
+from tangy_tui.app.game_commands import Autonomy, Noted, Proposal
+
+HELD = {
+    "slow": "Something is near: Tangy drives slowly.",
+    "stands": "Something is close: Tangy stands. Turn, or back away.",
+}
+"""What is said where the robot does not drive as it is told."""
+
+
+def autonomy_words(level: Autonomy) -> str:
+    """Say what Tangy does of itself."""
+    match level:
+        case "alone":
+            return "does all of it by itself"
+        case "unsure":
+            return "asks where it is less sure"
+        case "each":
+            return "asks before everything it does"
+        case forgotten:
+            assert_never(forgotten)
+
+
+def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
+    """Ask whether the next behaviour is to be done."""
+    whom = f" ({name(proposal.target)})" if proposal.target else ""
+    share = f"{proposal.share:.0%} of the votes"
+    return f"Next: {proposal.behaviour}{whom}, {share}. Y does it, N lets you say what else."
+
+
+def noted_words(noted: Noted, name: Callable[[str], str]) -> str:
+    """Say in a sentence what came of a command."""
+    about = noted.about
+    match noted.kind:
+        case "paused":
+            return "Paused: Tangy does nothing more after this. Type: go on."
+        case "goes on":
+            return "Tangy goes on."
+        case "one step":
+            return "Tangy does one thing."
+        case "stopped":
+            return "STOP: Tangy stands still. Type: go on."
+        case "takes over":
+            return "When this is done, you say what Tangy does next."
+        case "given back":
+            return "Tangy goes on by itself."
+        case "autonomy":
+            level = next(one for one in ("alone", "unsure", "each") if one == about)
+            return f"Tangy {autonomy_words(level)}."
+        case "call again":
+            return f"Tangy calls {about} again."
+        case "call taken back":
+            return f"{about} counts as not called; say so to the group."
+        case "asked for":
+            return f"{name(about)} asks for help."
+        case "voided":
+            return f"{name(about)}'s last response does not count any more."
+        case "driven":
+            return HELD.get(
+                about, f"Tangy stands still: {about}." if about else "Tangy has driven."
+            )
+        case "ended":
+            return "You ended the game. Tangy stands still."
+        case "seen before":
+            return "It was seen already: expert says whom to call, clear lets Tangy go on."
+        case "stopped first":
+            return "Not now: Tangy was stopped. Type first: go on."
+        case "asks first":
+            return "Tangy asks first: answer, or type: give back."
+        case "halted first":
+            return "Not now: a fault halts Tangy. Type: what."
+        case "no game":
+            return "There is no game now."
+        case "no robot":
+            return "That needs a robot, or the bench: this game is simulated."
+        case "nothing called":
+            return "No number was called yet."
+        case "nothing to void":
+            return f"There is no response of {name(about)} in this game that counts."
+        case "not halted":
+            return "No fault halts Tangy."
+        case "not seen yet":
+            return "Say first that you have seen it: seen."
+        case "nothing asked":
+            return "Tangy asks nothing now."
+        case "not acceptable":
+            return "Tangy asks about nothing that could be said to be all right."
+        case "cannot":
+            return about
+        case forgotten:
+            assert_never(forgotten)

@@ -1,0 +1,98 @@
+"""What staff type in a game: every command has words, and words mean one command."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import FIXED, MEANINGS, nearest_command, read_command
+from tangy_tui.app.game_commands import (
+    AUTONOMY,
+    DIRECTIONS,
+    AskFor,
+    Confirm,
+    Drive,
+    GameCommand,
+    SetAutonomy,
+    StopRobot,
+    TakeBackCall,
+    VoidResponse,
+)
+
+
+def find(wanted: str) -> str:
+    if wanted.casefold() != "rosa":
+        raise TangyError(f"There is nobody called {wanted!r}.")
+    return "user2"
+
+
+def read(text: str) -> GameCommand | None:
+    return read_command(text, find, {"bingo"})
+
+
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("Stop the robot!", StopRobot()),
+        ("please stop the bingo", StopRobot()),
+        ("stop", StopRobot()),
+        ("  Call   BACK. ", TakeBackCall()),
+        ("ask for Rosa", AskFor("user2")),
+        ("help for rosa", AskFor("user2")),
+        ("void Rosa", VoidResponse("user2")),
+        ("drive left", Drive("left", 1.0)),
+        ("drive forward 2.5 s", Drive("forward", 2.5)),
+        ("autonomy each", SetAutonomy("each")),
+        ("call a number", None),
+        ("stop teasing her", None),
+        ("", None),
+    ],
+)
+def test_words_are_the_command_that_they_mean(text: str, command: GameCommand | None) -> None:
+    assert read(text) == command
+
+
+@pytest.mark.parametrize("words", sorted(FIXED))
+def test_what_is_a_command_as_it_stands_is_read_as_that(words: str) -> None:
+    assert read(words.upper()) == FIXED[words]
+
+
+def test_every_command_has_words_and_is_in_the_help() -> None:
+    typed = {type(command) for command in FIXED.values()} | {
+        type(read(text)) for text in ("stop", "autonomy each", "ask for Rosa", "void Rosa",
+                                      "drive left")
+    }  # fmt: skip
+    assert typed == set(get_args(GameCommand)) - {Confirm}  # which is answered by Y or N
+    helped = " ".join(key for key, _ in MEANINGS)
+    assert all(word in helped for word in ("stop", "pause", "take over", "ask for", "void", "end"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("ask for Nobody", "There is nobody called 'Nobody'."),
+        ("autonomy often", f"There is no autonomy 'often': {', '.join(AUTONOMY)}."),
+        ("drive up", f"Tangy cannot drive 'up': {', '.join(DIRECTIONS)}."),
+        ("drive left 60", "One line drives for 5 s at most."),
+    ],
+)
+def test_what_is_nearly_a_command_is_refused_in_a_sentence(text: str, said: str) -> None:
+    with pytest.raises(TangyError, match=said.replace(".", r"\.")):
+        read(text)
+
+
+def test_the_nearest_command_is_named() -> None:
+    assert nearest_command("pasue") == "pause"
+    assert nearest_command("qwertz") == ""
+
+
+@given(st.text(max_size=60))
+def test_any_text_is_a_command_none_or_refused(text: str) -> None:
+    try:
+        read(text)
+    except TangyError as error:
+        assert str(error).isprintable()

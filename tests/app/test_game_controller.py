@@ -1,0 +1,228 @@
+"""The controller of games: whatever staff do leads here, and is in the log with who did it."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.robot import load_robot
+from tangy_profiles.room import load_room
+from tangy_tui.app.game_commands import (
+    Accept,
+    AskFor,
+    CallAgain,
+    CallExpert,
+    Clear,
+    Confirm,
+    Drive,
+    EndGame,
+    GiveBack,
+    GoOn,
+    Noted,
+    OneStep,
+    Pause,
+    Seen,
+    SetAutonomy,
+    StopRobot,
+    TakeBackCall,
+    TakeOver,
+    VoidResponse,
+)
+from tangy_tui.app.game_controller import GameController, Told
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.facilitation import Acted, GameEnded, Unsure
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.learning.verification import Asked, Reply
+from tangy_tui.monitoring.fault import STAFF
+from tests.hw.links import FakeLink
+
+
+class Played:
+    """A game that staff control: with a robot (a fake link), or a simulated one."""
+
+    def __init__(self, workspace: Workspace, *, robot: bool, inject: tuple[str, ...] = ()) -> None:
+        learnt, _ = load_policy(workspace.store, workspace.activity)
+        self.workspace = workspace
+        self.link = FakeLink(tuple(workspace.names))
+        self.world: LiveWorld | None = None
+        if robot:
+            self.world = LiveWorld(
+                workspace.activity, tuple(workspace.names), cast(RobotLink, self.link),
+                load_robot(), load_room(), seed=1, names=workspace.names, pace=0.0,
+            )  # fmt: skip
+        supervision = workspace.supervision(
+            learnt, 1, asks=True, world=self.world, injections=() if robot else inject
+        )
+        self.voided: list[str] = []
+        self.control = GameController(supervision, "Ada", robot=self.world, void=self.void)
+        self.control.begin()
+
+    def void(self, person: str) -> bool:
+        self.voided.append(person)
+        return True
+
+    @property
+    def phase(self) -> str:
+        return str(self.control.phase)
+
+    def next(self) -> list[str]:
+        """Do the next thing; return the behaviours that were done."""
+        return [e.action.behaviour.name for e in self.control.next() if isinstance(e, Acted)]
+
+    def logged(self) -> list[tuple[str, str]]:
+        return [(e.body["what"], e.body["by"]) for e in self.workspace.store.events(STAFF)]
+
+
+def kinds(told: list[Told]) -> list[str]:
+    return [one.kind if isinstance(one, Noted) else type(one).__name__ for one in told]
+
+
+@pytest.fixture
+def live(taught: Path) -> Any:
+    workspace = Workspace(taught)
+    yield Played(workspace, robot=True)
+    workspace.close()
+
+
+@pytest.fixture
+def simulated(taught: Path) -> Any:
+    workspace = Workspace(taught)
+    yield Played(workspace, robot=False, inject=("laser-disconnected@2",))
+    workspace.close()
+
+
+def test_a_game_goes_on_pauses_steps_and_goes_on(live: Played) -> None:
+    control = live.control
+    assert live.next() == ["greeting"] and live.phase == "running"
+    assert kinds(control.apply(Pause())) == ["paused"]
+    assert live.next() == [] and live.phase == "paused"
+    assert kinds(control.apply(OneStep())) == ["one step"]
+    assert live.next() == ["call number"] and live.next() == []
+    assert kinds(control.apply(GoOn())) == ["goes on"]
+    assert live.next() == ["call number"]
+
+
+def test_stop_reaches_the_robot_at_once_in_the_middle_of_a_behaviour(live: Played) -> None:
+    doing, goes_on = threading.Event(), threading.Event()
+
+    def meanwhile(do: str, time: float) -> None:
+        if do == "perform" and not doing.is_set():
+            doing.set()
+            assert goes_on.wait(20)
+
+    live.link.meanwhile = meanwhile
+    game = threading.Thread(target=live.control.next)
+    game.start()
+    assert doing.wait(20)
+    assert kinds(live.control.apply(StopRobot())) == ["stopped"]  # the game still has its turn
+    assert live.link.told[-1] == "stop: staff stopped it" and live.phase == "stopped"
+    goes_on.set()
+    game.join(20)
+    assert live.next() == []
+    assert kinds(live.control.apply(CallAgain())) in (["stopped first"], ["nothing called"])
+    live.control.apply(GoOn())
+    assert live.link.told[-1] == "release" and live.next() == ["call number"]
+    assert ("the robot was stopped", "Ada") in live.logged()
+    assert ("the robot was let go on", "Ada") in live.logged()
+
+
+def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:
+    control = live.control
+    live.next()
+    assert kinds(control.apply(TakeOver())) == ["takes over"] and live.phase == "staff"
+    assert kinds(list(control.next())) == ["Unsure"] and live.phase == "asking"
+    (asked,) = control.say("tell a joke")
+    assert isinstance(asked, Asked) and control.verifying is not None
+    done = control.reply(Reply(yes=True))
+    assert "Acted" in kinds(done) and "DoneOnce" in kinds(done) and control.verifying is None
+    control.apply(TakeOver())
+    control.next()
+    assert kinds(control.apply(GiveBack())) == ["given back"] and live.phase == "running"
+    assert live.next() == ["call number"]
+
+
+def test_where_staff_are_asked_first_nothing_else_is_done(live: Played) -> None:
+    control = live.control
+    control.apply(SetAutonomy("each"))
+    assert live.next() == [] and control.proposal is not None
+    assert control.proposal.behaviour == "greeting" and live.phase == "asking"
+    assert live.next() == []
+    assert kinds(control.apply(Confirm(yes=True))) == ["goes on"]
+    assert live.next() == ["greeting"] and live.next() == []
+    assert kinds(control.apply(Confirm(yes=False))) == ["takes over"]
+    assert any(isinstance(event, Unsure) for event in control.next())
+    control.apply(GiveBack())
+    control.apply(SetAutonomy("alone"))
+    assert live.next() == ["call number"]
+
+
+def test_the_last_call_is_said_again_and_taken_back(live: Played) -> None:
+    control = live.control
+    assert kinds(control.apply(TakeBackCall())) == ["nothing called"]
+    live.next(), live.next()
+    assert live.world is not None
+    (number,) = live.world.called
+    label = live.world.activity.deck.label(number)
+    assert control.apply(CallAgain()) == [Noted("call again", label)]
+    assert live.link.said[-1] == label
+    assert control.apply(TakeBackCall()) == [Noted("call taken back", label)]
+    assert live.world.called == []
+    assert (f"staff took a call back: {label}", "Ada") in live.logged()
+
+
+def test_somebody_is_asked_for_and_a_response_does_not_count(live: Played) -> None:
+    live.next()
+    assert live.control.apply(AskFor("user2")) == [Noted("asked for", "user2")]
+    assert live.next() == ["navigate to user"]
+    assert live.control.apply(VoidResponse("user2")) == [Noted("voided", "user2")]
+    assert live.voided == ["user2"]
+
+
+def test_staff_drive_by_hand_and_a_stop_ends_that(live: Played) -> None:
+    assert kinds(live.control.apply(Drive("left", 0.05))) == ["driven"]
+    assert live.link.told.count("drive") >= 2
+    driving = threading.Thread(target=live.control.apply, args=(Drive("forward", 5.0),))
+    before = len(live.link.told)
+    driving.start()
+    while len(live.link.told) == before:
+        pass
+    live.control.apply(StopRobot())
+    driving.join(4)
+    assert not driving.is_alive() and live.link.told[-1] == "drive"
+    assert kinds(live.control.apply(Drive("left"))) == ["stopped first"]
+
+
+def test_a_game_is_ended_and_then_there_is_none(live: Played) -> None:
+    live.next()
+    told = live.control.apply(EndGame())
+    assert kinds(told) == ["ended", "GameEnded"] and live.phase == "idle"
+    assert live.link.told[-1] == "stop: staff ended the game"
+    assert kinds(live.control.apply(Pause())) == ["no game"] and live.next() == []
+    assert live.control.begin() and live.link.told[-1] == "release"
+
+
+def test_a_fault_halts_until_it_was_seen_and_cleared(simulated: Played) -> None:
+    control = simulated.control
+    while simulated.phase != "halted":
+        assert not any(isinstance(event, GameEnded) for event in control.next())
+    assert kinds(control.apply(OneStep())) == ["halted first"]
+    assert kinds(control.apply(Clear())) == ["not seen yet"]
+    assert kinds(control.apply(Seen())) == ["Moved"]
+    assert kinds(control.apply(Seen())) == ["seen before"]
+    assert "Moved" in kinds(control.apply(CallExpert()))
+    assert "Moved" in kinds(control.apply(Clear())) and simulated.phase == "running"
+    assert kinds(control.apply(Clear())) == ["not halted"]
+
+
+def test_a_simulated_game_has_no_robot_to_drive(simulated: Played) -> None:
+    for command in (CallAgain(), TakeBackCall(), AskFor("user1"), Drive("left")):
+        assert kinds(simulated.control.apply(command)) == ["no robot"]
+    assert kinds(simulated.control.apply(Accept())) == ["not acceptable"]
+    assert kinds(simulated.control.apply(Confirm(yes=True))) == ["nothing asked"]
+    assert kinds(simulated.control.say("joke")) == ["nothing asked"]
+    assert kinds(simulated.control.reply(Reply(yes=True))) == ["nothing asked"]

@@ -1,0 +1,106 @@
+"""Games with staff at the lines: each line may step in at any time, and a game never hangs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.console.staff import NO_MORE, NOBODY, StaffLines
+from tangy_tui.learning.policies import load_policy
+
+
+@pytest.fixture
+def workspace(taught: Path) -> Iterator[Workspace]:
+    opened = Workspace(taught)
+    yield opened
+    opened.close()
+
+
+def told(
+    workspace: Workspace, *lines: str, inject: tuple[str, ...] = (), speed: float = 1000
+) -> tuple[list[str], bool]:
+    """Play a game in which these lines are typed; return what was written, and how it ended."""
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    supervision = workspace.supervision(learnt, 4, asks=True, injections=inject)
+    written: list[str] = []
+    typed = iter(lines)
+    games = StaffLines(
+        GameController(supervision, "Ada"),
+        workspace.name,
+        lambda wanted: workspace.find_person(wanted).id,
+        lambda: next(typed, None),
+        written.append,
+        teacher="Ada",
+        speed=speed,
+    )
+    return written, games.run(1)
+
+
+def test_at_the_end_of_the_lines_a_game_is_played_to_its_end(workspace: Workspace) -> None:
+    written, ended = told(workspace)
+    assert ended and NO_MORE in written
+    assert any("The game is over" in line for line in written)
+
+
+@pytest.mark.parametrize("lines", [("pause",), ("stop the robot",), ("take over",)])
+def test_where_somebody_is_waited_for_and_nobody_is_there_it_ends(
+    workspace: Workspace, lines: tuple[str, ...]
+) -> None:
+    written, ended = told(workspace, *lines, speed=50)
+    assert not ended and NOBODY in written
+
+
+def test_staff_pause_stop_go_on_take_over_and_end(workspace: Workspace) -> None:
+    written, ended = told(
+        workspace, "pause", "where", "go on", "wait until called", "Stop it!", "go on",
+        "take over", "wait until asked", "tell a joke", "y", "end", speed=100,
+    )  # fmt: skip
+    assert ended  # staff wanted it so
+    text = "\n".join(written)
+    for words in (
+        "Paused: ", "(paused)", "STOP: Tangy stands still.", "Tangy goes on.",
+        "Did you say: tell a joke?", "joke, as Ada said", "You ended the game.",
+    ):  # fmt: skip
+        assert words in text
+
+
+def test_a_fault_is_seen_and_cleared_by_lines(workspace: Workspace) -> None:
+    written, ended = told(
+        workspace, "wait until halted", "what", "clear", "seen", "expert", "clear",
+        inject=("laser-disconnected@2",),
+    )  # fmt: skip
+    text = "\n".join(written)
+    assert ended and "Say first that you have seen it: seen." in text
+    assert "Laser scanner silent" in text and "The game is over" in text
+
+
+def test_what_is_no_command_is_said_with_the_nearest_and_help(workspace: Workspace) -> None:
+    written, _ = told(
+        workspace, "pause", "pasue", "qwertz", "ask for Nobody", "help", "why", "faults",
+        "# a remark", "", "end",
+    )  # fmt: skip
+    text = "\n".join(written)
+    assert "I do not know 'pasue' here. Did you mean: pause?" in text
+    assert "I do not know 'qwertz' here." in text and "There is nobody called 'Nobody'" in text
+    assert "take over: you say what Tangy does next" in text
+    assert "No faults in this game." in text
+
+
+def test_a_log_that_cannot_be_written_pauses_the_game(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real, fails = workspace.store.append, iter([True])
+
+    def append(kind: str, *body: object, **more: object) -> int:
+        if kind == "game step" and next(fails, False):
+            raise TangyError("The disk is full.")
+        return real(kind, *body, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(workspace.store, "append", append)
+    written, ended = told(workspace, "wait until paused", "go on", "wait until called", "end")
+    assert "The disk is full." in written and ended
