@@ -171,6 +171,10 @@ class GameController:
         unsure = self.autonomy == "unsure" and decision.share < SURE
         return self.autonomy == "each" or unsure
 
+    def confirm(self, chosen: tuple[str, str | None] | None) -> None:
+        """Keep what staff said yes to, and for whom: it alone is done next; None: nothing."""
+        self._confirmed = chosen
+
     def permits(self, decision: Decision, target: str | None) -> bool:
         """Say, as a step is done, whether staff said yes to it: they may have to be asked anew.
 

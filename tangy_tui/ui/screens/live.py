@@ -18,16 +18,19 @@ from textual.content import Content
 from textual.screen import Screen
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT
+from tangy_tui.app.game_commands import AUTONOMY, AskFor, CallAgain, TakeBackCall
+from tangy_tui.app.game_controller import TOOK_OVER, GameController
+from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import Workspace
+from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.learning.policy import Decision
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.control import autonomy_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
@@ -36,7 +39,7 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys, live_words
 from tangy_tui.ui.screens.live_cards import LiveCards
-from tangy_tui.ui.screens.live_keys import AUTONOMY, EVERY, NOT_LIVE, UNSURE
+from tangy_tui.ui.screens.live_keys import NOT_LIVE
 from tangy_tui.ui.screens.live_marks import track
 from tangy_tui.ui.screens.play import PlayScreen
 from tangy_tui.ui.widgets.room_view import RoomView
@@ -45,8 +48,6 @@ from tangy_tui.ui.widgets.status_line import Status
 TRACK_SECONDS = 0.2
 """Between two pictures of where the robot is."""
 REST_SECONDS = 5.0  # in which what it does is broken off
-SURE = 0.9
-"""The share of votes from which a decision is not asked about where Tangy asks when unsure."""
 
 
 class LiveScreen(PlayScreen):
@@ -68,11 +69,7 @@ class LiveScreen(PlayScreen):
         """Make the screen for games in a world that is there."""
         super().__init__(workspace, supervision, games=games, speed=1, teacher=teacher)
         self._world = world
-        self._autonomy = AUTONOMY[0]
-        self._taking_over = False
-        self._confirmed: tuple[str, str | None] | None = None
-        """What staff said yes to, for whom: it alone is done next where they are asked first."""
-        supervision.game.permits = self._permits
+        self._control = GameController(supervision, teacher or teacher_name(), robot=world)
         self._faults.beside = self._attend_beside
         self._working = False
         self._turn = asyncio.Lock()
@@ -113,7 +110,7 @@ class LiveScreen(PlayScreen):
         try:
             return await self._beside(self._supervision.step)
         finally:
-            self._confirmed = None
+            self._control.confirm(None)
 
     async def _beside(self, work: Work) -> list[Event]:
         """Do something that takes its time, while the screen lives."""
@@ -132,7 +129,7 @@ class LiveScreen(PlayScreen):
             return await self._beside(work)
         finally:
             if self._stopped:  # that one was not told
-                self._world.link.stop(live_words.STOPPED, by=STAFF)
+                self._control.robot.stop()
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
@@ -145,9 +142,9 @@ class LiveScreen(PlayScreen):
             return True
         state = self._world.observe()
         decision = supervision.policy.decide(state.situation)
-        if self._taking_over:
-            self._taking_over = False
-            supervision.game.ask(live_words.TOOK_OVER, "Say what it does.", "took over")
+        if self._control.taking_over:
+            self._control.taking_over = False
+            supervision.game.ask(TOOK_OVER, "Say what it does.", "took over")
             if supervision.question is not None:
                 await self._ask(supervision.question, wanted=True)
                 if supervision.question is not None:  # it was left without an answer
@@ -156,7 +153,7 @@ class LiveScreen(PlayScreen):
             return False
         if decision.sure and await self._rests(decision):
             return False
-        if not decision.sure or not self._asks_about(decision):
+        if not decision.sure or not self._control.asks_about(decision):
             return True
         return await self._confirm(decision, state.attended)
 
@@ -165,25 +162,13 @@ class LiveScreen(PlayScreen):
 
         Whoever asks for help in the meantime does not wait for it.
         """
-        draws = self._workspace.activity.behaviours[decision.behaviour].effect == "draw"
-        if not draws or not self._world.calls_in:
+        if not self._control.robot.rests(decision):
             return False
         self._show_status()
         self._nudge.clear()
         with suppress(TimeoutError):
             await asyncio.wait_for(self._nudge.wait(), TRACK_SECONDS)
         return True
-
-    def _asks_about(self, decision: Decision) -> bool:
-        unsure = self._autonomy == UNSURE and decision.share < SURE
-        return self._autonomy == EVERY or unsure
-
-    def _permits(self, decision: Decision, target: str | None) -> bool:
-        """Say, as a step is done, whether staff said yes to it: they may have to be asked anew.
-
-        People ask for things while a question stands, and what would be done is another then.
-        """
-        return not self._asks_about(decision) or self._confirmed == (decision.behaviour, target)
 
     async def _confirm(self, decision: Decision, attended: str | None) -> bool:
         """Ask whether the next behaviour is to be done; if not, ask what else."""
@@ -197,38 +182,39 @@ class LiveScreen(PlayScreen):
             no="say what else",
         )
         does = await self.app.push_screen_wait(dialog)
-        self._confirmed = (behaviour.name, target) if does else None
+        self._control.confirm((behaviour.name, target) if does else None)
         if not does and not self._stopped:
-            self._taking_over = True
+            self._control.taking_over = True
         return does and self._going.is_set()
 
     # ------------------------------------------------------------------------- staff's keys
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot itself, before the playing screen draws anything."""
-        self._world.link.stop(live_words.STOPPED, by=STAFF)
+        self._control.robot.stop()
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
-        link = self._world.link
-        if self._at_rest and link.state.frozen:  # in a game that is a fault, and cleared as one
-            link.release()
+        robot = self._control.robot
+        if self._at_rest and robot.frozen:  # in a game that is a fault, and cleared as one
+            robot.release(everybody=True)
             self._tell_now(live_words.MAY_MOVE, "dim")
             return
         if self._stopped and self._supervision.halted is None:
-            link.release(by=STAFF)
+            robot.release()
         super().action_pause()
 
     def action_autonomy(self) -> None:
         """Turn the dial of how much Tangy does of itself."""
-        self._autonomy = AUTONOMY[(AUTONOMY.index(self._autonomy) + 1) % len(AUTONOMY)]
-        self._tell_now(f"Tangy {live_keys.acts(self._autonomy)}.", "dim")
+        level = AUTONOMY[(AUTONOMY.index(self._control.autonomy) + 1) % len(AUTONOMY)]
+        self._control.autonomy = level
+        self._tell_now(f"Tangy {autonomy_words(level)}.", "dim")
         self._show_status()
 
     def action_leave(self) -> None:
         """Take back that staff want to say what is done next, or leave."""
-        if self._taking_over:
-            self._taking_over = False
+        if self._control.taking_over:
+            self._control.taking_over = False
             self._tell_now("Tangy goes on by itself.", "dim")
         else:
             super().action_leave()
@@ -237,7 +223,7 @@ class LiveScreen(PlayScreen):
         """Let staff say what is done next, as soon as what is done now is over."""
         if self._refused() or self._supervision.over:
             return
-        self._taking_over = True
+        self._control.taking_over = True
         self._tell_now("When this is done, you say what Tangy does next.", "dim")
         self._nudge.set()
 
@@ -267,9 +253,8 @@ class LiveScreen(PlayScreen):
             self.run_worker(self._call_again(), name="call", group="call")
 
     async def _call_again(self) -> None:
-        self._faults.note("staff had the last number called again")
         self._tell_now("Tangy calls the last number again.", "dim")
-        await self._tried(self._world.call_again)
+        await self._tried(lambda: self._control.robot.do(CallAgain()))
 
     def action_void_call(self) -> None:
         """Take the last call back."""
@@ -291,8 +276,7 @@ class LiveScreen(PlayScreen):
             if self._world.called[-1:] != [last]:
                 self._tell_now(f"{label} is not the last any more.", "warn")
                 return
-            self._world.void_call()
-        self._faults.note(f"staff took a call back: {label}")
+            self._control.robot.do(TakeBackCall())
         self._tell_now(f"{label} counts as not called; say so to the group.", "warn")
         self.query_one(RoomView).show(self._world.scene())
 
@@ -305,9 +289,8 @@ class LiveScreen(PlayScreen):
         options = [Option(person.id, person.name) for person in self._workspace.people]
         person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
         if person is not None:
-            self._world.requests.ask_for(person)
+            self._control.robot.do(AskFor(person))
             name = self._workspace.name(person)
-            self._faults.note(f"staff asked for help for {person}")
             self._tell_now(f"{name} asks for help.", "dim")
 
     def action_whose_card(self) -> None:
@@ -377,7 +360,7 @@ class LiveScreen(PlayScreen):
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
-        self._world.link.stop("staff ended the game", by=STAFF)
+        self._control.robot.stop(ENDED)
         with suppress(TimeoutError):
             async with asyncio.timeout(REST_SECONDS), self._turn:
                 pass
@@ -391,7 +374,8 @@ class LiveScreen(PlayScreen):
         """Say what the robot is doing, or what the keys would do next."""
         if self._stopped or self._learning or self._at_rest or not self._going.is_set():
             return super()._note()
-        autonomy = self._autonomy if self._autonomy != AUTONOMY[0] else ""
+        level = self._control.autonomy
+        autonomy = live_keys.DIAL[level] if level != AUTONOMY[0] else ""
         return self._doing() or self._until_call() or autonomy
 
     def _doing(self) -> str:

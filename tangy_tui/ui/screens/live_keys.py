@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from textual.binding import Binding, BindingType
 
+from tangy_tui.app.game_commands import Autonomy
 from tangy_tui.ui.screens import play_keys
 
 NOT_LIVE = ("one_step", "speed", "skip")
 """What can be done in a simulated game, and not to a robot among people."""
 
-ALONE, UNSURE, EVERY = "alone", "asks when unsure", "asks each time"
-AUTONOMY = (ALONE, UNSURE, EVERY)
-"""How much the robot does of itself; a key turns the dial."""
+DIAL: dict[Autonomy, str] = {
+    "alone": "alone",
+    "unsure": "asks when unsure",
+    "each": "asks each time",
+}
+"""How much the robot does of itself, as the status line has it; a key turns the dial."""
 
 HELP = (
     "A game among people. The room shows where Tangy believes to be ([• •]), the way it means to "
@@ -50,10 +54,3 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
         ("h", "ask for"), ("o", "take over"), ("d", "drive"), ("i", "autonomy"), ("w", "why"),
         ("1-7", "show"), ("esc", "end"), ("?", "help"),
     )  # fmt: skip
-
-
-def acts(autonomy: str) -> str:
-    """Say what Tangy does of itself, as the dial stands."""
-    return {EVERY: "asks before everything it does", UNSURE: "asks where it is less sure"}.get(
-        autonomy, "does all of it by itself"
-    )

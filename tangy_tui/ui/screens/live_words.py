@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 LOOKS_ROUND = "Tangy does not know where it stands: it turns on the spot, then drives to the front."
-STOPPED = "staff stopped it"
-TOOK_OVER = "You say what Tangy does next."
 WAS_FROZEN = (
     "The program in the robot was frozen for {:.0f} s. Tangy has given up what it was doing, and "
     "stands until you let it go on."
