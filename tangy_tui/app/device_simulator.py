@@ -67,6 +67,9 @@ class DeviceSimulator:
             seed: another seed, other people and games.
             people: who sits there, in this order: names by id.
             stepped: its time passes only when the robot lets it.
+            activity: what is played: its name, or its file.
+            robot: whose devices are simulated: the name of its profile.
+            room: the name of its profile.
             log: where what goes wrong in it is written.
             cancellation: of the opening that it is part of.
 

@@ -81,6 +81,7 @@ def open_bench(
     """Open the robot's own devices as a bench simulates them.
 
     Args:
+        workspace: what it belongs to.
         seed: of the people, their cards, and all that is left to chance.
         stepped: in a hurry: time passes as fast as it can be computed.
         pace: s between calls.

@@ -267,6 +267,8 @@ class Workspace:
         """Make a run of games under execution monitoring; they are simulated ones.
 
         Args:
+            policy: by which is played.
+            seed: of the random generators.
             asks: somebody is there to say what to do where Tangy is not sure.
             injections: faults that are to come, as in `--inject`.
             live: what real devices report, in place of the simulated ones.
@@ -306,6 +308,8 @@ class Workspace:
         """Make a run of simulated games with a policy and with what is believed of the people.
 
         Args:
+            policy: by which is played.
+            seed: of the random generators.
             asks: somebody is there to say what to do where Tangy is not sure.
         """
         from tangy_sim.worlds.world import SimulatedWorld

@@ -203,6 +203,9 @@ def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = Fal
     """Rehearse line by line; at the end of the lines, or when interrupted, it is left.
 
     Args:
+        drill: the rounds.
+        write: writes a line.
+        read: returns the next line, None at their end.
         strict: an answer that is none ends it, instead of being asked for again.
 
     Returns:

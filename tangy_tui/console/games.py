@@ -120,6 +120,10 @@ def play_by_lines(
     """Play games and tell everything that happens.
 
     Args:
+        supervision: what runs the games.
+        games: how many games.
+        name: returns what a person is called.
+        write: writes a line.
         read: the lines of a teacher, who answers where Tangy asks; at their end it gives up.
             Without it a scripted teacher answers.
         teacher: who that is.

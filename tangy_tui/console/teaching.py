@@ -97,11 +97,15 @@ class TeachingLines:
         """Make the session.
 
         Args:
-            seen: counts in a sentence what was demonstrated so far; then what was not, a line each.
-            why: says what Tangy would do now.
-            resume, learn: the commands to go on with this demonstration, and to learn from it.
+            teaching: the session.
+            read: returns the next line, None at their end.
+            write: writes a line.
             ears: spoken commands, if there are any; their questions are answered from `read`.
             scripted: the lines are all there already, so what is spoken goes before them.
+            seen: counts in a sentence what was demonstrated so far; then what was not, a line each.
+            why: says what Tangy would do now.
+            resume: the command that goes on with this demonstration.
+            learn: the command that learns from it.
         """
         self._together = ears is not None and ears.live and not scripted
         self._teaching = teaching

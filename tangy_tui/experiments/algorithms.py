@@ -157,7 +157,13 @@ def choices(
     """Meet one person so many times; return (time, chosen strategy, complied) for each.
 
     Args:
+        crowd: from which the person comes.
+        method: how is chosen.
+        person: its number.
         rng: the method's own chance; what the person would answer does not depend on it.
+        strategies: how many can be chosen.
+        seed: of the random generators.
+        times: how often is chosen.
     """
     names = [str(place) for place in range(strategies)]
     answers = Random(f"{seed}/answers/{person}").random

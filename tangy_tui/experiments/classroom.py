@@ -81,7 +81,10 @@ def course_number(part: str, seed: int, place: int = 0, places: int = 1) -> int:
     """Return which course a part has for a seed; no two parts, seeds or places have the same.
 
     Args:
+        part: of the experiments, one of `PARTS`.
+        seed: of the random generators.
         place: which of a seed's courses in this part, of `places`.
+        places: how many courses a seed has in this part.
     """
     block, at = divmod(seed, SEED_SPACE)
     return (len(PARTS) * block + PARTS.index(part)) * PART_SPACE + places * at + place

@@ -185,6 +185,8 @@ def regrets(
 
     Args:
         crowds: (title, method -> row); the first one gets the Lai-Robbins log term drawn in.
+        names: what each method is called, in the order of the lines.
+        log_term: the regret of the Lai-Robbins log term, by horizon.
     """
     figure = Figure("regret", len(crowds), height=3.6)
     beside = {name: 1.03 ** (place - len(names) / 2) for place, name in enumerate(names)}
@@ -220,6 +222,7 @@ def faults_by_game(games: Sequence[Mapping[str, Any]], names: Mapping[str, str])
     """Draw a line for each game, with a mark where a fault was diagnosed.
 
     Args:
+        games: each with its `number`, its `steps` and its faults.
         names: what each recovery is called.
     """
     figure = Figure("faults", height=1.2 + 0.2 * len(games))

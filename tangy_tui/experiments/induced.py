@@ -89,6 +89,9 @@ def draw_plan(
 
     Args:
         counts: how many faults there are of each class of recovery.
+        games: how many games.
+        seed: of the random generators.
+        book: the fault rules.
     """
     rng = Random(f"{seed}/plan")
     kinds = kinds_by_recovery(book)
@@ -149,6 +152,7 @@ class Inducer:
 
         Args:
             step: the number of the behaviour that the action is of.
+            action: what is to be done.
             there: the kinds that are there.
             shows: says whether a kind would be seen if it came now.
         """

@@ -49,6 +49,8 @@ def plan_of(games: int, seed: int, piece: int = GAMES_A_PIECE) -> list[list[Plan
     """Return what is to be induced in each game, in the paper's proportions.
 
     Args:
+        games: how many games.
+        seed: of the random generators.
         piece: games that are played in a row, and have their share of the faults.
     """
     book = load_faults(load_robot())
@@ -162,7 +164,13 @@ def run(
     """Play games with induced faults and say what Scenario 3 says of its twenty.
 
     Args:
-        name, piece: what plays them, and its name.
+        activity: what is played.
+        users: how many people play.
+        games: how many games.
+        seed: of the random generators.
+        where: where the work is kept and done.
+        name: of the sweep, under which its pieces are kept.
+        piece: plays one piece of the games.
         a_piece: games that it plays in a row.
 
     Raises:

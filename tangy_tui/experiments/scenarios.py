@@ -143,6 +143,8 @@ def recovery(
     """Run Scenario 3 and return its document (times are in the world's s).
 
     Args:
+        asked: the settings of the scenario.
+        where: where the work is kept and done.
         bench: what plays the games on the bench, with simulated devices under the real hardware
             layer; without it all is simulated.
         a_piece: games with the same people.

@@ -182,6 +182,9 @@ def run(
     """Type games one after another on this machine, whatever else works elsewhere.
 
     Args:
+        activity: what is played.
+        seeds: of the games.
+        where: where the work is kept and done.
         steps: leave each game after so many steps (None: whole games).
     """
     settings = {**about(activity), "pace": asdict(FASTEST), "steps": steps}

@@ -165,7 +165,13 @@ class Facilitation:
         """Prepare to run games.
 
         Args:
+            world: where is played.
+            policy: by which is played.
+            persuasion: chooses strategies, and what is believed of people.
+            store: the log.
+            names: what people are called, by id.
             people: what else is known of those who have the names: how they and seats are called.
+            seed: of the random generators.
             answers: where a teacher is present, what learns from the answers; without it, a
                 situation that Tangy is not sure about ends the game.
         """

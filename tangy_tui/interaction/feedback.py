@@ -104,6 +104,9 @@ class Feedback:
         """Log what a person did, now that it is known.
 
         Args:
+            person: the id of the person.
+            strategy: which strategy.
+            complied: whether the person did it.
             of: the seq of the awaited response, or of a void one, that this is the answer to;
                 None: staff asked by themselves, and the log has no request for it.
 
@@ -174,6 +177,9 @@ class Feedback:
         """Switch a strategy off for a person, or on again.
 
         Args:
+            person: the id of the person.
+            strategy: which strategy.
+            on: whether it may be used.
             among: the strategies that the activity has.
 
         Raises:

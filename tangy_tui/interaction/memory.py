@@ -93,6 +93,7 @@ class PersonModels:
         """Put together what is known of a person now.
 
         Args:
+            person: the id of the person.
             responses: what `responses` returns, where the caller has it already.
         """
         responses = self.responses() if responses is None else responses

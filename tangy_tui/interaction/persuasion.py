@@ -54,6 +54,9 @@ class Persuasion:
         """Begin with what is known already.
 
         Args:
+            people: the ids of those who take part.
+            strategies: what can be chosen.
+            rng: the random generator.
             counts: (person, strategy) -> how often they complied, and did not.
             method: how to choose and to learn where there is no memory (default: as the paper).
             memory: recalls each person from the log, with the method that was chosen for them.

@@ -103,6 +103,8 @@ class Tally:
         """Return the document that `tangy play --json` prints.
 
         Args:
+            order: the situations in the order of the rows.
+            beliefs: of each person, at the end.
             faults: those there were; by default why games were stopped.
         """
         behaviours: Counter[str] = Counter()

@@ -58,6 +58,7 @@ def guess(word: str, dictionary: str) -> str:
     """Return the likeliest phones of a word (a to z and ').
 
     Args:
+        word: in lower case.
         dictionary: known words, each as a line break, the word, a space, its phones; "" for none.
     """
     padded = f"\n{word} "

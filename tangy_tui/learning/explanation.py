@@ -43,7 +43,9 @@ def explain(policy: Policy, demonstrations: Sequence[Demonstration], situation: 
     """Find the grounds of a policy's decision among the demonstrations that it rests on.
 
     Args:
+        policy: by which is played.
         demonstrations: all there are; those that the policy was not learnt from are passed over.
+        situation: which one.
 
     Raises:
         KeyError: the situation is none of the activity's.
@@ -83,6 +85,8 @@ def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
     """Put the grounds of a decision into sentences, the most important first.
 
     Args:
+        activity: what is played.
+        why: the grounds.
         votes: with a sentence on the votes; without it, they are drawn beside the sentences.
     """
     decision = why.decision
@@ -121,6 +125,7 @@ def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
     """Name a demonstrated step: what, where it stands, by whom.
 
     Args:
+        shown: a demonstrated step, and of which demonstration.
         name: what to call a demonstration, by its id.
     """
     where = f"step {shown.number} of {name(shown.demonstration)}"

@@ -76,7 +76,8 @@ class OnlineLearning:
             policy: the policy that was not sure.
             step: the situation, the answer, and what followed.
             teacher: who answered.
-            seed, people: of the game in which Tangy asked.
+            seed: of the random generators.
+            people: the ids of those who take part.
         """
         with self._store.transaction():
             made = self._log(step, teacher, seed, tuple(people))

@@ -29,6 +29,9 @@ def quality_notes(
     """Say what is to be known of a demonstration, a few words each; nothing to say: no notes.
 
     Args:
+        activity: what is played.
+        entry: the demonstration.
+        library: all demonstrations.
         conflicts: those of the library, if they are known already; they cost a look at every step.
     """
     if conflicts is None:

@@ -75,6 +75,11 @@ class TeachingSession:
         """Prepare a session; `begin` it.
 
         Args:
+            activity: what is played.
+            people: who takes part.
+            store: the log.
+            make_world: makes the world of a demonstration.
+            teacher: who demonstrates.
             seed: of the first new game; the next games count on.
             guided: new games are arranged so that one of them brings about every situation.
             again: begin by showing a demonstration again from some step on.

@@ -84,9 +84,11 @@ class Drill:
         """Prepare a drill.
 
         Args:
+            tabletop: makes the rounds.
             store: where the sheet is kept; nothing else is written there.
             who: who rehearses.
             seed: the same one draws the same rounds (default: one that no drill has had).
+            rounds: how many.
             clock: gives seconds; its beginning does not matter.
             note: what is to be said before it begins.
 

@@ -155,6 +155,8 @@ def read_replays(
     """Read games back.
 
     Args:
+        store: the log.
+        games: which games.
         activities: those that are known, by name; without its activity a game is told with less.
         names: of the people, by id, for what Tangy said.
     """

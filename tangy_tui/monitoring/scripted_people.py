@@ -39,6 +39,7 @@ def go_on_by_script(game: Supervision, *, expert: bool) -> list[Event]:
     """Do the next thing, with scripted people where somebody is needed.
 
     Args:
+        game: what runs the game.
         expert: staff are there; without them a robot that halts ends the game.
     """
     if game.halted is not None:

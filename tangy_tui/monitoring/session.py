@@ -205,6 +205,8 @@ def read_session(
     """Put the session of some games together from the log.
 
     Args:
+        store: the log.
+        games: which games.
         activities: those that are known, by name; a game of another one is told with less.
         names: of the people, by id.
     """

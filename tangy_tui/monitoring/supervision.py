@@ -70,6 +70,8 @@ class Supervision:
         Args:
             game: what runs the games.
             book: the fault rules.
+            robot: its profile.
+            store: the log.
             effects_of: learns the effects that a policy's demonstrations show.
             name: what a person is called.
             to_come: faults that are brought about on purpose, for the log.

@@ -28,6 +28,9 @@ def evidence_words(
     """Write evidence as one line: what was measured, and what was expected and seen.
 
     Args:
+        evidence: by which it was recognised.
+        mismatches: what was not as expected.
+        robot: its profile.
         conditions: by which the evidence was recognised; their limits are said beside it.
     """
     limits = {condition.key: condition.limit for condition in conditions}

@@ -88,6 +88,7 @@ def check_place(path: Path, option: str = "--report") -> None:
     """See, before anything is worked at for long, that a page can be written there.
 
     Args:
+        path: where it is to be written.
         option: how the place was given on the command line.
 
     Raises:

@@ -65,6 +65,7 @@ def timeline(
     """Draw the timeline of a game as an SVG element.
 
     Args:
+        replay: the game, step by step.
         numbers: what stands on each fault's mark, by its id.
         names: of the people, by id.
         stages: those of the session, in the order in which they get their inks.

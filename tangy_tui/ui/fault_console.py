@@ -86,6 +86,9 @@ class FaultConsole:
         """Make the console.
 
         Args:
+            screen: that it is on.
+            workspace: what it belongs to.
+            supervision: what runs the games.
             who: who acknowledges and clears.
             tell: shows events on the screen.
             failed: says that the log could not be written, and stands still.

@@ -35,6 +35,7 @@ class GameVoice:
         """Speak what is said in these events.
 
         Args:
+            events: what has happened.
             pace: times life; 0 if they come one by one or all at once, as keys want them.
         """
         if self._app is None:

@@ -69,6 +69,8 @@ class Hearing:
         """Take the ears; `run` listens.
 
         Args:
+            app: the program.
+            ears: the speech input.
             stop: stops the robot.
             hush: lets Tangy fall silent, and returns when it is.
         """

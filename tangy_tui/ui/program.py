@@ -220,8 +220,11 @@ class Program(SoundingApp):
         """Open the playing screen with a policy, the last one unless another is wanted.
 
         Args:
+            games: how many games.
             speed: times life; usually as life where Tangy speaks or its cameras are real, and
                 faster where not.
+            seed: of the random generators.
+            wanted: the policy: its name or digest, "" for the last.
             teacher: who answers where Tangy asks.
             injections: faults that are to come.
         """

@@ -40,7 +40,8 @@ def terminal_kind(
 
     Args:
         environ: the environment (default: the process's own).
-        stdin, stdout: the streams that must be a terminal (default: the process's own).
+        stdin: where keys come from.
+        stdout: where the screen is drawn.
         ascii: what the user asked for with `--ascii`; None decides by TERM and locale.
     """
     environ = os.environ if environ is None else environ

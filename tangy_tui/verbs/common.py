@@ -25,8 +25,10 @@ def as_given(data: Path | None, users: int = 4) -> str:
 
 
 def print_line(line: str) -> None:
+    """Print a line at once."""
     print(line, flush=True)
 
 
 def print_json(document: Any) -> None:
+    """Print a JSON document."""
     print(json.dumps(document, ensure_ascii=False, indent=2))

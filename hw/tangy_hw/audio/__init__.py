@@ -1,0 +1,1 @@
+"""Sound: sources that are heard, players, voices, and WAV files."""

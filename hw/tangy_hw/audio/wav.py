@@ -42,6 +42,7 @@ class Format:
 
     @property
     def native(self) -> bool:
+        """Whether it is of the kind that is worked with: 16 kHz, mono, 16 bits."""
         return (self.codec, self.channels, self.rate, self.bits) == (1, 1, RATE, 16)
 
 

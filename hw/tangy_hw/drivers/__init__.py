@@ -1,0 +1,1 @@
+"""Drivers: one module or folder for each kind, and their registry."""

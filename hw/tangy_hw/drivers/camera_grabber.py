@@ -77,6 +77,7 @@ class Capture:
         self._first = True
 
     def open(self) -> None:
+        """Open the source."""
         import cv2
 
         self.close()
@@ -116,6 +117,7 @@ class Capture:
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
+        """Return the next picture."""
         image = self._read() if self._held is None else self._held
         self._held = None
         if self._source.kind == "stream" and _perhaps_half(image):
@@ -137,6 +139,7 @@ class Capture:
         raise Gone("it stopped in the middle" if late else "it stopped sending")
 
     def close(self) -> None:
+        """Close the source."""
         if self._capture is not None:
             self._capture.release()
             self._capture = None
@@ -152,6 +155,7 @@ class Folder:
         self._given = 0
 
     def open(self) -> None:
+        """Open the source."""
         self._given = 0
         try:
             self._left = pictures_in(Path(self._source.target))[::-1]
@@ -159,6 +163,7 @@ class Folder:
             raise Over("the folder cannot be read any more") from None
 
     def read(self) -> Image:
+        """Return the next picture."""
         while self._left:
             image = _read_picture(self._left.pop())
             if image is not None:
@@ -167,6 +172,7 @@ class Folder:
         raise Over("" if self._given else UNUSABLE)
 
     def close(self) -> None:
+        """Close the source."""
         self._left.clear()
 
 

@@ -92,6 +92,9 @@ class DynamixelArms:
             port: of the bus, as /dev/ttyUSB0.
             limbs: of the robot's profile, which name the joints and their limits.
             servos: by "limb/joint"; a joint without one does nothing.
+            name: of the device, as in the profile of the robot.
+            baud: bits a second on the wire.
+            clock: gives the time, in s.
             tolerance: degrees from where a joint should be, within which it is there.
 
         Raises:

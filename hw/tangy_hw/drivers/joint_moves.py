@@ -22,6 +22,7 @@ class JointMoves:
         Args:
             name: of the device, for its errors.
             tolerance: how far a joint may be from where it should be, and is there.
+            clock: gives the time, in s.
         """
         self.positions: dict[str, float] = {}
         """The newest position of each joint that was heard of."""
@@ -36,6 +37,7 @@ class JointMoves:
         A movement that shares a joint with this one ends: the newer counts.
 
         Args:
+            goals: where the joints are to be, in degrees, by joint.
             seconds: how long the movement should take.
             goes_on: whether there is still a reason to wait.
 

@@ -42,10 +42,15 @@ class RosArms:
         """Name its topics.
 
         Args:
+            bridge: the link to the robot.
             limbs: of the robot's profile, which name the joints.
+            name: of the device, as in the profile of the robot.
+            trajectory: the topic that takes movements.
+            states: the topic on which the joints are told.
             torque: takes std_msgs/Bool, whether the servos hold.
             names: what the robot calls joints that it calls otherwise, by "limb/joint".
             tolerance: degrees from where a joint should be, within which it is there.
+            diagnostics: what its server says of its devices, if it does.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics

@@ -37,8 +37,13 @@ class RosBase:
         """Name its topics.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            drive: the topic that takes how fast it is to drive.
+            odometry: the topic on which it tells how far it has driven.
             stamped: it takes geometry_msgs/TwistStamped, as some of ROS 2 do.
             repeat: s between repetitions of a command that still holds; 0: whoever drives repeats.
+            diagnostics: what its server says of its devices, if it does.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics

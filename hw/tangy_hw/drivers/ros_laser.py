@@ -34,7 +34,11 @@ class RosLaser:
         """Name its topic.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            topic: its name.
             turned: by how much it looks to the left of where the robot faces, in radians.
+            diagnostics: what its server says of its devices, if it does.
         """
         self.name = name
         self._bridge, self._topic, self._turned = bridge, topic, turned

@@ -98,6 +98,7 @@ def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.flo
     rosbridge writes infinity), is inf in the scan.
 
     Args:
+        message: what came.
         turned: by how much it looks to the left of where the robot faces, in radians.
     """
     raw = np.array(message["ranges"], float)
@@ -124,6 +125,7 @@ def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) ->
     Args:
         joints: where to, in radians, by joint.
         seconds: when to be there.
+        ros: 1 or 2.
     """
     point = {
         "positions": list(joints.values()),

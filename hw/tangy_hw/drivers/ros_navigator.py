@@ -60,6 +60,8 @@ class RosNavigator:
         """Name its action and topics.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
             action: "" is /move_base in ROS 1, and /navigate_to_pose in ROS 2.
             frame: of the robot's map.
             origin: where in the robot's map the room's frame is.

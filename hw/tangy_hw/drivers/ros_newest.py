@@ -64,6 +64,9 @@ async def awaited(
     """Wait for something until a time of a clock; say whether it was there by then.
 
     Args:
+        future: what is waited for.
+        until: the time on the clock, in s, up to which is waited.
+        clock: gives the time, in s.
         goes_on: whether there is still a reason to wait.
     """
     while not future.done() and goes_on() and (left := until - clock()) > 0:

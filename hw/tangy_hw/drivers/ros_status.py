@@ -42,6 +42,9 @@ class RosDiagnostics:
         """Name the topic.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            topic: its name.
             names: devices by how their diagnoses are named, where that is otherwise.
         """
         self.name = name
@@ -114,6 +117,9 @@ class RosStopButton:
         """Name its topic.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            topic: its name.
             pressed: what it says when it is pressed; some say that they are not.
             changes_only: it speaks when it changes alone, so its age is that of the link.
         """

@@ -44,8 +44,14 @@ class RosVoice:
         """Name its topics.
 
         Args:
+            bridge: the link to the robot.
+            name: of the device, as in the profile of the robot.
+            say: the topic that takes what is to be said.
+            said: the topic on which is told what was said.
             hush: takes std_msgs/Empty, upon which it is quiet.
+            with_id: whether sentences are sent with an id.
             patience: s beyond what a sentence takes, until the voice is taken to be dead.
+            diagnostics: what its server says of its devices, if it does.
         """
         self.name = name
         self._bridge, self._diagnostics = bridge, diagnostics

@@ -55,6 +55,7 @@ class Rosbridge:
         """Name the server.
 
         Args:
+            url: where its server is, as ws://HOST:PORT.
             clock: the time by which ages are told.
             tell: is told in one sentence each what a person may want to know.
             ros: 1 or 2, how types and times are spelled.
@@ -140,7 +141,9 @@ class Rosbridge:
         """Have something called with each message of a topic, from now on and after every loss.
 
         Args:
+            topic: its name in ROS.
             kind: the type, as ROS 1 spells it.
+            hears: is called with each message.
             throttle: s between two messages at least; the newest counts, none are queued.
         """
         topic = _full(topic)
@@ -168,6 +171,8 @@ class Rosbridge:
         """Hand a message over; it never waits.
 
         Args:
+            topic: its name in ROS.
+            message: the message, as JSON has it.
             urgent: goes out ahead of all that waits, and in the place of what waits of this topic.
 
         Raises:

@@ -40,6 +40,7 @@ def camera_sources(robot: Robot, given: Sequence[str] = ()) -> Sources:
     """Find the sources of a robot's cameras; a file or folder begins again when it is over.
 
     Args:
+        robot: its profile.
         given: as on the command line, DEVICE=SOURCE; they go before the robot's profile.
 
     Raises:

@@ -78,6 +78,8 @@ class SimulatedWheels:
         """Drive on until `now`, which is `seconds` after the last step.
 
         Args:
+            now: the time of the world, in s.
+            seconds: since the last step, in s.
             stuck: the wheels cannot turn.
             grip: how much of what the wheels turn the robot goes along, 0 to 1.
         """

@@ -53,7 +53,8 @@ def cast(x: float, y: float, angles: Real, segments: Real, circles: Real) -> Rea
     """Return how far rays go from a place until they hit something.
 
     Args:
-        x, y: where the rays begin.
+        x: where the scanner stands, in m.
+        y: where the scanner stands, in m.
         angles: (n,) their directions in radians.
         segments: (s, 4) x and y of both ends of straight things.
         circles: (c, 3) x, y and radius of round things.

@@ -77,7 +77,9 @@ class Client:
         """Queue a text, in fragments where it is larger than it may be.
 
         Args:
+            text: what is to be sent.
             loses: whether it may be lost when the client reads too slowly.
+            largest: bytes of a piece at most.
         """
         if largest and len(text) > largest:
             self._fragmented += 1

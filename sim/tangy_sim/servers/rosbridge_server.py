@@ -122,6 +122,7 @@ class RosbridgeServer:
         """Send a message to all that have subscribed; never waits.
 
         Args:
+            topic: its name.
             kind: its type, for the reader; rosbridge does not send it.
             message: may hold numpy arrays; what is not finite is sent as null, as rosbridge does.
         """

@@ -34,6 +34,9 @@ def respond(
     """Let a person respond: always follow, and comply in time as their preference has it.
 
     Args:
+        preferences: of each person, how probably they comply with each strategy.
+        person: the id of the person.
+        strategy: how the person was asked.
         patience: the activity's window in seconds; a late response comes within two windows.
         rng: the stream of compliance alone; two numbers are drawn, whatever the response.
     """

@@ -1,0 +1,1 @@
+"""Dialogs: one question or one message over a screen."""

@@ -46,7 +46,8 @@ class InjectDialog(Dialog[str | None]):
         """Make the dialog.
 
         Args:
-            there, to_come: the kinds that can be lifted.
+            there: the kinds of fault that are there now.
+            to_come: the kinds that are still to come.
             called: what the console calls the fault of each kind; it can be searched for, too.
         """
         super().__init__(None)

@@ -74,8 +74,11 @@ class MethodDialog(Dialog[MethodChoice | None]):
         """Make the dialog.
 
         Args:
+            name: what the person is called.
             current: what holds now; `own` says that it was chosen for this person alone.
+            own: whether it was chosen for this person.
             default: the activity's.
+            clock: gives the time, in s.
         """
         super().__init__(None)
         self._name = clean(name)

@@ -217,8 +217,11 @@ class QuestionDialog(VerifyingDialog):
 
         Args:
             behaviour: what was understood, in the words of the activity (with whom, if need be).
-            heard, confidence, aloud, clock: as for every `VerifyingDialog`.
+            heard: what was typed or said.
+            confidence: how sure it is, from 0 to 1.
             alternatives: other behaviours it may have been; the first three are offered.
+            aloud: whether the answer may be spoken.
+            clock: gives the time, in s.
         """
         super().__init__(
             heard=heard, confidence=confidence, choices=alternatives, aloud=aloud, clock=clock

@@ -63,6 +63,8 @@ class WhyDialog(Dialog[None]):
         """Make the dialog.
 
         Args:
+            workspace: what it belongs to.
+            why: the grounds of a decision.
             choice: the strategy that was chosen with the decision, if one was.
             title: what stands in the frame.
             remarks: sentences that go before the others, such as who answered what.

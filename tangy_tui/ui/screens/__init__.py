@@ -1,0 +1,1 @@
+"""Screens: each draws one part of the program, and takes its keys."""

@@ -63,6 +63,7 @@ class DemonstrationScreen(TangyScreen[None]):
         """Make the screen.
 
         Args:
+            workspace: what it belongs to.
             id: of the demonstration.
             number: of the step that the cursor is on, from 1.
         """

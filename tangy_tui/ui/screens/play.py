@@ -55,6 +55,8 @@ class PlayScreen(PlayAsking):
         """Make the screen.
 
         Args:
+            workspace: what it belongs to.
+            supervision: what runs the games.
             games: how many are played one after another.
             speed: times life.
             leave_after: seconds after the last game at which the screen closes by itself.

@@ -81,6 +81,8 @@ class TeachScreen(TangyScreen[bool]):
         """Make the screen.
 
         Args:
+            workspace: what it belongs to.
+            teaching: the session.
             resume: take up an unfinished demonstration of this teacher.
             another: the session has begun already; begin its next demonstration.
             scripted: let a scripted teacher give the demonstration, this many steps a second.

@@ -25,6 +25,8 @@ async def follow_script(
     """Let the scripted teacher type, and answer as a person would; dialogs make it wait.
 
     Args:
+        screen: that it is on.
+        teaching: the session.
         pace: steps a second.
         tell: shows what followed.
     """

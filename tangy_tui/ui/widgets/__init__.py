@@ -1,0 +1,1 @@
+"""Widgets: each draws values; none knows of a screen or a dialog."""

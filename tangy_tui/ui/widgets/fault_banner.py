@@ -71,6 +71,7 @@ class FaultBanner(Widget):
             forms: the same from its longest to its shortest form.
             said: what Tangy asks somebody for, which stands below.
             more: how many other faults there are.
+            critical: whether it halts the robot.
             key: which key takes it away.
         """
         ink = "bad" if critical else "warn"

@@ -144,6 +144,7 @@ def columns_for(width: int, name: int) -> Columns:
     """Give out so many columns: what a fault is and what was done last, then the others.
 
     Args:
+        width: columns that there are.
         name: the columns of the longest name.
     """
     name = min(WIDEST_NAME, name)

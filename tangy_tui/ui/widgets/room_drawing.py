@@ -145,6 +145,12 @@ def draw_room(
     """Draw a scene without its robot.
 
     Args:
+        plan: the rows to draw on.
+        grid: where everything stands, in cells.
+        people: who takes part.
+        scene: what there is to see.
+        speech: what Tangy says.
+        label: names a number.
         robot: the column of the robot, if it stands; beside it lies the card that it reads.
     """
     drawing = RoomDrawing(plan, grid, people)

@@ -83,6 +83,8 @@ class RoomView(Widget):
             robot: the name on the robot.
             label: writes a called number (`activity.deck.label`).
             clock: seconds (default: the app's).
+            id: of the widget.
+            classes: of the widget.
         """
         super().__init__(id=id, classes=classes)
         self.border_title = "Room"
@@ -156,6 +158,7 @@ class RoomView(Widget):
         """Draw the robot where it believes to be, and what it knows of the floor round it.
 
         Args:
+            at: where the robot is, in m.
             heading: an arrow, "" while it stands.
             marks: points in metres with a character and an ink each, later ones over earlier ones.
         """

@@ -100,9 +100,11 @@ class ButtonBox(RequestSource):
         return Reading(DEVICE, time.monotonic() - self._lost, STALE)
 
     async def start(self) -> None:
+        """Begin to hear who asks."""
         self._task = asyncio.create_task(self._run())
 
     async def close(self) -> None:
+        """Hear no more."""
         await super().close()
         if self._task is not None:
             self._task.cancel()

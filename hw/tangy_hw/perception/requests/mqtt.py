@@ -70,6 +70,7 @@ class Topic(RequestSource):
         return Reading(DEVICE, time.monotonic() - self._lost, STALE)
 
     async def start(self) -> None:
+        """Begin to hear who asks."""
         mqtt = _package()
         self._loop = asyncio.get_running_loop()
         self._client = client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2)
@@ -86,6 +87,7 @@ class Topic(RequestSource):
         client.loop_start()
 
     async def close(self) -> None:
+        """Hear no more."""
         await super().close()
         client, self._client = self._client, None
         if client is not None:

@@ -144,11 +144,13 @@ class Signs(RequestSource):
         return Reading(DEVICE, sight.age, OK if sight.state == "OK" else STALE, rate=sight.rate)
 
     async def start(self) -> None:
+        """Begin to hear who asks."""
         self.camera.changed = lambda sight: self.tell(sight.why) if sight.why else None
         await self.camera.start()
         self._task = asyncio.create_task(self._watch())
 
     async def close(self) -> None:
+        """Hear no more."""
         await super().close()
         if self._task is not None:
             self._task.cancel()
