@@ -1,7 +1,7 @@
 """What staff can do in a game, and what they are told: closed sets, the same for every door.
 
 A screen's key, a line and a sentence that was heard become one of these commands; the controller
-carries it out (see `game_controller`) and answers with events of the game, or with a `Noted`.
+carries it out (see `game_controller`) and answers with events of the game, or with a `StaffNote`.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class Confirm:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class Acknowledge:
     """Say that the fault that halts Tangy was seen."""
 
 
@@ -145,7 +145,7 @@ GameCommand: TypeAlias = (
     | VoidResponse
     | Drive
     | Confirm
-    | Seen
+    | Acknowledge
     | CallExpert
     | Clear
     | Accept
@@ -185,7 +185,7 @@ NoteKind = Literal[
 
 
 @dataclass(frozen=True, slots=True)
-class Noted:
+class StaffNote:
     """What came of a command, where it is no event of the game; `about` names what it is about."""
 
     kind: NoteKind

@@ -16,6 +16,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
 from tangy_tui.app.game_commands import (
     Accept,
+    Acknowledge,
     AskFor,
     Autonomy,
     CallAgain,
@@ -27,13 +28,12 @@ from tangy_tui.app.game_commands import (
     GameCommand,
     GiveBack,
     GoOn,
-    Noted,
     OneStep,
     Pause,
     Phase,
     Proposal,
-    Seen,
     SetAutonomy,
+    StaffNote,
     StopRobot,
     TakeBackCall,
     TakeOver,
@@ -55,11 +55,12 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-Told: TypeAlias = Event | Noted | Verification
+Told: TypeAlias = Event | StaffNote | Verification
 
 SURE = 0.9
 """The share of votes from which a decision is not asked about where Tangy asks when unsure."""
 TOOK_OVER = "You say what Tangy does next."
+LEAVES_SECONDS = 1.0  # in which what is being done is broken off
 AT_ONCE = (StopRobot, Pause, TakeOver, GiveBack, SetAutonomy, AskFor)
 """What does not wait for its turn."""
 
@@ -195,19 +196,19 @@ class GameController:
                 with self._turn:
                     return self._carry_out(command)
             except TangyError as error:
-                return [Noted("cannot", str(error))]
+                return [StaffNote("cannot", str(error))]
             finally:
                 self.nudge.set()
 
     def _carry_out(self, command: GameCommand) -> list[Told]:
         if self.supervision.over and not isinstance(command, StopRobot | GoOn | SetAutonomy):
-            return [Noted("no game")]
+            return [StaffNote("no game")]
         match command:
             case StopRobot():
                 return self._stop()
             case Pause():
                 self._going = False
-                return [Noted("paused")]
+                return [StaffNote("paused")]
             case GoOn():
                 return self._go_on()
             case OneStep():
@@ -219,7 +220,7 @@ class GameController:
             case SetAutonomy(level):
                 self.autonomy, self.proposal = level, None
                 self.note(f"autonomy: {level}")
-                return [Noted("autonomy", level)]
+                return [StaffNote("autonomy", level)]
             case Confirm(yes):
                 return self._confirm(yes=yes)
             case AskFor():
@@ -229,10 +230,10 @@ class GameController:
                 return [refused or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
-            case Seen() | CallExpert() | Clear():
+            case Acknowledge() | CallExpert() | Clear():
                 return self._attend(command)
             case Accept():
-                return list(self.supervision.accept(self._by)) or [Noted("not acceptable")]
+                return list(self.supervision.accept(self._by)) or [StaffNote("not acceptable")]
             case EndGame():
                 return self._end()
             case forgotten:
@@ -247,7 +248,7 @@ class GameController:
         self.stopped, self._going = True, False
         self.robot.stop()
         self.note("the robot was stopped")
-        return [Noted("stopped")]
+        return [StaffNote("stopped")]
 
     def _go_on(self) -> list[Told]:
         if self.stopped:
@@ -258,75 +259,86 @@ class GameController:
         elif self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
         self._going = True
-        return [Noted("goes on")]
+        return [StaffNote("goes on")]
 
     def _one_step(self) -> list[Told]:
         if refused := self._refused():
             return [refused]
         self._single = self._going = True
-        return [Noted("one step")]
+        return [StaffNote("one step")]
 
     def _take_over(self) -> list[Told]:
         if refused := self._refused():
             return [refused]
         self.taking_over, self.proposal, self._going = True, None, True
         self.note("staff take over")
-        return [Noted("takes over")]
+        return [StaffNote("takes over")]
 
     def _give_back(self) -> list[Told]:
         taken = self.taking_over or self.supervision.question is not None
         if not taken:
-            return [Noted("nothing asked")]
+            return [StaffNote("nothing asked")]
         self.taking_over = False
         question = self.supervision.question
         if question is not None and question.fault == "took over":
             self.supervision.game.withdraw()
             self._verifier = None
-        return [Noted("given back")]
+        return [StaffNote("given back")]
 
     def _confirm(self, *, yes: bool) -> list[Told]:
         proposal, self.proposal = self.proposal, None
         if proposal is None:
-            return [Noted("nothing asked")]
+            return [StaffNote("nothing asked")]
         if yes:
             self._confirmed = proposal.behaviour, proposal.target
-            return [Noted("goes on")]
+            return [StaffNote("goes on")]
         return self._take_over()
 
-    def _voided(self, person: str) -> Noted:
+    def _voided(self, person: str) -> StaffNote:
         if not self._void(person):
-            return Noted("nothing to void", person)
+            return StaffNote("nothing to void", person)
         self.supervision.persuasion.recall(person)
         self.note(f"staff: the last response of {person} does not count")
-        return Noted("voided", person)
+        return StaffNote("voided", person)
 
-    def _attend(self, command: Seen | CallExpert | Clear) -> list[Told]:
+    def _attend(self, command: Acknowledge | CallExpert | Clear) -> list[Told]:
         """Act on the fault that halts Tangy."""
         fault = self.supervision.halted
         if fault is None:
-            return [Noted("not halted")]
+            return [StaffNote("not halted")]
         match command:
-            case Seen():
-                return list(self.supervision.acknowledge(self._by)) or [Noted("seen before")]
+            case Acknowledge():
+                return list(self.supervision.acknowledge(self._by)) or [StaffNote("seen before")]
             case CallExpert():
                 return list(self.supervision.call_expert(self._by))
             case Clear():
                 if not fault.acknowledged:
-                    return [Noted("not seen yet")]
+                    return [StaffNote("not seen yet")]
                 return list(self.supervision.clear(self._by))
 
     def _end(self) -> list[Told]:
         self.note("staff ended the game")
-        return [Noted("ended"), *self.supervision.leave()]
+        return [StaffNote("ended"), *self.supervision.leave()]
 
-    def _refused(self, *, asking: bool = True) -> Noted | None:
+    def abandon(self) -> None:
+        """Stop the robot, and let the log say that the game was left: the program ends."""
+        self.stopped = True
+        self.robot.stop(ENDED)
+        if self._turn.acquire(timeout=LEAVES_SECONDS):  # it is breaking off what it did
+            try:
+                with suppress(TangyError):
+                    self.supervision.leave()
+            finally:
+                self._turn.release()
+
+    def _refused(self, *, asking: bool = True) -> StaffNote | None:
         """Say what has to be done first, None if nothing has."""
         if self.stopped:
-            return Noted("stopped first")
+            return StaffNote("stopped first")
         if self.supervision.halted is not None:
-            return Noted("halted first")
+            return StaffNote("halted first")
         if asking and self.supervision.question is not None:
-            return Noted("asks first")
+            return StaffNote("asks first")
         return None
 
     # ----------------------------------------------------------------------------- the question
@@ -335,7 +347,7 @@ class GameController:
         """Take words as the answer to what Tangy asks; they are verified before they are done."""
         with self._turn, serving():
             if self.supervision.question is None:
-                return [Noted("nothing asked")]
+                return [StaffNote("nothing asked")]
             self._verifier = self._verifier or self.supervision.verifier()
             return [self._verifier.say(Say(text))]
 
@@ -343,7 +355,7 @@ class GameController:
         """Answer the verification, and have done what was verified."""
         with self._turn, serving():
             if self._verifier is None or self._verifier.question is None:
-                return [Noted("nothing asked")]
+                return [StaffNote("nothing asked")]
             said = self._verifier.reply(reply)
             if not isinstance(said, Verified):
                 return [said]
@@ -353,7 +365,7 @@ class GameController:
             try:
                 return list(self.supervision.answer(said.behaviour, said.target, self._by))
             except TangyError as error:
-                return [Noted("cannot", str(error))]
+                return [StaffNote("cannot", str(error))]
             finally:
                 self.nudge.set()
 

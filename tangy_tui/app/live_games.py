@@ -10,7 +10,7 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.interaction.facilitation import Acted, GameEnded
+from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.fault import fault_documents
 from tangy_tui.monitoring.scripted_people import go_on_by_script

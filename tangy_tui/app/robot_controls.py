@@ -13,7 +13,7 @@ from tangy_tui.app.game_commands import (
     AskFor,
     CallAgain,
     Drive,
-    Noted,
+    StaffNote,
     TakeBackCall,
 )
 from tangy_tui.learning.policy import Decision
@@ -60,7 +60,7 @@ class RobotControls:
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0
 
-    def do(self, command: CallAgain | TakeBackCall | AskFor | Drive) -> Noted:
+    def do(self, command: CallAgain | TakeBackCall | AskFor | Drive) -> StaffNote:
         """Do what only a robot that is there can do.
 
         Raises:
@@ -68,26 +68,26 @@ class RobotControls:
         """
         robot = self._robot
         if robot is None:
-            return Noted("no robot")
+            return StaffNote("no robot")
         match command:
             case AskFor(person):
                 robot.requests.ask_for(person)
                 self._note(f"staff asked for help for {person}")
-                return Noted("asked for", person)
+                return StaffNote("asked for", person)
             case Drive():
                 return self._drive(robot, command)
         if not robot.called:
-            return Noted("nothing called")
+            return StaffNote("nothing called")
         label = robot.activity.deck.label(robot.called[-1])
         if isinstance(command, CallAgain):
             self._note("staff had the last number called again")
             robot.call_again()
-            return Noted("call again", label)
+            return StaffNote("call again", label)
         robot.void_call()
         self._note(f"staff took a call back: {label}")
-        return Noted("call taken back", label)
+        return StaffNote("call taken back", label)
 
-    def _drive(self, robot: LiveWorld, command: Drive) -> Noted:
+    def _drive(self, robot: LiveWorld, command: Drive) -> StaffNote:
         """Drive by hand for a while; a STOP, which waits for nothing, ends it."""
         forward, turn = TWISTS[command.direction]
         until = time.monotonic() + min(command.seconds, LONGEST_DRIVE)
@@ -100,6 +100,6 @@ class RobotControls:
             robot.link.tell("drive", forward=0.0, turn=0.0)
             self.driving = False
         self._note("staff drove the robot by hand")
-        return Noted(
+        return StaffNote(
             "driven", robot.link.silent or robot.link.state.hazard or robot.link.state.held
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from tangy_tui.interaction.facilitation import GameBegun
+from tangy_tui.interaction.game_events import GameBegun
 from tangy_tui.monitoring.supervision import Event
 
 

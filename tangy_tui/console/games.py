@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from tangy_profiles.beliefs import probability_best
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.console.faults import advice_lines, attend, fault_lines
-from tangy_tui.interaction.facilitation import (
+from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
     DoneOnce,

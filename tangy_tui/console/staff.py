@@ -17,11 +17,11 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import MEANINGS, nearest_command, read_command
-from tangy_tui.app.game_commands import Confirm, EndGame, Noted, Pause, StopRobot
+from tangy_tui.app.game_commands import Confirm, EndGame, Pause, StaffNote, StopRobot
 from tangy_tui.app.game_controller import GameController, Told
 from tangy_tui.console.faults import HALTED, advice_lines, list_lines
 from tangy_tui.console.games import belief_lines, game_lines, why_lines
-from tangy_tui.interaction.facilitation import DoneOnce, GameEnded, Taught
+from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.learning.verification import (
     ANSWERS,
     Asked,
@@ -99,8 +99,12 @@ class StaffLines:
             self._tell(self._controller.begin())
             playing = threading.Thread(target=self._play, daemon=True)
             playing.start()
-            self._take_lines(playing)
-            playing.join()
+            try:
+                self._take_lines(playing)
+                playing.join()
+            except BaseException:  # the program was told to end
+                self._controller.abandon()
+                raise
         for line in belief_lines(self._game, self._name):
             self._write(line)
         return not self._stopped
@@ -115,7 +119,7 @@ class StaffLines:
             try:
                 events = controller.next()
             except TangyError as error:  # the log could not be written, so nothing more is done
-                self._tell([*controller.apply(Pause()), Noted("cannot", str(error))])
+                self._tell([*controller.apply(Pause()), StaffNote("cannot", str(error))])
                 continue
             self._tell(events)
             self._prompt()
@@ -141,7 +145,7 @@ class StaffLines:
         answered = next((e.teacher for e in told if isinstance(e, Taught | DoneOnce)), "")
         events: list[Event] = []
         for one in told:
-            if isinstance(one, Noted):
+            if isinstance(one, StaffNote):
                 self._ended |= one.kind == "ended" and not self._alone
                 self._write(noted_words(one, self._name))
             elif isinstance(one, Asked | Offered | NotUnderstood | Refused | Rejected):

@@ -20,7 +20,7 @@ from tangy_tui.experiments.induced import InducingWorld, recovery_of
 from tangy_tui.experiments.matching import RIGHT, match_faults
 from tangy_tui.experiments.supervised import Supervised, people_of, play, supervised
 from tangy_tui.experiments.sweep import Case, Settings
-from tangy_tui.interaction.facilitation import GameEnded
+from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.monitoring.fault import OPEN, Fault, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 

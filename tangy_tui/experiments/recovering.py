@@ -36,7 +36,7 @@ from tangy_tui.experiments.matching import (
 )
 from tangy_tui.experiments.supervised import people_of, supervised
 from tangy_tui.experiments.sweep import Case, Piece, Settings, Sweep, Where
-from tangy_tui.interaction.facilitation import GameEnded
+from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision

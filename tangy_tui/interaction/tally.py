@@ -9,7 +9,7 @@ from typing import Any
 
 from tangy_profiles.beliefs import Beliefs
 from tangy_profiles.state import Situation
-from tangy_tui.interaction.facilitation import Acted, BeliefUpdated, GameEnded, Taught, Unsure
+from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameEnded, Taught, Unsure
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects, Mismatch, learn_effects
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy

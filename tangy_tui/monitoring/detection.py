@@ -16,7 +16,8 @@ from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import LINK, Robot
 from tangy_profiles.state import ActivityState, Outcome
-from tangy_tui.interaction.facilitation import Acted, refused
+from tangy_tui.interaction.facilitation import refused
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects, Mismatch
 
 OWED_BY_PEOPLE = ("what was asked about", "request")

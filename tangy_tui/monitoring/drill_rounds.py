@@ -24,7 +24,8 @@ from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
-from tangy_tui.interaction.facilitation import Acted, Facilitation
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.online_learning import OnlineLearning

@@ -19,7 +19,8 @@ from tangy_profiles.health import Fact
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.game_events import Acted, GameEvent
 from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import Diagnosis
 from tangy_tui.monitoring.fault import (

@@ -16,13 +16,8 @@ from tangy_profiles.faults import Evidence, FaultBook
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import (
-    MOST_STEPS,
-    DoneOnce,
-    Facilitation,
-    Taught,
-    Unsure,
-)
+from tangy_tui.interaction.facilitation import MOST_STEPS, Facilitation
+from tangy_tui.interaction.game_events import DoneOnce, Taught, Unsure
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy

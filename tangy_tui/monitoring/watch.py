@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.faults import Evidence, FaultBook
-from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent, Unsure
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.game_events import Acted, GameEvent, Unsure
 from tangy_tui.learning.effects import Mismatch
 from tangy_tui.monitoring.aftermath import Aftermath
 from tangy_tui.monitoring.detection import Detector, together

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from tangy_tui.app.game_commands import Autonomy, Noted, Proposal
+from tangy_tui.app.game_commands import Autonomy, Proposal, StaffNote
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
@@ -34,7 +34,7 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
     return f"Next: {proposal.behaviour}{whom}, {share}. Y does it, N lets you say what else."
 
 
-def noted_words(noted: Noted, name: Callable[[str], str]) -> str:
+def noted_words(noted: StaffNote, name: Callable[[str], str]) -> str:
     """Say in a sentence what came of a command."""
     about = noted.about
     match noted.kind:

@@ -8,7 +8,7 @@ from typing import Any
 from textual.screen import Screen
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import (
+from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
     DoneOnce,

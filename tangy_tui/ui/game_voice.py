@@ -9,7 +9,7 @@ from typing import Any
 from textual.app import App
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.ui.speaking import opening_lines, preference_of, speaker_of

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy

@@ -205,7 +205,7 @@ def _play_headless(
     injected: bool,
 ) -> None:
     from tangy_sim.worlds.faulty_world import FaultyWorld
-    from tangy_tui.interaction.facilitation import GameEnded, Taught
+    from tangy_tui.interaction.game_events import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
     from tangy_tui.monitoring.scripted_people import go_on_by_script

@@ -14,6 +14,7 @@ from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_tui.app.game_commands import (
     Accept,
+    Acknowledge,
     AskFor,
     CallAgain,
     CallExpert,
@@ -23,11 +24,10 @@ from tangy_tui.app.game_commands import (
     EndGame,
     GiveBack,
     GoOn,
-    Noted,
     OneStep,
     Pause,
-    Seen,
     SetAutonomy,
+    StaffNote,
     StopRobot,
     TakeBackCall,
     TakeOver,
@@ -35,7 +35,7 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import GameController, Told
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Acted, GameEnded, Unsure
+from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.verification import Asked, Reply
 from tangy_tui.monitoring.fault import STAFF
@@ -79,7 +79,7 @@ class Played:
 
 
 def kinds(told: list[Told]) -> list[str]:
-    return [one.kind if isinstance(one, Noted) else type(one).__name__ for one in told]
+    return [one.kind if isinstance(one, StaffNote) else type(one).__name__ for one in told]
 
 
 @pytest.fixture
@@ -168,18 +168,18 @@ def test_the_last_call_is_said_again_and_taken_back(live: Played) -> None:
     assert live.world is not None
     (number,) = live.world.called
     label = live.world.activity.deck.label(number)
-    assert control.apply(CallAgain()) == [Noted("call again", label)]
+    assert control.apply(CallAgain()) == [StaffNote("call again", label)]
     assert live.link.said[-1] == label
-    assert control.apply(TakeBackCall()) == [Noted("call taken back", label)]
+    assert control.apply(TakeBackCall()) == [StaffNote("call taken back", label)]
     assert live.world.called == []
     assert (f"staff took a call back: {label}", "Ada") in live.logged()
 
 
 def test_somebody_is_asked_for_and_a_response_does_not_count(live: Played) -> None:
     live.next()
-    assert live.control.apply(AskFor("user2")) == [Noted("asked for", "user2")]
+    assert live.control.apply(AskFor("user2")) == [StaffNote("asked for", "user2")]
     assert live.next() == ["navigate to user"]
-    assert live.control.apply(VoidResponse("user2")) == [Noted("voided", "user2")]
+    assert live.control.apply(VoidResponse("user2")) == [StaffNote("voided", "user2")]
     assert live.voided == ["user2"]
 
 
@@ -206,14 +206,22 @@ def test_a_game_is_ended_and_then_there_is_none(live: Played) -> None:
     assert live.control.begin() and live.link.told[-1] == "release"
 
 
+def test_a_game_that_is_abandoned_is_left_in_the_log_and_the_robot_stands(live: Played) -> None:
+    live.next()
+    live.control.abandon()
+    assert live.link.told[-1] == "stop: staff ended the game"
+    (ended,) = live.workspace.store.events("game ended")
+    assert ended.body["stopped"] == "It was left before its end."
+
+
 def test_a_fault_halts_until_it_was_seen_and_cleared(simulated: Played) -> None:
     control = simulated.control
     while simulated.phase != "halted":
         assert not any(isinstance(event, GameEnded) for event in control.next())
     assert kinds(control.apply(OneStep())) == ["halted first"]
     assert kinds(control.apply(Clear())) == ["not seen yet"]
-    assert kinds(control.apply(Seen())) == ["Moved"]
-    assert kinds(control.apply(Seen())) == ["seen before"]
+    assert kinds(control.apply(Acknowledge())) == ["Moved"]
+    assert kinds(control.apply(Acknowledge())) == ["seen before"]
     assert "Moved" in kinds(control.apply(CallExpert()))
     assert "Moved" in kinds(control.apply(Clear())) and simulated.phase == "running"
     assert kinds(control.apply(Clear())) == ["not halted"]

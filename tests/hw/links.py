@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tangy_hw.device_protocols import Pose
-from tangy_hw.robot_client.client import RobotState
+from tangy_hw.robot_client.robot_state import RobotState
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.activity import load_activity

@@ -10,7 +10,8 @@ import pytest
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.help_requests import SIGN_SECONDS
-from tangy_hw.robot_client.live_world import PATIENCES, LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_hw.robot_client.response_watch import PATIENCES
 from tangy_profiles.card_face import called_cells, numbers_of
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health, Reading

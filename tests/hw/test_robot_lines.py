@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from tangy_hw.device_protocols import MachineClock
 from tangy_hw.navigation.navigator import Navigator
 from tangy_hw.rate_estimator import FIRST
-from tangy_hw.robot_client.client import RobotState
+from tangy_hw.robot_client.robot_state import RobotState
 from tangy_hw.robot_process import controller as robots
 from tangy_hw.robot_process import process
 from tangy_hw.robot_process.assembly import RobotRuntime

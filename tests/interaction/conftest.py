@@ -12,7 +12,8 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.interaction.facilitation import Acted, Facilitation, GameEvent
+from tangy_tui.interaction.facilitation import Facilitation
+from tangy_tui.interaction.game_events import Acted, GameEvent
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 

@@ -17,16 +17,8 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.interaction.facilitation import (
-    ENDED,
-    STEP,
-    Acted,
-    Facilitation,
-    GameEnded,
-    GameEvent,
-    Taught,
-    Unsure,
-)
+from tangy_tui.interaction.facilitation import ENDED, STEP, Facilitation
+from tangy_tui.interaction.game_events import Acted, GameEnded, GameEvent, Taught, Unsure
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library

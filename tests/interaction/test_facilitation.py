@@ -17,15 +17,8 @@ from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.interaction import facilitation as room
-from tangy_tui.interaction.facilitation import (
-    ENDED,
-    Acted,
-    BeliefUpdated,
-    Facilitation,
-    GameBegun,
-    GameEnded,
-    GameEvent,
-)
+from tangy_tui.interaction.facilitation import ENDED, Facilitation
+from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameBegun, GameEnded, GameEvent
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.policy import Policy, learn_policy
 from tests.interaction.conftest import FEW, acts, play

@@ -8,16 +8,8 @@ from copy import deepcopy
 import pytest
 
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import (
-    BEGUN,
-    ENDED,
-    RESPONSE,
-    STEP,
-    Acted,
-    BeliefUpdated,
-    Facilitation,
-    GameEnded,
-)
+from tangy_tui.interaction.facilitation import BEGUN, ENDED, RESPONSE, STEP, Facilitation
+from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameEnded
 from tangy_tui.learning.policy import Policy
 from tests.interaction.conftest import acts, play
 

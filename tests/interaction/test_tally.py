@@ -9,7 +9,7 @@ import pytest
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beta, uniform_beliefs
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response, Situation
-from tangy_tui.interaction.facilitation import Acted, BeliefUpdated, GameBegun, GameEnded
+from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameBegun, GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Decision
 

@@ -10,7 +10,7 @@ import pytest
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Acted, GameEnded
+from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved

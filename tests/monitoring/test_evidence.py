@@ -8,7 +8,7 @@ from tangy_profiles.activity import load_activity
 from tangy_profiles.faults import Evidence
 from tangy_profiles.robot import load_robot
 from tangy_profiles.state import ActivityState, Outcome, Response, Situation, UserState
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision
 from tangy_tui.monitoring.detection import Detector

@@ -9,7 +9,7 @@ import pytest
 
 from tangy_profiles.state import FRONT
 from tangy_sim.worlds import faulty_world
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.supervision import Event

@@ -12,7 +12,7 @@ from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.experiments import monitoring
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.monitoring.diagnosis import diagnose
 from tangy_tui.monitoring.scripted_people import answer_by_script
 from tests.monitoring.conftest import Supervise, world_of

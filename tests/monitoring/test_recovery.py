@@ -14,7 +14,8 @@ from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP, Taught
+from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
+from tangy_tui.interaction.game_events import Taught
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 from tangy_tui.monitoring.fault import ACCEPTED, ENDINGS, FAULT, OVER, RECOVERY, read_faults

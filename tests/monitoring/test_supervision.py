@@ -16,7 +16,8 @@ from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import play_by_lines
-from tangy_tui.interaction.facilitation import ENDED, DoneOnce
+from tangy_tui.interaction.facilitation import ENDED
+from tangy_tui.interaction.game_events import DoneOnce
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import read_accepted, take_back
 from tangy_tui.monitoring.fault import read_faults

@@ -134,3 +134,17 @@ def test_no_handler_calls_the_one_that_it_overrides() -> None:
         and call.func.value.func.id == "super"
     ]
     assert twice == []
+
+
+def test_no_two_public_classes_share_a_name() -> None:
+    places: dict[str, list[str]] = {}
+    for path in SOURCES:
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(path.name)
+    assert {name: where for name, where in places.items() if len(where) > 1} == {}
+
+
+def test_no_module_is_longer_than_400_lines() -> None:
+    long = {path.name: path.read_text(encoding="utf-8").count("\n") for path in SOURCES}
+    assert {name: lines for name, lines in long.items() if lines > 400} == {}

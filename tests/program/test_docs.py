@@ -95,3 +95,16 @@ def test_the_readme_is_short_and_names_the_other_pages() -> None:
             else (HOUSE / "docs/architecture.md").read_text()
         )
         assert page.name in named or page.name == "README.md"
+
+
+MODULE = re.compile(r"(?<![\w/.-])((?:[\w-]+/)*[a-z_]+\.(?:py|toml))\b")
+HERE = {str(path.relative_to(HOUSE)) for path in HOUSE.rglob("*.*") if ".venv" not in path.parts}
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
+def test_the_files_that_builders_are_sent_to_exist(page: str) -> None:
+    text = (HOUSE / page).read_text(encoding="utf-8")
+    named = set(MODULE.findall(text)) - {"lotto.toml"}  # of a package of others
+    assert named
+    missing = {one for one in named if not any(f"/{path}".endswith(f"/{one}") for path in HERE)}
+    assert missing == set()

@@ -21,7 +21,7 @@ from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import belief_lines, game_lines, play_by_lines
 from tangy_tui.console.teaching import TeachingLines, command_line
-from tangy_tui.interaction.facilitation import BeliefUpdated
+from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say

@@ -19,7 +19,7 @@ from tangy_sim.worlds.injection import read_injection
 from tangy_tui.app.robot_opening import open_bench
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Acted
+from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.fault import Diagnosed, read_faults
 from tangy_tui.monitoring.scripted_people import go_on_by_script

@@ -24,12 +24,13 @@ from pathlib import Path
 from typing import IO, Any
 
 from tangy_hw.cancellation import Cancellation, Cancelled
-from tangy_hw.device_protocols import DeviceError, Pose
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.robot_client.robot_state import RobotState
 from tangy_hw.robot_process.protocol import level_of
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.write_queue import WriteQueue
-from tangy_profiles.health import STALE, Health, Reading
+from tangy_profiles.health import STALE, Health
 from tangy_profiles.process_log import NO_COMMAND, command_id, serving
 from tangy_profiles.worker_log import open_log
 
@@ -49,53 +50,6 @@ CALLED_OFF_SECONDS = 1.0
 """In which a process that was still switching the robot on lets go of what it has opened."""
 
 ENDED = "the robot process has ended"
-NOWHERE = Pose(0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True)
-class RobotState:
-    """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
-
-    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
-    `failed` what has failed of its control, for which only another robot process helps. `frozen` is
-    for how many s its control stood still, until staff have seen to that; `held` is what it does
-    about who drives it by hand: "" as told, "slow", or "stands".
-    """
-
-    number: int = 0
-    time: float = 0.0
-    health: Health = ()
-    pose: Pose = NOWHERE
-    going: str = ""
-    path: tuple[tuple[float, float], ...] = ()
-    particles: tuple[tuple[float, float], ...] = ()
-    obstacles: tuple[tuple[float, float], ...] = ()
-    asks: tuple[tuple[int, float], ...] = ()
-    hazard: str = ""
-    stopped: str = ""
-    failed: str = ""
-    frozen: float = 0.0
-    held: str = ""
-
-    @classmethod
-    def from_json(cls, body: dict[str, Any]) -> RobotState:
-        """Read what a beat of the robot process tells."""
-        return cls(
-            body["number"],
-            body["time"],
-            tuple(Reading(*reading) for reading in body["health"]),
-            Pose(*body["pose"]),
-            body["going"],
-            tuple((x, y) for x, y in body["path"]),
-            tuple((x, y) for x, y in body["particles"]),
-            tuple((x, y) for x, y in body["obstacles"]),
-            tuple((int(seat), since) for seat, since in body["asks"]),
-            body["hazard"],
-            body["stopped"],
-            body["failed"],
-            body["frozen"],
-            body["held"],
-        )
 
 
 @dataclass

@@ -20,6 +20,7 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.commands import Commands
 from tangy_hw.robot_client.help_requests import HelpRequestTracker
 from tangy_hw.robot_client.recovery_actions import RecoveryActions
+from tangy_hw.robot_client.response_watch import LOOK_SECONDS, watch_response
 from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.activity import Activity
@@ -35,8 +36,6 @@ from tangy_profiles.tracker import Tracker
 
 PACE_SECONDS = 30.0
 """From one call to the next at least, so that all can look and mark; about as in the paper."""
-LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
-PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
 DRIVES = ("go to user", "go to front")
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
@@ -200,7 +199,7 @@ class LiveWorld:
             return None, True
         if behaviour.effect == "none" and tracker.place not in self.requests.signs:
             return None, True  # nothing of what the person does about it can be seen
-        return self._response(action, numbers), True
+        return watch_response(self, action, numbers), True
 
     def _announce(self, action: Action, numbers: tuple[int, ...]) -> None:
         """Speak, show and gesture."""
@@ -302,46 +301,12 @@ class LiveWorld:
         sitting = self.who(self.tracker.place)
         card = self.cards.look(self.tracker.place, self.called, after, person=sitting)
         self.cards.looked("card", person, card)
-        self.tracker.seen = self._told_by(card)
+        self.tracker.seen = self.state_on(card)
 
-    def _told_by(self, card: dict[str, Any]) -> str | None:
+    def state_on(self, card: dict[str, Any]) -> str | None:
         """Return the user activity state that a card shows, None if it is not told."""
         state = str(card["state"])
         return state if state != self.activity.unread else None
-
-    # ------------------------------------------------------------------------ what people do
-
-    def _response(self, action: Action, numbers: tuple[int, ...]) -> Response | None:
-        """Watch what the person beside the robot does about it; None: that cannot be seen."""
-        place, patience = self.tracker.place, self.activity.patience
-        person = self.who(place)
-        began = before = self.link.time
-        while True:
-            done = self._is_done(action.behaviour, numbers)
-            now = self.link.time
-            seconds = (before + now) / 2 - began  # it was done between two looks
-            if done:
-                return Response(person, action.strategy, True, seconds <= patience, seconds)
-            if now - began > PATIENCES * patience:
-                if action.behaviour.effect == "none" or self.cards.view is None:
-                    return None  # a sign that stays up may be forgotten, or want something else
-                return Response(person, action.strategy, False, False, now - began)
-            before = now
-
-    def _is_done(self, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
-        """Look whether what a behaviour asks for has been done."""
-        place = self.tracker.place
-        if behaviour.effect == "none":
-            self.commands.wait(LOOK_SECONDS)
-            self.commands.settle()
-            return place not in self.requests.signs
-        card = self.cards.look(place, self.called, LOOK_SECONDS, person=self.who(place))
-        done = self.cards.shows_done(card, behaviour, numbers)
-        if done:
-            self.cards.looked("card", place, card)
-        if place in self.tracker.queue:
-            self.tracker.seen = self._told_by(card)
-        return done
 
     def _executed(self, behaviour: Behaviour, succeeded: bool) -> None:
         """Let a behaviour count; whose request it settled is to take the sign down."""

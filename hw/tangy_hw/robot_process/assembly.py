@@ -92,7 +92,7 @@ class RobotRuntime:
         robot = self.robot
 
         def speaks(reading: Reading) -> bool:  # a chest screen that no tablet shows yet warns
-            return reading.state == WARN or robot.state_of(reading) == OK
+            return reading.state == WARN or robot.watchdogs.state(reading) == OK
 
         await self._sensors.settled(WAKE_SECONDS)
         await robot.passing.until(lambda: all(map(speaks, robot.health())), WAKE_SECONDS)

@@ -25,3 +25,11 @@ class Body:
         """All of them, those first through which others are reached."""
         own = (self.base, self.laser, self.stop_button, self.arms, self.voice, self.screen)
         return (*self.others, *(device for device in own if device is not None))
+
+    @property
+    def at_hand(self) -> dict[str, str]:
+        """What staff need once it is on: the address of the chest screen, and the code there.
+
+        Both are "" where the chest screen is no page.
+        """
+        return {"screen": getattr(self.screen, "url", ""), "code": getattr(self.screen, "code", "")}

@@ -29,13 +29,12 @@ from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted, StopLatch
 from tangy_hw.robot_process.tick_watchdog import TickWatch
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_hw.watchdogs import Watchdogs
-from tangy_profiles.health import Health, Reading
+from tangy_profiles.health import Health
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
 DRIVE_SECONDS = 180.0  # for one drive; ten metres with three detours take 60
 SPIN_SECONDS = 60.0
-POSE_PATIENCE = 6.0
 BLOCKED_SECONDS = 4.0  # without a way, before somebody is asked to clear it
 HAZARD_SECONDS = 1.0
 """That it may have to stand still, or be left alone, before it gives up what it does."""
@@ -105,7 +104,7 @@ class LiveRobot:
             requests=requests,
             stepped=stepped,
         )
-        self._watchdogs = Watchdogs(robot, reports)
+        self.watchdogs = Watchdogs(robot, reports)
         self._tasks: list[asyncio.Task[None]] = []
 
     # ------------------------------------------------------------------------ on and off
@@ -147,20 +146,12 @@ class LiveRobot:
 
     def health(self) -> Health:
         """Return the newest reading of every device."""
-        return self._watchdogs.health()
+        return self.watchdogs.health()
 
     @property
     def at_hand(self) -> dict[str, str]:
-        """What staff need once it is on: the address of the chest screen, and the code there.
-
-        Both are "" where the chest screen is no page.
-        """
-        screen = self._body.screen
-        return {"screen": getattr(screen, "url", ""), "code": getattr(screen, "code", "")}
-
-    def state_of(self, reading: Reading) -> str:
-        """Return the state of a device: STALE where its data is too old."""
-        return self._watchdogs.state(reading)
+        """What staff need once it is on (see `Body.at_hand`)."""
+        return self._body.at_hand
 
     @property
     def pose(self) -> Pose:
@@ -191,7 +182,7 @@ class LiveRobot:
     @property
     def hazard(self) -> str:
         """Why it stands still, "" if it may drive."""
-        return self.stopped or self.alone() or self._watchdogs.hazard()
+        return self.stopped or self.alone() or self.watchdogs.hazard()
 
     # ------------------------------------------------------------------------ what it does
 
@@ -302,7 +293,7 @@ class LiveRobot:
 
     def fail(self, device: str, state: str) -> None:
         """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
-        self._watchdogs.fail(device, state)
+        self.watchdogs.fail(device, state)
 
     async def restart(self, device: str) -> None:
         """Switch a device off and on again."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from tangy_hw.robot_client.client import RobotState
+from tangy_hw.robot_client.robot_state import RobotState
 from tangy_profiles.room import Point
 from tangy_tui.ui.widgets.room_view import Mark, RoomView
 

@@ -10,7 +10,7 @@ from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace, teacher_name
-from tangy_tui.interaction.facilitation import GameEnded
+from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.closing import close, close_after

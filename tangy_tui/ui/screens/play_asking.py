@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Unsure
+from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.game_voice import GameVoice

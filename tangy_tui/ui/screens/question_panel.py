@@ -17,7 +17,7 @@ from textual.widgets import Static
 from textual.worker import WorkerFailed
 
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import Unsure
+from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.verification import (

@@ -1,0 +1,48 @@
+"""What a person does about a request in a live game: watched within the activity's patience."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.state import Response
+
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
+
+LOOK_SECONDS = 0.5  # between two looks at whether somebody does what they were asked
+PATIENCES = 2.0  # windows of patience after which it is taken that it is not done
+
+
+def watch_response(world: LiveWorld, action: Action, numbers: tuple[int, ...]) -> Response | None:
+    """Watch what the person beside the robot does about it; None: that cannot be seen."""
+    place, patience = world.tracker.place, world.activity.patience
+    person = world.who(place)
+    began = before = world.link.time
+    while True:
+        done = _is_done(world, action.behaviour, numbers)
+        now = world.link.time
+        seconds = (before + now) / 2 - began  # it was done between two looks
+        if done:
+            return Response(person, action.strategy, True, seconds <= patience, seconds)
+        if now - began > PATIENCES * patience:
+            if action.behaviour.effect == "none" or world.cards.view is None:
+                return None  # a sign that stays up may be forgotten, or want something else
+            return Response(person, action.strategy, False, False, now - began)
+        before = now
+
+
+def _is_done(world: LiveWorld, behaviour: Behaviour, numbers: tuple[int, ...]) -> bool:
+    """Look whether what a behaviour asks for has been done."""
+    place = world.tracker.place
+    if behaviour.effect == "none":
+        world.commands.wait(LOOK_SECONDS)
+        world.commands.settle()
+        return place not in world.requests.signs
+    card = world.cards.look(place, world.called, LOOK_SECONDS, person=world.who(place))
+    done = world.cards.shows_done(card, behaviour, numbers)
+    if done:
+        world.cards.looked("card", place, card)
+    if place in world.tracker.queue:
+        world.tracker.seen = world.state_on(card)
+    return done

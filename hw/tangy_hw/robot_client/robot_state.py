@@ -1,0 +1,57 @@
+"""How the robot is, as a beat of the robot process tells it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from tangy_hw.device_protocols import Pose
+from tangy_profiles.health import Health, Reading
+
+NOWHERE = Pose(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """What the robot said of itself last; `time` is its own, in s, and so is `since` of a request.
+
+    `asks` are (seat, since); `hazard` says why it stands still, `stopped` who stopped it, and
+    `failed` what has failed of its control, for which only another robot process helps. `frozen` is
+    for how many s its control stood still, until staff have seen to that; `held` is what it does
+    about who drives it by hand: "" as told, "slow", or "stands".
+    """
+
+    number: int = 0
+    time: float = 0.0
+    health: Health = ()
+    pose: Pose = NOWHERE
+    going: str = ""
+    path: tuple[tuple[float, float], ...] = ()
+    particles: tuple[tuple[float, float], ...] = ()
+    obstacles: tuple[tuple[float, float], ...] = ()
+    asks: tuple[tuple[int, float], ...] = ()
+    hazard: str = ""
+    stopped: str = ""
+    failed: str = ""
+    frozen: float = 0.0
+    held: str = ""
+
+    @classmethod
+    def from_json(cls, body: dict[str, Any]) -> RobotState:
+        """Read what a beat of the robot process tells."""
+        return cls(
+            body["number"],
+            body["time"],
+            tuple(Reading(*reading) for reading in body["health"]),
+            Pose(*body["pose"]),
+            body["going"],
+            tuple((x, y) for x, y in body["path"]),
+            tuple((x, y) for x, y in body["particles"]),
+            tuple((x, y) for x, y in body["obstacles"]),
+            tuple((int(seat), since) for seat, since in body["asks"]),
+            body["hazard"],
+            body["stopped"],
+            body["failed"],
+            body["frozen"],
+            body["held"],
+        )
