@@ -179,8 +179,8 @@ def tangy(
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Use one worker more than there are cores: many tests wait for a terminal or a process."""
-    return (os.cpu_count() or 1) + 1
+    """Use two workers more than there are cores: many tests wait for a terminal or a process."""
+    return (os.cpu_count() or 1) + 2
 
 
 def pytest_configure(config: pytest.Config) -> None:
