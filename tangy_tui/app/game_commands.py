@@ -29,6 +29,9 @@ TWISTS: dict[Direction, tuple[float, float]] = {
 }
 """m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
 
+TAKEN_OVER = "took over"
+"""What a question is about that staff wanted to be asked; others are about a fault, by its id."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pause:
@@ -74,7 +77,9 @@ class CallAgain:
 
 @dataclass(frozen=True, slots=True)
 class TakeBackCall:
-    """Take the last call back: it counts as not called."""
+    """Take the last call back: it counts as not called; only if it is still `label`, if given."""
+
+    label: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +113,9 @@ class Confirm:
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge:
-    """Say that the fault that halts Tangy was seen."""
+    """Say that a fault, by id, was seen; without one that which halts Tangy."""
+
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +159,13 @@ GameCommand: TypeAlias = (
     | EndGame
 )
 
+AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor)
+"""What does not wait for its turn."""
+
+
+WITHOUT_GAME = (StopRobot, Pause, GoOn, SetAutonomy)
+"""What can be done before a game and after it, too."""
+
 NoteKind = Literal[
     "paused",
     "goes on",
@@ -174,6 +188,7 @@ NoteKind = Literal[
     "no game",
     "no robot",
     "nothing called",
+    "called since",
     "nothing to void",
     "not halted",
     "not seen yet",

@@ -8,17 +8,21 @@ its turn. All that staff did is in the log with who did it.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
+from tangy_tui.app.answers import Answers
+from tangy_tui.app.autonomy import AutonomyDial
 from tangy_tui.app.game_commands import (
+    AT_ONCE,
+    TAKEN_OVER,
+    WITHOUT_GAME,
     Accept,
     Acknowledge,
     AskFor,
-    Autonomy,
     CallAgain,
     CallExpert,
     Clear,
@@ -40,29 +44,17 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.robot_controls import ENDED, RobotControls
-from tangy_tui.learning.policy import Decision
-from tangy_tui.learning.verification import (
-    Asked,
-    Offered,
-    Reply,
-    Say,
-    Verification,
-    Verified,
-    Verifier,
-)
+from tangy_tui.learning.verification import Verification, Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-Told: TypeAlias = Event | StaffNote | Verification
-
-SURE = 0.9
-"""The share of votes from which a decision is not asked about where Tangy asks when unsure."""
+Result: TypeAlias = Event | StaffNote
+"""What comes of a command."""
+Told: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
 LEAVES_SECONDS = 1.0  # in which what is being done is broken off
-AT_ONCE = (StopRobot, Pause, TakeOver, GiveBack, SetAutonomy, AskFor)
-"""What does not wait for its turn."""
 
 
 class GameController:
@@ -85,23 +77,25 @@ class GameController:
             void: lets the last response of a person not count; says whether there was one.
         """
         self.supervision = supervision
-        self.autonomy: Autonomy = "alone"
+        self.autonomy = AutonomyDial()
         self.stopped = False
         self.taking_over = False
-        self.proposal: Proposal | None = None
-        """What Tangy would do next, and asks staff about."""
         self.nudge = threading.Event()
         """Is set when something has changed for whoever waits to do the next thing."""
-        self._by = by
+        self.changed: Callable[[], object] = lambda: None
+        """Is called then as well, by the thread that acts."""
+        self.by = by
         self.robot = RobotControls(robot, self.note, lambda: self.stopped)
+        self.answers = Answers(supervision)
+        """What is said where Tangy asks, until it is verified: then it is for `answer`."""
         self._void = void
-        self._going = True
-        self._single = False
-        self._confirmed: tuple[str, str | None] | None = None
-        self._verifier: Verifier | None = None
+        self.going = True
+        """Whether the next thing is done; False: the game is paused."""
+        self.single = False
+        """Whether the game pauses after the next thing."""
         self._turn = threading.RLock()
         """Whoever has it has the supervision, and the robot."""
-        supervision.game.permits = self.permits
+        supervision.game.permits = self.autonomy.permits
 
     # ----------------------------------------------------------------------------- the game
 
@@ -118,15 +112,28 @@ class GameController:
             return "staff"
         if self.supervision.question is not None or self.proposal is not None:
             return "asking"
-        return "running" if self._going else "paused"
+        return "running" if self.going else "paused"
+
+    @property
+    def proposal(self) -> Proposal | None:
+        """What Tangy would do next, and asks staff about."""
+        return self.autonomy.proposal
 
     def begin(self) -> list[Event]:
-        """Begin the next game; the robot may move: staff have said that all is well."""
+        """Begin the next game; the robot may move: staff have said that all is well.
+
+        While it is stopped none begins, and nothing is returned.
+        """
         with self._turn, serving():
-            self.stopped = self.taking_over = self._single = False
-            self.proposal = self._confirmed = self._verifier = None
-            self._going = True
+            if self.stopped:
+                return []
+            self.taking_over = self.single = False
+            self.going = True
+            self.autonomy.reset()
             self.robot.release(everybody=True)
+            if self.stopped:  # just now
+                self.robot.stop()
+                return []
             return self.supervision.begin()
 
     def next(self) -> list[Event]:
@@ -136,25 +143,35 @@ class GameController:
             self.nudge.clear()
             if game.over:
                 return []
-            waits = self.stopped or not self._going or game.halted is not None
+            waits = self.stopped or not self.going or game.halted is not None
             if waits or game.question is not None or self.proposal is not None:
                 return game.look()
             if self.taking_over and not game.waiting:
                 self.taking_over = False
-                return list(game.game.ask(TOOK_OVER, "Say what it does.", "took over"))
+                return list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
             if not self._may_step():
                 return []
-            if self._single:
-                self._single, self._going = False, False
+            if self.single:
+                self.single, self.going = False, False
             try:
                 return game.step()
             finally:
-                self._confirmed = None
+                self.autonomy.done()
+
+    def look(self) -> list[Event] | None:
+        """Look at the devices, and return what is new; None: something is being done now."""
+        if not self._turn.acquire(blocking=False):
+            return None
+        try:
+            return self.supervision.look()
+        finally:
+            self._turn.release()
 
     def _may_step(self) -> bool:
         """Say whether the next behaviour may be done now, or ask staff about it first."""
         game = self.supervision
-        if game.waiting:
+        alone = self.autonomy.level == "alone" and not self.robot.is_there
+        if alone or game.waiting:
             return True
         state = game.world.observe()
         decision = game.policy.decide(state.situation)
@@ -162,30 +179,14 @@ class GameController:
             return False
         behaviour = game.world.activity.behaviours.get(decision.behaviour)
         target = state.attended if behaviour is not None and behaviour.attends else None
-        if not decision.sure or self.permits(decision, target):
+        if not decision.sure or self.autonomy.permits(decision, target):
             return True
-        self.proposal = Proposal(decision.behaviour, target, decision.share)
+        self.autonomy.propose(decision, target)
         return False
-
-    def asks_about(self, decision: Decision) -> bool:
-        """Say whether staff are to be asked before a decision is carried out."""
-        unsure = self.autonomy == "unsure" and decision.share < SURE
-        return self.autonomy == "each" or unsure
-
-    def confirm(self, chosen: tuple[str, str | None] | None) -> None:
-        """Keep what staff said yes to, and for whom: it alone is done next; None: nothing."""
-        self._confirmed = chosen
-
-    def permits(self, decision: Decision, target: str | None) -> bool:
-        """Say, as a step is done, whether staff said yes to it: they may have to be asked anew.
-
-        People ask for things while a question stands, and what would be done is another then.
-        """
-        return not self.asks_about(decision) or self._confirmed == (decision.behaviour, target)
 
     # ----------------------------------------------------------------------------- what staff do
 
-    def apply(self, command: GameCommand) -> list[Told]:
+    def apply(self, command: GameCommand) -> list[Result]:
         """Carry out a command of staff, and return what came of it."""
         with serving():
             try:
@@ -198,16 +199,20 @@ class GameController:
             except TangyError as error:
                 return [StaffNote("cannot", str(error))]
             finally:
-                self.nudge.set()
+                self._tell_all()
 
-    def _carry_out(self, command: GameCommand) -> list[Told]:
-        if self.supervision.over and not isinstance(command, StopRobot | GoOn | SetAutonomy):
+    def _tell_all(self) -> None:
+        self.nudge.set()
+        self.changed()
+
+    def _carry_out(self, command: GameCommand) -> list[Result]:
+        if self.supervision.over and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("no game")]
         match command:
             case StopRobot():
                 return self._stop()
             case Pause():
-                self._going = False
+                self.going = False
                 return [StaffNote("paused")]
             case GoOn():
                 return self._go_on()
@@ -218,22 +223,27 @@ class GameController:
             case GiveBack():
                 return self._give_back()
             case SetAutonomy(level):
-                self.autonomy, self.proposal = level, None
+                self.autonomy.turn(level)
                 self.note(f"autonomy: {level}")
                 return [StaffNote("autonomy", level)]
             case Confirm(yes):
                 return self._confirm(yes=yes)
             case AskFor():
                 return [self.robot.do(command)]
-            case CallAgain() | TakeBackCall() | Drive():
+            case TakeBackCall():
+                return [self.robot.do(command)]
+            case CallAgain() | Drive():
                 refused = self._refused(asking=False)
                 return [refused or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
+            case Acknowledge(fault) if fault:
+                seen = next((one for one in self.supervision.faults if one.id == fault), None)
+                return list(self.supervision.acknowledge(self.by, seen))
             case Acknowledge() | CallExpert() | Clear():
                 return self._attend(command)
             case Accept():
-                return list(self.supervision.accept(self._by)) or [StaffNote("not acceptable")]
+                return list(self.supervision.accept(self.by)) or [StaffNote("not acceptable")]
             case EndGame():
                 return self._end()
             case forgotten:
@@ -242,55 +252,72 @@ class GameController:
     def note(self, what: str) -> None:
         """Log what staff did; a log that is full does not keep them from doing it."""
         with suppress(TangyError):
-            self.supervision.note(what, self._by)
+            self.supervision.note(what, self.by)
 
-    def _stop(self) -> list[Told]:
-        self.stopped, self._going = True, False
+    @contextmanager
+    def driving(self) -> Iterator[None]:
+        """Let staff drive by keys, and the game wait meanwhile."""
+        going, self.going, self.robot.driving = self.going, False, True
+        try:
+            yield
+        finally:
+            self.robot.driving = False
+            self.going = going and not self.stopped
+            self.note("staff drove the robot by keys")
+            self._tell_all()
+
+    def wait_for_turn(self, seconds: float) -> bool:
+        """Wait until what is being done is over, but no longer than so many s; say if it is."""
+        if self._turn.acquire(timeout=seconds):
+            self._turn.release()
+            return True
+        return False
+
+    def _stop(self) -> list[Result]:
+        self.stopped, self.going = True, False
         self.robot.stop()
         self.note("the robot was stopped")
         return [StaffNote("stopped")]
 
-    def _go_on(self) -> list[Told]:
+    def _go_on(self) -> list[Result]:
         if self.stopped:
             if self.supervision.halted is None:
                 self.robot.release()
             self.stopped = False
             self.note("the robot was let go on")
-        elif self.supervision.over and self.robot.frozen:
+        if self.supervision.over and self.robot.frozen:
             self.robot.release(everybody=True)
-        self._going = True
+        self.going = True
         return [StaffNote("goes on")]
 
-    def _one_step(self) -> list[Told]:
+    def _one_step(self) -> list[Result]:
         if refused := self._refused():
             return [refused]
-        self._single = self._going = True
+        self.single = self.going = True
         return [StaffNote("one step")]
 
-    def _take_over(self) -> list[Told]:
+    def _take_over(self) -> list[Result]:
         if refused := self._refused():
             return [refused]
-        self.taking_over, self.proposal, self._going = True, None, True
+        self.taking_over = self.going = True
+        self.autonomy.reset()
         self.note("staff take over")
         return [StaffNote("takes over")]
 
-    def _give_back(self) -> list[Told]:
+    def _give_back(self) -> list[Result]:
         taken = self.taking_over or self.supervision.question is not None
         if not taken:
             return [StaffNote("nothing asked")]
         self.taking_over = False
         question = self.supervision.question
-        if question is not None and question.fault == "took over":
+        if question is not None and question.fault == TAKEN_OVER:
             self.supervision.game.withdraw()
-            self._verifier = None
         return [StaffNote("given back")]
 
-    def _confirm(self, *, yes: bool) -> list[Told]:
-        proposal, self.proposal = self.proposal, None
-        if proposal is None:
+    def _confirm(self, *, yes: bool) -> list[Result]:
+        if not self.autonomy.confirm(yes=yes):
             return [StaffNote("nothing asked")]
         if yes:
-            self._confirmed = proposal.behaviour, proposal.target
             return [StaffNote("goes on")]
         return self._take_over()
 
@@ -301,35 +328,46 @@ class GameController:
         self.note(f"staff: the last response of {person} does not count")
         return StaffNote("voided", person)
 
-    def _attend(self, command: Acknowledge | CallExpert | Clear) -> list[Told]:
+    def _attend(self, command: Acknowledge | CallExpert | Clear) -> list[Result]:
         """Act on the fault that halts Tangy."""
         fault = self.supervision.halted
         if fault is None:
             return [StaffNote("not halted")]
         match command:
             case Acknowledge():
-                return list(self.supervision.acknowledge(self._by)) or [StaffNote("seen before")]
+                return list(self.supervision.acknowledge(self.by)) or [StaffNote("seen before")]
             case CallExpert():
-                return list(self.supervision.call_expert(self._by))
+                return list(self.supervision.call_expert(self.by))
             case Clear():
                 if not fault.acknowledged:
                     return [StaffNote("not seen yet")]
-                return list(self.supervision.clear(self._by))
+                return list(self.supervision.clear(self.by))
 
-    def _end(self) -> list[Told]:
+    def _end(self) -> list[Result]:
         self.note("staff ended the game")
         return [StaffNote("ended"), *self.supervision.leave()]
 
-    def abandon(self) -> None:
-        """Stop the robot, and let the log say that the game was left: the program ends."""
+    def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
+        """Stop the robot, and let the log say that the game was left: whoever watches it leaves.
+
+        Args:
+            patience: in s, for what is being done to be broken off; then it is left as it is.
+        """
         self.stopped = True
         self.robot.stop(ENDED)
-        if self._turn.acquire(timeout=LEAVES_SECONDS):  # it is breaking off what it did
-            try:
-                with suppress(TangyError):
-                    self.supervision.leave()
-            finally:
-                self._turn.release()
+        if not self._turn.acquire(timeout=patience):
+            return []
+        try:
+            with suppress(TangyError):  # who leaves is not held up by a log that is full
+                return self.supervision.leave()
+        finally:
+            self._turn.release()
+        return []
+
+    @property
+    def refusal(self) -> StaffNote | None:
+        """What has to be done before staff can do more, None if nothing has."""
+        return self._refused()
 
     def _refused(self, *, asking: bool = True) -> StaffNote | None:
         """Say what has to be done first, None if nothing has."""
@@ -343,36 +381,19 @@ class GameController:
 
     # ----------------------------------------------------------------------------- the question
 
-    def say(self, text: str) -> list[Told]:
-        """Take words as the answer to what Tangy asks; they are verified before they are done."""
-        with self._turn, serving():
-            if self.supervision.question is None:
-                return [StaffNote("nothing asked")]
-            self._verifier = self._verifier or self.supervision.verifier()
-            return [self._verifier.say(Say(text))]
+    def answer(self, verified: Verified) -> list[Result]:
+        """Have done what was verified, and learn from it; it takes its time.
 
-    def reply(self, reply: Reply) -> list[Told]:
-        """Answer the verification, and have done what was verified."""
+        Raises:
+            TangyError: it could not be kept, and nothing of it is.
+        """
         with self._turn, serving():
-            if self._verifier is None or self._verifier.question is None:
-                return [StaffNote("nothing asked")]
-            said = self._verifier.reply(reply)
-            if not isinstance(said, Verified):
-                return [said]
             if refused := self._refused(asking=False):
                 return [refused]
-            self._verifier = None
             try:
-                return list(self.supervision.answer(said.behaviour, said.target, self._by))
-            except TangyError as error:
-                return [StaffNote("cannot", str(error))]
+                return list(self.supervision.answer(verified.behaviour, verified.target, self.by))
             finally:
-                self.nudge.set()
-
-    @property
-    def verifying(self) -> Asked | Offered | None:
-        """The verification that is open, where a command waits for its Y."""
-        return None if self._verifier is None else self._verifier.question
+                self._tell_all()
 
     def give_up(self) -> list[Event]:
         """End a game in which Tangy asks or is halted, and nobody is there."""

@@ -38,6 +38,11 @@ class RobotControls:
         self.driving = False
         """Whether it is driven by hand now."""
 
+    @property
+    def is_there(self) -> bool:
+        """Whether there is a robot: a simulated game has none."""
+        return self._robot is not None
+
     def stop(self, why: str = STOPPED) -> None:
         """Stop it now; it waits behind nothing, and latches until staff let it go on."""
         if self._robot is not None:
@@ -83,6 +88,8 @@ class RobotControls:
             self._note("staff had the last number called again")
             robot.call_again()
             return StaffNote("call again", label)
+        if command.label not in ("", label):
+            return StaffNote("called since", command.label)
         robot.void_call()
         self._note(f"staff took a call back: {label}")
         return StaffNote("call taken back", label)

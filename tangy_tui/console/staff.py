@@ -30,6 +30,7 @@ from tangy_tui.learning.verification import (
     Refused,
     Rejected,
     Reply,
+    Say,
     Verified,
     answer_help,
 )
@@ -198,32 +199,41 @@ class StaffLines:
         except TangyError as error:
             self._write(str(error))
             return
-        if isinstance(command, StopRobot) and controller.verifying:
-            controller.reply(Reply(yes=False))
+        if isinstance(command, StopRobot) and controller.answers.verifying:
+            controller.answers.reply(Reply(yes=False))
         answer = text.casefold()
         if command is not None:
             self._tell(controller.apply(command))
-        elif controller.verifying and (answer in ANSWERS or answer.isdecimal()):
+        elif controller.answers.verifying and (answer in ANSWERS or answer.isdecimal()):
             number = int(answer) if answer.isdecimal() else None
-            self._tell(controller.reply(Reply(ANSWERS.get(answer, False), number)))
+            said = controller.answers.reply(Reply(ANSWERS.get(answer, False), number))
+            self._tell([said])
+            if isinstance(said, Verified):
+                self._answer(said)
         elif controller.proposal is not None and answer in ANSWERS:
             self._tell(controller.apply(Confirm(ANSWERS[answer])))
         elif (told := self._asked(answer)) is not None:
             for line in told:
                 self._write(line)
         elif self._game.question is not None:
-            self._tell(controller.say(text))
+            self._tell([controller.answers.say(Say(text))])
         else:
             near = nearest_command(text)
             meant = f" Did you mean: {near}?" if near else ""
             self._write(plain(f"I do not know {text[:60]!r} here.{meant} Type: help."))
+
+    def _answer(self, verified: Verified) -> None:
+        try:
+            self._tell(self._controller.answer(verified))
+        except TangyError as error:
+            self._write(str(error))
 
     def _asked(self, word: str) -> list[str] | None:
         """Return the answer to a word that asks for something, or None."""
         game, activity = self._game, self._game.world.activity
         match word:
             case "help" | "?":
-                if (verifying := self._controller.verifying) is not None:
+                if (verifying := self._controller.answers.verifying) is not None:
                     return answer_help(verifying)
                 meanings = (f"  {key}: {what}" for key, what in MEANINGS)
                 return [HELP, *meanings, "While Tangy asks, type what it should do, in words."]

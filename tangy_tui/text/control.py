@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
-from tangy_tui.app.game_commands import Autonomy, Proposal, StaffNote
+from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
 
 HELD = {
     "slow": "Something is near: Tangy drives slowly.",
@@ -34,9 +34,34 @@ def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:
     return f"Next: {proposal.behaviour}{whom}, {share}. Y does it, N lets you say what else."
 
 
-def noted_words(noted: StaffNote, name: Callable[[str], str]) -> str:
+REFUSALS: tuple[NoteKind, ...] = (
+    "stopped first",
+    "asks first",
+    "halted first",
+    "no game",
+    "no robot",
+    "nothing called",
+    "called since",
+    "nothing to void",
+    "not acceptable",
+    "cannot",
+)
+"""What says that a command was not carried out, and why."""
+
+BY_KEYS: dict[NoteKind, str] = {
+    "paused": "Paused: p goes on.",
+    "stopped": "STOP. Press p to go on.",
+    "stopped first": "Not now: Tangy was stopped. Press p to go on first.",
+    "asks first": "Tangy asks first: answer it (: types), or press esc to give the game up.",
+}
+"""What is said otherwise where staff have keys, and type only to answer."""
+
+
+def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool = False) -> str:
     """Say in a sentence what came of a command."""
     about = noted.about
+    if by_keys and (words := BY_KEYS.get(noted.kind)):
+        return words
     match noted.kind:
         case "paused":
             return "Paused: Tangy does nothing more after this. Type: go on."
@@ -81,6 +106,8 @@ def noted_words(noted: StaffNote, name: Callable[[str], str]) -> str:
             return "That needs a robot, or the bench: this game is simulated."
         case "nothing called":
             return "No number was called yet."
+        case "called since":
+            return f"{about} is not the last any more."
         case "nothing to void":
             return f"There is no response of {name(about)} in this game that counts."
         case "not halted":

@@ -1,7 +1,7 @@
 """The console for faults of a screen that shows games: looking all the time, telling, acting.
 
-The robot has stopped before anything of this is drawn; what is done here goes through
-`Supervision`, and is in the log before it is told.
+The robot has stopped before anything of this is drawn; what is done here goes through the
+controller of the game, and is in the log before it is told.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Awaitable, Callable
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +18,8 @@ from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.errors import TangyError
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import KINDS
+from tangy_tui.app.game_commands import Acknowledge, CallExpert, Clear, StaffNote
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
@@ -31,7 +32,7 @@ from tangy_tui.monitoring.fault import (
     Moved,
 )
 from tangy_tui.monitoring.games import uncleared
-from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.monitoring.supervision import Event
 from tangy_tui.monitoring.telling import move_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
@@ -77,8 +78,7 @@ class FaultConsole:
         self,
         screen: Screen[Any],
         workspace: Workspace,
-        supervision: Supervision,
-        who: str,
+        control: GameController,
         *,
         tell: Tell,
         failed: Callable[[str], None],
@@ -88,23 +88,21 @@ class FaultConsole:
         Args:
             screen: that it is on.
             workspace: what it belongs to.
-            supervision: what runs the games.
-            who: who acknowledges and clears.
+            control: of the games.
             tell: shows events on the screen.
             failed: says that the log could not be written, and stands still.
         """
-        self.supervision = supervision
+        self.supervision = control.supervision
         self.ticks = 0
         """How often the timer has looked."""
-        self.busy = False
-        """Whether something else has the supervision at this moment: a teacher is learnt from."""
         self.beside: Beside | None = None
         """Does what takes its time: the world is there, and not worked out at once."""
         self._screen = screen
         self._workspace = workspace
-        self._who = who
+        self._control = control
         self._tell = tell
         self._failed = failed
+        self._gave_up = False  # the log could not be written
         self._free = asyncio.Event()
         self._free.set()
         self._dialog: CriticalDialog | None = None
@@ -126,18 +124,24 @@ class FaultConsole:
     def tick(self) -> None:
         """Look at the devices once, and tell what is new."""
         self.ticks += 1
-        if self.busy or self.supervision.over:
+        if self._gave_up or self.supervision.over:
             return
         try:
-            events = self.supervision.look()
+            events = self._control.look()
         except TangyError as error:
-            self.busy = True  # until somebody lets it try again
+            self._gave_up = True
             self._failed(str(error))
+            return
+        if events is None:
             return
         if self._dialog is not None:
             self._dialog.look()
         if events or self.supervision.status != self._status:
             self._tell(events, False)
+
+    def try_again(self) -> None:
+        """Look on, after the log could not be written."""
+        self._gave_up = False
 
     # ---------------------------------------------------------------------------- showing
 
@@ -284,14 +288,27 @@ class FaultConsole:
         )
         return await self._screen.app.push_screen_wait(dialog)
 
-    def note(self, what: str) -> None:
-        """Log what somebody did beside; a log that is full does not keep them from doing it."""
-        with suppress(TangyError):
-            self.supervision.note(what, self._who)
-
     def acknowledge(self, fault: Fault | None = None) -> None:
         """Say that a fault (default: the one that halts the robot) was seen."""
-        self._tell(self.supervision.acknowledge(self._who, fault), False)
+        self._apply(Acknowledge("" if fault is None else fault.id))
+
+    def _apply(self, command: Acknowledge | CallExpert | Clear) -> None:
+        self._tell(self._carried_out(command), False)
+
+    def _carried_out(self, command: Acknowledge | CallExpert | Clear) -> list[Event]:
+        """Return what came of a command.
+
+        Raises:
+            TangyError: it could not be logged, so it was not done.
+        """
+        events: list[Event] = []
+        for told in self._control.apply(command):
+            if isinstance(told, StaffNote):
+                if told.kind == "cannot":
+                    raise TangyError(told.about)
+            else:
+                events.append(told)
+        return events
 
     @property
     def takes_time(self) -> bool:
@@ -312,19 +329,21 @@ class FaultConsole:
 
     async def call_expert(self) -> None:
         """Note that the expert is needed for what halts the robot, and do what Tangy can."""
-        await self._do(lambda: self.supervision.call_expert(self._who))
+        await self._do(CallExpert())
 
     async def clear(self) -> None:
         """Let the robot go on, if the fault was seen and is gone."""
-        await self._do(lambda: self.supervision.clear(self._who))
+        await self._do(Clear())
 
-    async def _do(self, work: Work) -> None:
-        events = work() if self.beside is None else await self.beside(work)
-        self._tell(events, False)
+    async def _do(self, command: CallExpert | Clear) -> None:
+        if self.beside is None:
+            self._apply(command)
+        else:
+            self._tell(await self.beside(lambda: self._carried_out(command)), False)
 
     def give_up(self) -> None:
         """End the game that is halted."""
-        self._tell(self.supervision.give_up(), True)
+        self._tell(self._control.give_up(), True)
 
     # ---------------------------------------------------------------- bringing faults about
 
@@ -360,11 +379,11 @@ class FaultConsole:
         if kind in world.present or kind in to_come:
             there = kind in world.present
             world.lift(kind)
-            self.supervision.note(f"a fault was lifted: {kind}", self._who)
+            self.supervision.note(f"a fault was lifted: {kind}", self._control.by)
             self._asked_for.pop(kind, None)
             return f"Lifted: {kind}.", there
         self._asked_for[kind] = len(world.came)
-        self.supervision.note(f"a fault was brought about: {kind}", self._who)
+        self.supervision.note(f"a fault was brought about: {kind}", self._control.by)
         world.inject(kind)
         if comes_later(kind):
             return f"{kind} comes as soon as it can show.", False

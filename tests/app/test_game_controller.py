@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -37,7 +38,7 @@ from tangy_tui.app.game_controller import GameController, Told
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
-from tangy_tui.learning.verification import Asked, Reply
+from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tangy_tui.monitoring.fault import STAFF
 from tests.hw.links import FakeLink
 
@@ -78,7 +79,7 @@ class Played:
         return [(e.body["what"], e.body["by"]) for e in self.workspace.store.events(STAFF)]
 
 
-def kinds(told: list[Told]) -> list[str]:
+def kinds(told: Sequence[Told]) -> list[str]:
     return [one.kind if isinstance(one, StaffNote) else type(one).__name__ for one in told]
 
 
@@ -136,10 +137,13 @@ def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:
     live.next()
     assert kinds(control.apply(TakeOver())) == ["takes over"] and live.phase == "staff"
     assert kinds(list(control.next())) == ["Unsure"] and live.phase == "asking"
-    (asked,) = control.say("tell a joke")
-    assert isinstance(asked, Asked) and control.verifying is not None
-    done = control.reply(Reply(yes=True))
-    assert "Acted" in kinds(done) and "DoneOnce" in kinds(done) and control.verifying is None
+    asked = control.answers.say(Say("tell a joke"))
+    assert isinstance(asked, Asked) and control.answers.verifying is not None
+    yes = control.answers.reply(Reply(yes=True))
+    assert isinstance(yes, Verified)
+    done = control.answer(yes)
+    assert "Acted" in kinds(done) and "DoneOnce" in kinds(done)
+    assert control.answers.verifying is None
     control.apply(TakeOver())
     control.next()
     assert kinds(control.apply(GiveBack())) == ["given back"] and live.phase == "running"
@@ -202,7 +206,7 @@ def test_a_game_is_ended_and_then_there_is_none(live: Played) -> None:
     told = live.control.apply(EndGame())
     assert kinds(told) == ["ended", "GameEnded"] and live.phase == "idle"
     assert live.link.told[-1] == "stop: staff ended the game"
-    assert kinds(live.control.apply(Pause())) == ["no game"] and live.next() == []
+    assert kinds(live.control.apply(OneStep())) == ["no game"] and live.next() == []
     assert live.control.begin() and live.link.told[-1] == "release"
 
 
@@ -232,5 +236,5 @@ def test_a_simulated_game_has_no_robot_to_drive(simulated: Played) -> None:
         assert kinds(simulated.control.apply(command)) == ["no robot"]
     assert kinds(simulated.control.apply(Accept())) == ["not acceptable"]
     assert kinds(simulated.control.apply(Confirm(yes=True))) == ["nothing asked"]
-    assert kinds(simulated.control.say("joke")) == ["nothing asked"]
-    assert kinds(simulated.control.reply(Reply(yes=True))) == ["nothing asked"]
+    assert kinds([simulated.control.answers.say(Say("joke"))]) == ["nothing asked"]
+    assert kinds([simulated.control.answers.reply(Reply(yes=True))]) == ["nothing asked"]

@@ -12,6 +12,7 @@ from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
 from tangy_profiles.health import OK, Fact, Reading
+from tangy_tui.app.game_commands import Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.program import Program
@@ -135,5 +136,5 @@ async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
 async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
     """Let it do some steps, and pause."""
     await until(pilot, lambda: live(pilot)._supervision.steps >= steps)
-    live(pilot)._going.clear()
-    await until(pilot, lambda: not live(pilot)._working)
+    live(pilot).control.apply(Pause())
+    await until(pilot, lambda: not live(pilot).working)

@@ -14,6 +14,7 @@ from textual.app import App
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.health import OK, Reading
+from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
@@ -92,7 +93,7 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
         link.free = False
         try:
-            await until(pilot, lambda: live(pilot)._working)
+            await until(pilot, lambda: live(pilot).working > 0)
             link.state = replace(link.state, going="user1")
             await until(pilot, lambda: "drives to User 1" in pilot.lines()[0])
             told = pilot.lines()[0]
@@ -138,7 +139,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
         line = pilot.app.screen.query_one(MicrophoneLine)
         assert ears.asks and ("listening for stop" if hands_free else "t talk") in line.text
         link.free = False
-        await until(pilot, lambda: live(pilot)._working)
+        await until(pilot, lambda: live(pilot).working > 0)
         if not hands_free:
             await pilot.press("t")
             assert ears.state == "listening"
@@ -157,7 +158,7 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
     async with run(app=program) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
         link.free = False
-        await until(pilot, lambda: live(pilot)._working)
+        await until(pilot, lambda: live(pilot).working > 0)
         await pilot.press("ctrl+x")
         await until(pilot, lambda: "stop: staff stopped it" in link.told)
         await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
@@ -192,7 +193,7 @@ async def test_staff_can_ask_for_help_for_somebody(
         assert "Who needs help?" in screen_text(pilot.app)
         await pilot.press("down", "enter")
         assert "user2" in world.requests.all
-        live(pilot)._going.set()
+        live(pilot).control.apply(GoOn())
         await until(pilot, lambda: world.tracker.place == "user2")
 
 
@@ -361,7 +362,7 @@ async def test_a_call_is_said_again_and_taken_back(
         count = len(world.called)
         await pilot.press("c")
         await until(pilot, lambda: link.said[-1] == label)
-        await until(pilot, lambda: not live(pilot)._working)
+        await until(pilot, lambda: not live(pilot).working)
         await pilot.press("x")
         await until(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("n")
@@ -403,7 +404,7 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
     link.most = 6
     async with run(app=program, size=(120, 40)) as pilot:
         await until(pilot, lambda: live(pilot)._supervision.steps >= 6)
-        await until(pilot, lambda: live(pilot)._working)
+        await until(pilot, lambda: live(pilot).working > 0)
         link.sign(2)
         link.state = replace(
             link.state,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import STAFF
@@ -56,14 +57,14 @@ async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
         link.cards["user1"] = LaidCard(17, marked=1, others=(31,))
         link.sign(1)
         before = len(link.said)
-        live(pilot)._going.set()
+        live(pilot).control.apply(GoOn())
         name = workspace.name("user1")
         await until(
             pilot, lambda: f"There are two cards in front of {name}: 17 and 31" in told(pilot)
         )
         assert "Tangy cannot tell which is theirs, and judges neither" in told(pilot)
-        live(pilot)._going.clear()
-        await until(pilot, lambda: not live(pilot)._working)
+        live(pilot).control.apply(Pause())
+        await until(pilot, lambda: not live(pilot).working)
         wrong = workspace.activity.behaviours["remove markers"].name
         assert not [said for said in link.said[before:] if wrong in said]
         assert "several cards before user1: 17, 31; not judged" in notes(workspace)

@@ -9,33 +9,39 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from contextlib import suppress
 from math import ceil
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from textual.binding import BindingType
 from textual.content import Content
 from textual.screen import Screen
 
 from tangy_hw.robot_client.live_world import LiveWorld
-from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT
-from tangy_tui.app.game_commands import AUTONOMY, AskFor, CallAgain, TakeBackCall
-from tangy_tui.app.game_controller import TOOK_OVER, GameController
+from tangy_tui.app.game_commands import (
+    AT_ONCE,
+    AUTONOMY,
+    AskFor,
+    CallAgain,
+    GameCommand,
+    GiveBack,
+    GoOn,
+    SetAutonomy,
+    TakeBackCall,
+    TakeOver,
+)
+from tangy_tui.app.game_controller import Result
 from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.app.workspace import Workspace, teacher_name
-from tangy_tui.learning.policy import Decision
+from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.text.control import autonomy_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.fault_console import Work
-from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.screens import live_keys, live_words
 from tangy_tui.ui.screens.live_cards import LiveCards
@@ -48,6 +54,8 @@ from tangy_tui.ui.widgets.status_line import Status
 TRACK_SECONDS = 0.2
 """Between two pictures of where the robot is."""
 REST_SECONDS = 5.0  # in which what it does is broken off
+
+T = TypeVar("T")
 
 
 class LiveScreen(PlayScreen):
@@ -67,13 +75,10 @@ class LiveScreen(PlayScreen):
         teacher: str = "",
     ) -> None:
         """Make the screen for games in a world that is there."""
-        super().__init__(workspace, supervision, games=games, speed=1, teacher=teacher)
+        super().__init__(workspace, supervision, games=games, speed=1, teacher=teacher, robot=world)
         self._world = world
-        self._control = GameController(supervision, teacher or teacher_name(), robot=world)
         self._faults.beside = self._attend_beside
-        self._working = False
-        self._turn = asyncio.Lock()
-        """Whoever has it has the supervision, and the robot."""
+        self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
         self._frozen = 0.0
         self._seats = Seats(workspace.name)
@@ -97,188 +102,106 @@ class LiveScreen(PlayScreen):
     @property
     def _at_rest(self) -> bool:
         """Whether no game goes on, nor begins: for that the robot may drive."""
-        return self._supervision.over and not self._working
+        return self._supervision.over and not self.working
 
     async def _begin_game(self) -> list[Event]:
-        await self._going.wait()
+        await self._until_going()
         if self._world.lost:
             self._write(live_words.LOOKS_ROUND, "warn")
-        self._world.link.release()  # staff have said that all is well
-        return await self._beside(self._supervision.begin)
+        return await super()._begin_game()
 
-    async def _step(self) -> list[Event]:
-        try:
-            return await self._beside(self._supervision.step)
-        finally:
-            self._control.confirm(None)
-
-    async def _beside(self, work: Work) -> list[Event]:
+    async def _beside(self, work: Callable[[], T]) -> T:
         """Do something that takes its time, while the screen lives."""
-        async with self._turn:
-            self._working = self._faults.busy = True
-            self._show_status()
-            try:
-                return await asyncio.to_thread(work)
-            finally:
-                self._working = False
-                self._faults.busy = self._learning
+        self.working += 1
+        self._show_status()
+        try:
+            return await asyncio.to_thread(work)
+        finally:
+            self.working -= 1
 
     async def _attend_beside(self, work: Work) -> list[Event]:
         """Do something about what halts the robot, which may end in another robot process."""
         try:
             return await self._beside(work)
         finally:
-            if self._stopped:  # that one was not told
-                self._control.robot.stop()
+            if self.control.stopped:  # that one was not told
+                self.control.robot.stop()
 
     async def _wait(self, seconds: float) -> None:
         """Wait for nothing: what was done has taken its time."""
         self._left = 0.0
 
-    async def _may_step(self) -> bool:
-        """Ask first, where the dial says so, or let staff say what is done."""
-        supervision = self._supervision
-        if supervision.question is not None or supervision.waiting or supervision.over:
-            return True
-        state = self._world.observe()
-        decision = supervision.policy.decide(state.situation)
-        if self._control.taking_over:
-            self._control.taking_over = False
-            supervision.game.ask(TOOK_OVER, "Say what it does.", "took over")
-            if supervision.question is not None:
-                await self._ask(supervision.question, wanted=True)
-                if supervision.question is not None:  # it was left without an answer
-                    supervision.game.withdraw()
-                    self._tell_now("Tangy goes on by itself.", "dim")
-            return False
-        if decision.sure and await self._rests(decision):
-            return False
-        if not decision.sure or not self._control.asks_about(decision):
-            return True
-        return await self._confirm(decision, state.attended)
-
-    async def _rests(self, decision: Decision) -> bool:
-        """Let a moment pass where it is too early for the next call: staff may step in meanwhile.
-
-        Whoever asks for help in the meantime does not wait for it.
-        """
-        if not self._control.robot.rests(decision):
-            return False
-        self._show_status()
-        self._nudge.clear()
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._nudge.wait(), TRACK_SECONDS)
-        return True
-
-    async def _confirm(self, decision: Decision, attended: str | None) -> bool:
-        """Ask whether the next behaviour is to be done; if not, ask what else."""
-        behaviour = self._workspace.activity.behaviours[decision.behaviour]
-        target = attended if behaviour.attends else None
-        whom = f" ({self._workspace.name(target)})" if target else ""
-        dialog = ConfirmDialog(
-            f"Next: {behaviour.name}{whom}?",
-            f"{decision.share:.0%} of the votes. After this, i turns the questions off.",
-            yes="do it",
-            no="say what else",
-        )
-        does = await self.app.push_screen_wait(dialog)
-        self._control.confirm((behaviour.name, target) if does else None)
-        if not does and not self._stopped:
-            self._control.taking_over = True
-        return does and self._going.is_set()
-
     # ------------------------------------------------------------------------- staff's keys
 
-    def on_stop(self, message: Stop) -> None:
-        """Stop the robot itself, before the playing screen draws anything."""
-        self._control.robot.stop()
+    def _do(self, command: GameCommand) -> None:
+        """Carry out a command; what has to wait for its turn waits beside the screen."""
+        if isinstance(command, AT_ONCE):
+            super()._do(command)
+        else:
+            self.run_worker(self._do_beside(command), name="command", group="command")
+
+    async def _do_beside(self, command: GameCommand) -> None:
+        self._take(await self._beside(lambda: self.control.apply(command)))
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
-        robot = self._control.robot
-        if self._at_rest and robot.frozen:  # in a game that is a fault, and cleared as one
-            robot.release(everybody=True)
+        if self._at_rest and self.control.robot.frozen:  # in a game that is a fault
+            self._do(GoOn())
             self._tell_now(live_words.MAY_MOVE, "dim")
-            return
-        if self._stopped and self._supervision.halted is None:
-            robot.release()
-        super().action_pause()
+        else:
+            super().action_pause()
 
     def action_autonomy(self) -> None:
         """Turn the dial of how much Tangy does of itself."""
-        level = AUTONOMY[(AUTONOMY.index(self._control.autonomy) + 1) % len(AUTONOMY)]
-        self._control.autonomy = level
-        self._tell_now(f"Tangy {autonomy_words(level)}.", "dim")
-        self._show_status()
+        level = AUTONOMY[(AUTONOMY.index(self.control.autonomy.level) + 1) % len(AUTONOMY)]
+        self._do(SetAutonomy(level))
 
     def action_leave(self) -> None:
         """Take back that staff want to say what is done next, or leave."""
-        if self._control.taking_over:
-            self._control.taking_over = False
-            self._tell_now("Tangy goes on by itself.", "dim")
+        if self.control.taking_over:
+            self._do(GiveBack())
         else:
             super().action_leave()
 
     def action_take_over(self) -> None:
         """Let staff say what is done next, as soon as what is done now is over."""
-        if self._refused() or self._supervision.over:
-            return
-        self._control.taking_over = True
-        self._tell_now("When this is done, you say what Tangy does next.", "dim")
-        self._nudge.set()
+        if not self._supervision.over:
+            self._do(TakeOver())
 
     def action_drive(self) -> None:
         """Let staff drive; the game waits meanwhile."""
-        if self._working:
+        if self.working:
             self._tell_now("Not in the middle of what it does: p pauses, ctrl+x stops it.", "warn")
         elif not self._refused():
             self.run_worker(self._drive(), name="drive", group="drive")
 
     async def _drive(self) -> None:
-        going = self._going.is_set()
-        self._going.clear()
-        self._nudge.set()
-        await self.app.push_screen_wait(DrivingDialog(self._world.link))
-        self._faults.note("staff drove the robot by keys")
-        if going and not self._stopped:
-            self._going.set()
+        with self.control.driving():
+            await self.app.push_screen_wait(DrivingDialog(self._world.link))
 
     def action_call_again(self) -> None:
         """Say the last number once more."""
-        if self._working or self._refused():
+        if self.working or self._refused():
             self._tell_now("Not now: Tangy is busy.", "dim")
-        elif not self._world.called:
-            self._tell_now("No number was called yet.", "dim")
         else:
-            self.run_worker(self._call_again(), name="call", group="call")
-
-    async def _call_again(self) -> None:
-        self._tell_now("Tangy calls the last number again.", "dim")
-        await self._tried(lambda: self._control.robot.do(CallAgain()))
+            self._do(CallAgain())
 
     def action_void_call(self) -> None:
         """Take the last call back."""
-        if self._working:
+        if self.working:
             self._tell_now("Not now: Tangy is busy.", "dim")
         elif not self._world.called:
-            self._tell_now("No number was called yet.", "dim")
+            self._do(TakeBackCall())
         else:
             self.run_worker(self._void_call(), name="void", group="call", exclusive=True)
 
     async def _void_call(self) -> None:
-        last = self._world.called[-1]
-        label = self._workspace.activity.deck.label(last)
+        label = self._workspace.activity.deck.label(self._world.called[-1])
         text = "It counts as not called then, and comes again later."
         dialog = ConfirmDialog(f"Take {label} back?", text, yes="take it back", no="leave it")
-        if not await self.app.push_screen_wait(dialog):
-            return
-        async with self._turn:  # what Tangy began meanwhile comes first
-            if self._world.called[-1:] != [last]:
-                self._tell_now(f"{label} is not the last any more.", "warn")
-                return
-            self._control.robot.do(TakeBackCall())
-        self._tell_now(f"{label} counts as not called; say so to the group.", "warn")
-        self.query_one(RoomView).show(self._world.scene())
+        if await self.app.push_screen_wait(dialog):
+            await self._do_beside(TakeBackCall(label))
+            self.query_one(RoomView).show(self._world.scene())
 
     def action_ask_for(self) -> None:
         """Ask for help for somebody."""
@@ -289,35 +212,21 @@ class LiveScreen(PlayScreen):
         options = [Option(person.id, person.name) for person in self._workspace.people]
         person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
         if person is not None:
-            self._control.robot.do(AskFor(person))
-            name = self._workspace.name(person)
-            self._tell_now(f"{name} asks for help.", "dim")
+            self._do(AskFor(person))
 
     def action_whose_card(self) -> None:
         """Say whose a card is."""
         if not self._supervision.over:
-            say = self._cards.say_whose(self.app, self._faults)
+            say = self._cards.say_whose(self.app, self.control)
             self.run_worker(say, name="card", group="ask")
 
-    async def _tried(self, work: Callable[[], object]) -> None:
-        async with self._turn:
-            self._working = self._faults.busy = True
-            try:
-                await asyncio.to_thread(work)
-            except TangyError as error:
-                self._tell_now(str(error), "warn")
-            finally:
-                self._working = False
-                self._faults.busy = self._learning
-
-    async def _learn(self, answer: Verified) -> list[Event]:
+    async def _learn(self, answer: Verified) -> list[Result]:
         """Act on an answer, which takes its time, and learn from it."""
-        async with self._turn:
-            self._working = True
-            try:
-                return await super()._learn(answer)
-            finally:
-                self._working = False
+        self.working += 1
+        try:
+            return await super()._learn(answer)
+        finally:
+            self.working -= 1
 
     # -------------------------------------------------------------------------------- picture
 
@@ -354,33 +263,31 @@ class LiveScreen(PlayScreen):
             self._show_status()
         if state.frozen and not self._frozen:
             self._write(live_words.WAS_FROZEN.format(state.frozen), "bad")
-            self._faults.note(f"the robot process was frozen for {state.frozen:.1f} s")
+            self.control.note(f"the robot process was frozen for {state.frozen:.1f} s")
         self._frozen = state.frozen
         track(room, state)
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
-        self._control.robot.stop(ENDED)
-        with suppress(TimeoutError):
-            async with asyncio.timeout(REST_SECONDS), self._turn:
-                pass
+        self.control.robot.stop(ENDED)
+        await asyncio.to_thread(self.control.wait_for_turn, REST_SECONDS)
 
     def _show_status(self) -> None:
         super()._show_status()
-        going = self._going.is_set()
+        going = self.control.going
         self.query_one(KeyLine).show(*live_keys.keys(going=going, over=self._at_rest))
 
     def _note(self) -> str:
         """Say what the robot is doing, or what the keys would do next."""
-        if self._stopped or self._learning or self._at_rest or not self._going.is_set():
+        if self.control.stopped or self._learning or self._at_rest or not self.control.going:
             return super()._note()
-        level = self._control.autonomy
+        level = self.control.autonomy.level
         autonomy = live_keys.DIAL[level] if level != AUTONOMY[0] else ""
         return self._doing() or self._until_call() or autonomy
 
     def _doing(self) -> str:
         """Say what keeps the robot busy on its wheels, "" if nothing does."""
-        if self._working and self._world.lost:
+        if self.working and self._world.lost:
             return "finds its place"
         going = self._world.link.state.going
         if not going:
@@ -388,5 +295,5 @@ class LiveScreen(PlayScreen):
         return f"drives to {'the front' if going == FRONT else self._workspace.name(going)}"
 
     def _until_call(self) -> str:
-        left = 0.0 if self._working else self._world.calls_in
+        left = 0.0 if self.working else self._world.calls_in
         return f"next call in {ceil(left)} s" if left else ""

@@ -9,10 +9,10 @@ from textual.app import App
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
-from tangy_tui.ui.fault_console import FaultConsole
 from tangy_tui.ui.widgets.log_view import Kind
 
 LEARN = "learn"
@@ -43,7 +43,7 @@ class LiveCards:
             if note.words:
                 self._write(note.words + KEY_HINT, "warn" if note.doubt else "dim")
 
-    async def say_whose(self, app: App[Any], faults: FaultConsole) -> None:
+    async def say_whose(self, app: App[Any], control: GameController) -> None:
         """Ask staff who has which card, and keep it.
 
         The card is one of those that were in sight last, or Tangy is to learn it anew.
@@ -67,5 +67,5 @@ class LiveCards:
             return
         dealt.give(whom, None if told == LEARN else int(told))
         whose = "another card" if told == LEARN else f"card {told}"
-        faults.note(f"staff said that {whom} has {whose}")
+        control.note(f"staff said that {whom} has {whose}")
         self._write(f"{name(whom)} has {whose}.", "dim")

@@ -3,37 +3,54 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from contextlib import suppress
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from textual.binding import BindingType
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.game_commands import (
+    GoOn,
+    OneStep,
+    Pause,
+    StaffNote,
+    StopRobot,
+)
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.interaction.voiding import void_last
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.control import noted_words
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
-from tangy_tui.ui.screens.play_asking import PlayAsking
 from tangy_tui.ui.screens.play_keys import (
-    ASKS_FIRST,
     NOT_IN_THE_DEMO,
-    STOPPED_FIRST,
     TRIES_AGAIN,
     faster,
     keys,
 )
+from tangy_tui.ui.screens.play_staff import PlayStaff
 from tangy_tui.ui.widgets.fault_list import FaultList
 from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.transcript import Transcript
 
+if TYPE_CHECKING:
+    from tangy_hw.robot_client.live_world import LiveWorld
 
-class PlayScreen(PlayAsking):
+T = TypeVar("T")
+
+IDLE_SECONDS = 0.2
+"""Between two tries, while it is too early for the next thing."""
+
+
+class PlayScreen(PlayStaff):
     """Games by the learnt policy, watched at any speed. Dismissed with what they added up to."""
 
     CSS_PATH = "play.tcss"
@@ -51,6 +68,7 @@ class PlayScreen(PlayAsking):
         speed: float = 20,
         leave_after: float | None = None,
         teacher: str = "",
+        robot: LiveWorld | None = None,
     ) -> None:
         """Make the screen.
 
@@ -61,23 +79,27 @@ class PlayScreen(PlayAsking):
             speed: times life.
             leave_after: seconds after the last game at which the screen closes by itself.
             teacher: who answers where Tangy asks (default: whoever is logged in).
+            robot: the world of a robot that is there.
         """
-        super().__init__(workspace, supervision, teacher or teacher_name())
+        who = teacher or teacher_name()
+
+        def void(person: str) -> bool:
+            return void_last(workspace.store, supervision.game.game, person, who)
+
+        super().__init__(workspace, GameController(supervision, who, robot=robot, void=void))
         self._games = games
         self._speed = speed
         self._leave_after = leave_after
         self._tally = Tally()
-        self._going = asyncio.Event()
-        self._going.set()
-        self._nudge = asyncio.Event()
         self._skipping = False
-        self._single = False
         self._left = 0.0  # s of a drive that STOP or a fault broke off
         self._halted = False
         self._leaving = False
 
     def on_mount(self) -> None:
         """Show what is known, and begin."""
+        loop = asyncio.get_running_loop()
+        self.control.changed = lambda: loop.call_soon_threadsafe(self._nudge.set)
         self._picture.begin()
         self._faults.begin()
         self._voice.begin(self.app)
@@ -88,27 +110,20 @@ class PlayScreen(PlayAsking):
 
     def action_pause(self) -> None:
         """Pause, or go on; after a STOP this is what lets the robot move again."""
-        if self._going.is_set():
-            self._going.clear()
-        else:
-            stopped, self._stopped = self._stopped, False
-            self._halted = False
-            self._faults.busy = self._learning
-            self._going.set()
-            if stopped:
-                self._faults.note("the robot was let go on")
-            if stopped and (asking := self._asking) is not None:
-                asking.hold(False)
-        self._nudge.set()
-        self._show_status()
+        stopped = self.control.stopped
+        if self.control.going:
+            self._do(Pause())
+            return
+        self._halted = False
+        self._faults.try_again()
+        self._do(GoOn())
+        if stopped and (asking := self._asking) is not None:
+            asking.hold(False)
 
     def action_one_step(self) -> None:
         """Do one step and pause."""
-        if self._refused() or self._supervision.over:
-            return
-        self._single = True
-        self._going.set()
-        self._nudge.set()
+        if not self._supervision.over:
+            self._do(OneStep())
 
     def action_speed(self, by: int) -> None:
         """Play faster or slower."""
@@ -122,8 +137,7 @@ class PlayScreen(PlayAsking):
             return
         self._skipping = True
         self._voice.hush()
-        self._going.set()
-        self._nudge.set()
+        self._do(GoOn())
 
     def action_again(self) -> None:
         """Play one more game, now or after this one."""
@@ -132,7 +146,7 @@ class PlayScreen(PlayAsking):
         self._games += 1
         if self._supervision.over and self._tally.games + 1 == self._games:
             self._halted = False
-            self._going.set()
+            self._do(GoOn())
             self.run_worker(self._play(), name="game", exclusive=True)
         else:
             more = self._games - self._tally.games - 1
@@ -156,8 +170,8 @@ class PlayScreen(PlayAsking):
     async def _leave(self) -> None:
         """Ask whether to leave in mid-game; the game waits meanwhile."""
         self._leaving = True
-        going = self._going.is_set()
-        self._going.clear()
+        going = self.control.going
+        self._do(Pause())
         dialog = ConfirmDialog(
             "Leave in the middle of the game?",
             "It ends here, and the log says so. What was learnt from it stays.",
@@ -170,32 +184,30 @@ class PlayScreen(PlayAsking):
             await self._come_to_rest()
             self._end_game()
             close(self, self._tally)
-        elif going and not self._stopped and not self._halted:
-            self._going.set()
+        elif going and not self.control.stopped and not self._halted:
+            self._do(GoOn())
 
     async def _come_to_rest(self) -> None:
         """Let what is being done come to an end before the game does."""
 
     def _end_game(self) -> None:
         """Let the log say that a game was left."""
-        if not self._learning:
-            with suppress(TangyError):  # who leaves is not held up by a log that is full
-                self._tally.add(self._supervision.leave())
+        if not self._supervision.over:
+            self._tally.add(self.control.abandon())
 
     def on_unmount(self) -> None:
         """End a game whose program is being left."""
+        self.control.changed = lambda: None
         self._end_game()
         self._voice.hush()
 
     def on_stop(self, message: Stop) -> None:
         """Stop the robot: nothing more is executed until somebody lets it go on."""
+        self.control.apply(StopRobot())  # before anything is drawn
         self._skipping = False
-        self._stopped = True
         self._voice.hush()
-        self._going.clear()
         self._nudge.set()
-        self._write("STOP. Press p to go on.", "bad")
-        self._faults.note("the robot was stopped")
+        self._write(noted_words(StaffNote("stopped"), self._workspace.name, by_keys=True), "bad")
         if self._asking is not None:
             self._asking.hold(True)
         self._show_status()
@@ -204,14 +216,6 @@ class PlayScreen(PlayAsking):
     def _at_rest(self) -> bool:
         """Whether no game goes on."""
         return self._supervision.over
-
-    def _refused(self) -> bool:
-        """Say, after a STOP or while Tangy asks, what has to be done first."""
-        if self._stopped:
-            self._tell_now(STOPPED_FIRST, "warn")
-        elif self._asking is not None:
-            self._tell_now(ASKS_FIRST, "warn")
-        return self._stopped or self._asking is not None
 
     # ---------------------------------------------------------------------------------- game
 
@@ -238,32 +242,29 @@ class PlayScreen(PlayAsking):
 
     async def _play_game(self) -> None:
         """Play one game, or the rest of one that was held."""
-        supervision = self._supervision
+        control, supervision = self.control, self._supervision
         if supervision.over:
             self._tell(await self._begin_game())
         owed = 0.0  # s of the game that are to pass after what is done against a fault
         while not supervision.over:
-            await self._going.wait()
+            await self._until_going()
             if supervision.halted is not None:
                 self._skipping = False
                 await self._faults.free()
                 continue
-            if self._left and not self._skipping and not self._single:
+            if self._left and not self._skipping and not control.single:
                 await self._wait(self._left)  # it walks on to where it was going
                 continue
-            alone = self._skipping or self._single
+            alone = self._skipping or control.single
             if not alone and not await self._voice.heard(self._speed, self._nudge):
                 continue
-            if self._single:
-                self._single = False
-                self._going.clear()
-            if not await self._may_step():
-                continue
             before = supervision.seconds
-            events, rest = await self._step(), list[Event]()
-            if not self._skipping and self._going.is_set():
+            events, rest = await self._beside(control.next), list[Event]()
+            if not self._skipping and control.going:
                 events, rest = self._faults.parts(events)
             self._tell(events)
+            if control.proposal is not None:
+                await self._propose(control.proposal)
             if supervision.question is not None:
                 await self._ask(supervision.question)
             owed = max(owed, supervision.seconds - before)
@@ -272,29 +273,40 @@ class PlayScreen(PlayAsking):
                 owed = 0.0
             if self._skipping or self._faults.urgent(events):
                 await asyncio.sleep(0)  # let the screen and the keys live
-            else:
+            elif events:
                 await self._wait(owed)
                 owed = 0.0
+            else:
+                await self._nudged(IDLE_SECONDS)
             if rest:
                 self._faults.done()
                 self._tell(rest)
         self._skipping = False
 
+    async def _until_going(self) -> None:
+        """Wait while the game is paused, or the robot stopped."""
+        while not self.control.going:
+            self._nudge.clear()
+            await self._nudge.wait()
+
+    async def _nudged(self, seconds: float) -> None:
+        """Wait for somebody to do something, but no longer than so many s."""
+        self._nudge.clear()
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._nudge.wait(), seconds)
+
     async def _begin_game(self) -> list[Event]:
-        return self._supervision.begin()
+        return await self._beside(self.control.begin)
 
-    async def _may_step(self) -> bool:
-        """Say whether the next behaviour may be done now."""
-        return True
-
-    async def _step(self) -> list[Event]:
-        return self._supervision.step()
+    async def _beside(self, work: Callable[[], T]) -> T:
+        """Do something of the game; a simulated one takes no time."""
+        return work()
 
     def _stand_still(self, reason: str) -> None:
         """Do nothing more, after a failure, until somebody lets it try again."""
         self._halted = True
         self._skipping = False
-        self._going.clear()
+        self.control.apply(Pause())
         self._write(f"{reason} p tries again.", "bad")
         self._show_status()
 
@@ -302,7 +314,7 @@ class PlayScreen(PlayAsking):
         """Stand still after a failure until somebody lets it try again."""
         self._stand_still(reason)
         await self._say_why(reason, TRIES_AGAIN)
-        await self._going.wait()
+        await self._until_going()
 
     def _fail(self, reason: str) -> None:
         """Stand still after a failure that came between two steps."""
@@ -311,12 +323,10 @@ class PlayScreen(PlayAsking):
 
     async def _wait(self, seconds: float) -> None:
         """Let a step's time (in the game, in s) pass; a key that changes the pace ends it early."""
-        self._nudge.clear()
         clock = asyncio.get_running_loop().time
         speed, until = self._speed, clock() + seconds / self._speed
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._nudge.wait(), seconds / speed)
-        held = self._stopped or self._supervision.halted is not None
+        await self._nudged(seconds / speed)
+        held = self.control.stopped or self._supervision.halted is not None
         caught = held and self._drives
         self._left = max(0.0, until - clock()) * speed if caught else 0.0
 
@@ -331,7 +341,7 @@ class PlayScreen(PlayAsking):
             self._nudge.set()  # the rest of the step's time is not waited for
         self._picture.tell(events, 0 if self._skipping else self._speed)
         if not self._skipping:
-            self._voice.tell(events, self._speed if self._going.is_set() else 0)
+            self._voice.tell(events, self._speed if self.control.going else 0)
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
                 self._halted = True
@@ -359,14 +369,14 @@ class PlayScreen(PlayAsking):
         if asking is not None and self._supervision.question is None and not self._learning:
             asking.withdraw()
         halted = self._supervision.halted is not None
-        self.query_one(RoomView).hold(self._stopped or halted)
+        self.query_one(RoomView).hold(self.control.stopped or halted)
         robot = self._faults.status
         if self._halted and self._supervision.halted is None:
             robot = "ASKS"
-        if self._stopped:
+        if self.control.stopped:
             robot = "STOPPED" if self._supervision.halted is None else f"STOPPED, {robot}"
         self._picture.show_status(robot, self._note(), self.MODE)
-        going = self._going.is_set()
+        going = self.control.going
         self.query_one(KeyLine).show(*keys(going=going, over=self._at_rest))
         if asking is not None:
             asking.show_keys(going=going)
@@ -374,10 +384,10 @@ class PlayScreen(PlayAsking):
 
     def _note(self) -> str:
         """Say what the keys would do next, or how fast it goes."""
-        if self._stopped:
+        if self.control.stopped:
             return "p goes on"
         if self._learning:
             return "learning"
         if self._at_rest:
             return "g plays again" if self._supervision.games else ""
-        return f"x{self._speed:g}" if self._going.is_set() else "paused"
+        return f"x{self._speed:g}" if self.control.going else "paused"

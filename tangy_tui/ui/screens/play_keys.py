@@ -7,15 +7,11 @@ from textual.binding import Binding, BindingType
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Times life; at 1 a game takes the half hour that it takes among people."""
 
-ASKS_FIRST = "Tangy asks first: answer it (: types), or press esc to give the game up."
-
 NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
 
 NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
 
 TRIES_AGAIN = "p tries again; esc leads home."
-
-STOPPED_FIRST = "Not now: Tangy was stopped. Press p to go on first."
 
 
 def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:

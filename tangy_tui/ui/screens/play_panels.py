@@ -10,9 +10,10 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.monitoring.supervision import Event
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.fault_console import FaultConsole
@@ -41,15 +42,14 @@ class PlayPanels(TangyScreen[Tally]):
     """What the status line calls it."""
     ALLOW_IN_MAXIMIZED_VIEW = f"{TangyScreen.ALLOW_IN_MAXIMIZED_VIEW},#banner,#microphone"
 
-    def __init__(self, workspace: Workspace, supervision: Supervision, who: str) -> None:
-        """Make the panels; `who` answers, acknowledges and clears."""
+    def __init__(self, workspace: Workspace, control: GameController) -> None:
+        """Make the panels of the games that a controller runs."""
         super().__init__()
         self._workspace = workspace
-        self._supervision = supervision
-        self._picture = GamePicture(self, workspace, supervision)
-        self._faults = FaultConsole(
-            self, workspace, supervision, who, tell=self._tell, failed=self._fail
-        )
+        self.control = control
+        self._supervision = control.supervision
+        self._picture = GamePicture(self, workspace, control.supervision)
+        self._faults = FaultConsole(self, workspace, control, tell=self._tell, failed=self._fail)
 
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events; where a game was stopped a dialog says why, unless that is `known`."""

@@ -16,6 +16,19 @@ from textual.screen import Screen
 from textual.widgets import Static
 from textual.worker import WorkerFailed
 
+from tangy_profiles.errors import TangyError
+from tangy_tui.app.answers import Spoken
+from tangy_tui.app.command_grammar import read_command
+from tangy_tui.app.game_commands import (
+    TAKEN_OVER,
+    Accept,
+    EndGame,
+    GameCommand,
+    GiveBack,
+    StaffNote,
+    StopRobot,
+)
+from tangy_tui.app.game_controller import GameController, Result
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook
@@ -28,10 +41,8 @@ from tangy_tui.learning.verification import (
     Rejected,
     Reply,
     Say,
-    Verification,
     Verified,
 )
-from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.situations import ALL_RIGHT, counted, state_words
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -85,17 +96,22 @@ def answers_words(why: Why) -> str:
     return f"Shown so far: {', '.join(parts)}." if parts else ""
 
 
+def wanted(question: Unsure) -> bool:
+    """Say whether staff wanted to be asked: then Tangy can go on by itself after all."""
+    return question.fault == TAKEN_OVER
+
+
 async def learn_answer(
-    screen: Screen[Any], supervision: Supervision, answer: Verified, teacher: str
-) -> list[Event]:
+    screen: Screen[Any], control: GameController, answer: Verified
+) -> list[Result]:
     """Act on an answer and learn from it, beside the screen: the forest takes a moment.
 
     Raises:
         TangyError: it could not be kept, and nothing of it is.
     """
 
-    def learn() -> list[Event]:
-        return supervision.answer(answer.behaviour, answer.target, teacher)
+    def learn() -> list[Result]:
+        return control.answer(answer)
 
     worker = screen.run_worker(learn, thread=True, exit_on_error=False, group="learning")
     try:
@@ -122,26 +138,31 @@ class AskingPanel(Vertical):
     class WhyWanted(Message):
         """Why was typed: the grounds are to be shown."""
 
+    class Commanded(Message):
+        """A command was typed that is no answer."""
+
+        def __init__(self, command: GameCommand) -> None:
+            self.command = command
+            super().__init__()
+
     def __init__(
         self,
         workspace: Workspace,
-        supervision: Supervision,
+        control: GameController,
         question: Unsure,
         before: str = "",
-        *,
-        wanted: bool = False,
     ) -> None:
         """Make the panel for a question; `before` says what was learnt from the last answer.
 
-        Where it was `wanted` to be asked, who leaves it lets Tangy go on by itself.
+        Where staff wanted to be asked, who leaves it lets Tangy go on by itself.
         """
         super().__init__(id="asking")
         self._workspace = workspace
-        self._supervision = supervision
+        self._answers = control.answers
+        self._supervision = control.supervision
         self._question = question
-        self._verifier = supervision.verifier()
         self._phrasebook = Phrasebook(workspace.activity, workspace.people)
-        self._acceptable = supervision.acceptable
+        self._acceptable = control.supervision.acceptable
         self._answer: asyncio.Future[Verified | Instead]
         self._answer = asyncio.get_running_loop().create_future()
         self._dialog: Dialog[Any] | None = None
@@ -150,7 +171,7 @@ class AskingPanel(Vertical):
         self._by_voice = False  # the present command was spoken
         self._hearing = hearing_of(self.app)
         self._before = clean(before)
-        self._wanted = wanted
+        self._wanted = wanted(question)
         self.set_class(bool(before), "-says")
         self.border_title = "Tangy asks"
 
@@ -269,35 +290,51 @@ class AskingPanel(Vertical):
             self._take_keys()
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
-        """Put a typed answer to Tangy."""
+        """Put a typed answer to Tangy, or carry out a command."""
         event.stop()
         self._by_voice = False
-        bar = self.query_one(CommandBar)
-        match event.text.lower():
-            case "why":
-                bar.ready()
-                self.post_message(self.WhyWanted())
-            case "quit" | "exit" | "leave":
-                bar.ready()
-                self.ask_to_give_up()
-            case "help":
-                bar.ready()
-                self.app.run_worker(self.run_action("app.help"))
-            case words if self._verifier.stops(words):
-                bar.ready()
-                self.app.run_worker(self.run_action("app.stop"))
-            case "phrases" | "voice" as word:
-                bar.ready()
-                self.app.run_worker(self.run_action(f"app.{word}"))
-            case words if words.strip(" .!") in ALL_RIGHT and self._acceptable:
-                bar.ready()
-                self.accept()
-            case _ if self._held:
+        if (word := event.text.lower()) in ("why", "help", "phrases", "voice"):
+            self.query_one(CommandBar).ready()
+            self._show(word)
+            return
+        try:
+            command = read_command(event.text, self._find_person, self._phrasebook.game)
+        except TangyError as error:
+            self._return(event.text, str(error))
+            return
+        if command is None or (isinstance(command, Accept) and not self._acceptable):
+            if self._held:
                 self._return(event.text, HELD)
-            case _:
-                self._tell(self._verifier.say(Say(event.text)))
+            else:
+                self._tell(self._answers.say(Say(event.text)))
+        else:
+            self.query_one(CommandBar).ready()
+            self._carry_out(command)
 
-    def _tell(self, said: Verification) -> None:
+    def _show(self, word: str) -> None:
+        """Show what was asked for."""
+        if word == "why":
+            self.post_message(self.WhyWanted())
+        else:
+            self.app.run_worker(self.run_action(f"app.{word}"))
+
+    def _carry_out(self, command: GameCommand) -> None:
+        match command:
+            case StopRobot():
+                self.app.run_worker(self.run_action("app.stop"))
+            case EndGame():
+                self.ask_to_give_up()
+            case Accept():
+                self.accept()
+            case GiveBack() if self._wanted:
+                self.withdraw()
+            case _:
+                self.post_message(self.Commanded(command))
+
+    def _find_person(self, wanted: str) -> str:
+        return self._workspace.find_person(wanted).id
+
+    def _tell(self, said: Spoken) -> None:
         match said:
             case Asked() | Offered():
                 self._be_open(False)
@@ -311,6 +348,8 @@ class AskingPanel(Vertical):
                 self._return(heard, reason)
             case Verified():
                 self._settle(said)
+            case StaffNote():
+                self.withdraw()
         if not isinstance(said, Asked | Offered):
             self._be_open(True)
 
@@ -323,7 +362,7 @@ class AskingPanel(Vertical):
         if self._answer.done():
             return
         reply = Reply(answer.yes and not self._held, answer.reply.alternative)
-        self._tell(self._verifier.reply(reply))
+        self._tell(self._answers.reply(reply))
 
     def _return(self, heard: str, sentence: str) -> None:
         """Give a command back with what is to be said of it."""
@@ -354,7 +393,7 @@ class AskingPanel(Vertical):
         if self._held:
             self._return(said.text, HELD)
         else:
-            self._tell(self._verifier.say(said))
+            self._tell(self._answers.say(said))
 
     def told(self, sentence: str, kind: Kind) -> None:
         """Say something about hearing, under the question and in the log."""

@@ -1,0 +1,135 @@
+"""Staff at the playing screen: what they have done, what they are asked, and what they answer."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from contextlib import suppress
+
+from tangy_tui.app.game_commands import (
+    Accept,
+    Confirm,
+    GameCommand,
+    GiveBack,
+    GoOn,
+    Proposal,
+    StaffNote,
+)
+from tangy_tui.app.game_controller import GameController, Result
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.interaction.game_events import Unsure
+from tangy_tui.learning.verification import Verified
+from tangy_tui.text.control import REFUSALS, noted_words
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.game_voice import GameVoice
+from tangy_tui.ui.screens.play_keys import NOT_ACCEPTABLE
+from tangy_tui.ui.screens.play_panels import PlayPanels
+from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, learn_answer, wanted
+
+SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
+"""What the keys' line and the status say."""
+
+
+class PlayStaff(PlayPanels):
+    """Sends commands to the controller, and puts what Tangy asks to the teacher, by line or ear."""
+
+    def __init__(self, workspace: Workspace, control: GameController) -> None:
+        """Make the panels of the games that a controller runs."""
+        super().__init__(workspace, control)
+        self._voice = GameVoice(workspace)
+        self._learning = False
+        self._nudge = asyncio.Event()
+        """Is set when something is done that the game's time is not to be waited for."""
+
+    def _show_status(self) -> None:
+        """Show how things stand."""
+        raise NotImplementedError
+
+    def action_pause(self) -> None:
+        """Pause, or go on."""
+        raise NotImplementedError
+
+    def _do(self, command: GameCommand) -> None:
+        """Carry out a command of staff, and tell what came of it."""
+        self._take(self.control.apply(command))
+
+    def _take(self, results: Sequence[Result]) -> None:
+        """Tell what came of a command; what is seen anyway is not said as well."""
+        for result in results:
+            if isinstance(result, StaffNote) and result.kind not in SEEN_ANYWAY:
+                said = noted_words(result, self._workspace.name, by_keys=True)
+                self._tell_now(said, "warn" if result.kind in REFUSALS else "dim")
+        self._tell([result for result in results if not isinstance(result, StaffNote)])
+
+    def on_asking_panel_commanded(self, event: AskingPanel.Commanded) -> None:
+        """Carry out what was typed while Tangy asks."""
+        event.stop()
+        if isinstance(event.command, GoOn) and not self.control.going:
+            self.action_pause()
+        else:
+            self._do(event.command)
+
+    def _refused(self) -> bool:
+        """Say, after a STOP or while Tangy asks, what has to be done first."""
+        refusal = self.control.refusal
+        if refusal is not None:
+            self._take([refusal])
+        return refusal is not None
+
+    async def _propose(self, proposal: Proposal) -> None:
+        """Ask whether the next behaviour is to be done; if not, staff say what else."""
+        whom = f" ({self._workspace.name(proposal.target)})" if proposal.target else ""
+        dialog = ConfirmDialog(
+            f"Next: {proposal.behaviour}{whom}?",
+            f"{proposal.share:.0%} of the votes. After this, i turns the questions off.",
+            yes="do it",
+            no="say what else",
+        )
+        does = await self.app.push_screen_wait(dialog)
+        if not self.control.stopped:
+            self._do(Confirm(does))
+
+    async def _ask(self, question: Unsure) -> None:
+        """Wait for the teacher's answer, learn it beside the screen, and go on.
+
+        Where staff wanted to be asked it can also be left, and Tangy goes on by itself.
+        """
+        self.minimize()
+        self.app.clear_notifications()  # they would lie over the question
+        learnt, self._picture.lesson = self._picture.lesson, ""
+        asking = AskingPanel(self._workspace, self.control, question, learnt)
+        self.add_class("-asking")
+        await self.mount(asking, before="#microphone" if self.query("#microphone") else "#keys")
+        if self.control.stopped:
+            asking.hold(True)
+        self._show_status()
+        try:
+            answer = await asking.answer()
+        finally:
+            self.remove_class("-asking")
+            with suppress(Exception):  # the screen may be going as well
+                await asking.remove()
+        match answer:
+            case Instead.WITHDRAWN:
+                if wanted(question) and self._supervision.question is question:
+                    self._do(GiveBack())
+            case Instead.GIVE_UP:
+                self._tell(self.control.give_up(), True)
+            case Instead.ACCEPT:
+                self._do(Accept())
+            case Verified():
+                self._take(await self._learn(answer))
+
+    async def _learn(self, answer: Verified) -> list[Result]:
+        """Act on an answer and learn from it; nothing else is done or looked at meanwhile."""
+        self._learning = True
+        self._show_status()
+        try:
+            return await learn_answer(self, self.control, answer)
+        finally:
+            self._learning = False
+
+    def action_accept(self) -> None:
+        """Say that what Tangy asks about is all right."""
+        if (asking := self._asking) is None or not asking.accept():
+            self._tell_now(NOT_ACCEPTABLE, "dim")
