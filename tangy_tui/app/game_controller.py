@@ -12,10 +12,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
+from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.errors import TangyError
 from tangy_profiles.process_log import serving
 from tangy_tui.app.answers import Answers
 from tangy_tui.app.autonomy import AutonomyDial
+from tangy_tui.app.fault_commands import Result, attend
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     TAKEN_OVER,
@@ -44,14 +46,12 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.app.robot_controls import ENDED, RobotControls
-from tangy_tui.learning.verification import Verification, Verified
+from tangy_tui.learning.verification import Verification
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
 
-Result: TypeAlias = Event | StaffNote
-"""What comes of a command."""
 Told: TypeAlias = Result | Verification
 TOOK_OVER = "You say what Tangy does next."
 LEAVES_SECONDS = 1.0  # in which what is being done is broken off
@@ -66,6 +66,7 @@ class GameController:
         by: str,
         *,
         robot: LiveWorld | None = None,
+        paced: bool = True,
         void: Callable[[str], bool] = lambda person: False,
     ) -> None:
         """Take charge of games.
@@ -74,6 +75,7 @@ class GameController:
             supervision: what runs them.
             by: who acts, for the log.
             robot: the world of a robot that is there; None: the games are simulated.
+            paced: a robot that is there lets people time between two calls.
             void: lets the last response of a person not count; says whether there was one.
         """
         self.supervision = supervision
@@ -85,7 +87,7 @@ class GameController:
         self.changed: Callable[[], object] = lambda: None
         """Is called then as well, by the thread that acts."""
         self.by = by
-        self.robot = RobotControls(robot, self.note, lambda: self.stopped)
+        self.robot = RobotControls(robot, self.note, lambda: self.stopped, paced=paced)
         self.answers = Answers(supervision)
         """What is said where Tangy asks, until it is verified: then it is for `answer`."""
         self._void = void
@@ -170,7 +172,7 @@ class GameController:
     def _may_step(self) -> bool:
         """Say whether the next behaviour may be done now, or ask staff about it first."""
         game = self.supervision
-        alone = self.autonomy.level == "alone" and not self.robot.is_there
+        alone = self.autonomy.level == "alone" and not self.robot.paced
         if alone or game.waiting:
             return True
         state = game.world.observe()
@@ -187,17 +189,26 @@ class GameController:
     # ----------------------------------------------------------------------------- what staff do
 
     def apply(self, command: GameCommand) -> list[Result]:
-        """Carry out a command of staff, and return what came of it."""
+        """Carry out a command of staff, and return what came of it, or why it cannot be done."""
+        try:
+            return self.carry_out(command)
+        except TangyError as error:
+            return [StaffNote("cannot", str(error))]
+
+    def carry_out(self, command: GameCommand) -> list[Result]:
+        """Carry out a command of staff, and return what came of it.
+
+        Raises:
+            TangyError: it cannot be done, or not be logged.
+        """
         with serving():
             try:
                 if isinstance(command, AT_ONCE):
-                    return self._carry_out(command)
+                    return self._dispatch(command)
                 if isinstance(command, EndGame):
                     self.robot.stop(ENDED)  # what it does is broken off
                 with self._turn:
-                    return self._carry_out(command)
-            except TangyError as error:
-                return [StaffNote("cannot", str(error))]
+                    return self._dispatch(command)
             finally:
                 self._tell_all()
 
@@ -205,7 +216,7 @@ class GameController:
         self.nudge.set()
         self.changed()
 
-    def _carry_out(self, command: GameCommand) -> list[Result]:
+    def _dispatch(self, command: GameCommand) -> list[Result]:
         if self.supervision.over and not isinstance(command, WITHOUT_GAME):
             return [StaffNote("no game")]
         match command:
@@ -237,13 +248,8 @@ class GameController:
                 return [refused or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
-            case Acknowledge(fault) if fault:
-                seen = next((one for one in self.supervision.faults if one.id == fault), None)
-                return list(self.supervision.acknowledge(self.by, seen))
-            case Acknowledge() | CallExpert() | Clear():
-                return self._attend(command)
-            case Accept():
-                return list(self.supervision.accept(self.by)) or [StaffNote("not acceptable")]
+            case Acknowledge() | CallExpert() | Clear() | Accept():
+                return attend(self.supervision, command, self.by)
             case EndGame():
                 return self._end()
             case forgotten:
@@ -328,24 +334,12 @@ class GameController:
         self.note(f"staff: the last response of {person} does not count")
         return StaffNote("voided", person)
 
-    def _attend(self, command: Acknowledge | CallExpert | Clear) -> list[Result]:
-        """Act on the fault that halts Tangy."""
-        fault = self.supervision.halted
-        if fault is None:
-            return [StaffNote("not halted")]
-        match command:
-            case Acknowledge():
-                return list(self.supervision.acknowledge(self.by)) or [StaffNote("seen before")]
-            case CallExpert():
-                return list(self.supervision.call_expert(self.by))
-            case Clear():
-                if not fault.acknowledged:
-                    return [StaffNote("not seen yet")]
-                return list(self.supervision.clear(self.by))
-
     def _end(self) -> list[Result]:
         self.note("staff ended the game")
-        return [StaffNote("ended"), *self.supervision.leave()]
+        game = self.supervision
+        asked = game.question is not None and game.question.fault != TAKEN_OVER
+        events = game.give_up() if asked or game.halted is not None else game.leave()
+        return [StaffNote("ended"), *events]
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, and let the log say that the game was left: whoever watches it leaves.
@@ -381,8 +375,8 @@ class GameController:
 
     # ----------------------------------------------------------------------------- the question
 
-    def answer(self, verified: Verified) -> list[Result]:
-        """Have done what was verified, and learn from it; it takes its time.
+    def answer(self, behaviour: Behaviour, target: str | None) -> list[Result]:
+        """Have done what was answered, and learn from it; it takes its time.
 
         Raises:
             TangyError: it could not be kept, and nothing of it is.
@@ -391,7 +385,7 @@ class GameController:
             if refused := self._refused(asking=False):
                 return [refused]
             try:
-                return list(self.supervision.answer(verified.behaviour, verified.target, self.by))
+                return list(self.supervision.answer(behaviour, target, self.by))
             finally:
                 self._tell_all()
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.interaction.tally import Tally
+from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import fault_documents
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
@@ -60,15 +62,15 @@ class LiveGames:
     def _play(self, expert: bool, tell: Callable[[list[Event]], None]) -> None:
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        world.link.release()  # nobody is there to say that all is well
-        events = game.begin()
+        control = GameController(game, SCRIPTED, robot=world, paced=False)
+        events = control.begin()
         self.tally.add(events)
         self._look_at_cards(events)
         tell(events)
         since = world.link.time
         stopped = None
         while not game.over:
-            events = go_on_by_script(game, expert=expert)
+            events = go_on_by_script(control, expert=expert)
             self.tally.add(events)
             stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), stopped)
             self._look_at_cards(events)

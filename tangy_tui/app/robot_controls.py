@@ -29,19 +29,23 @@ class RobotControls:
     """A robot that is there, or (None) none: then each says so."""
 
     def __init__(
-        self, robot: LiveWorld | None, note: Callable[[str], None], stopped: Callable[[], bool]
+        self,
+        robot: LiveWorld | None,
+        note: Callable[[str], None],
+        stopped: Callable[[], bool],
+        *,
+        paced: bool = True,
     ) -> None:
-        """Take the world of a robot; `note` logs what staff did, `stopped` tells of their STOP."""
+        """Take the world of a robot; `note` logs what staff did, `stopped` tells of their STOP.
+
+        Where it is `paced`, people are let time between two calls.
+        """
         self._robot = robot
         self._note = note
         self._stopped = stopped
+        self.paced = paced and robot is not None
         self.driving = False
         """Whether it is driven by hand now."""
-
-    @property
-    def is_there(self) -> bool:
-        """Whether there is a robot: a simulated game has none."""
-        return self._robot is not None
 
     def stop(self, why: str = STOPPED) -> None:
         """Stop it now; it waits behind nothing, and latches until staff let it go on."""
@@ -60,7 +64,7 @@ class RobotControls:
 
     def rests(self, decision: Decision) -> bool:
         """Say whether it is too early for the next call."""
-        if self._robot is None or not decision.sure:
+        if self._robot is None or not (self.paced and decision.sure):
             return False
         behaviour = self._robot.activity.behaviours[decision.behaviour]
         return behaviour.effect == "draw" and self._robot.calls_in > 0

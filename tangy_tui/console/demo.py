@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.interaction.tally import Tally
@@ -53,7 +54,8 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
     write("3. Tangy facilitates a game by itself.")
     supervision = workspace.supervision(policy, seed)
     tally = Tally()
-    events_of_game = supervision.begin()
+    control = scripted_controller(supervision)
+    events_of_game = control.begin()
     while True:
         tally.add(events_of_game)
         for game_event in events_of_game:
@@ -61,7 +63,7 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
                 write(f"   {line}")
         if supervision.over:
             break
-        events_of_game = supervision.step()
+        events_of_game = control.next()
     write("4. What Tangy now believes about which strategy works with whom:")
     for line in belief_lines(supervision, workspace.name):
         write(f"   {line}")

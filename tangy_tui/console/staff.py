@@ -1,8 +1,12 @@
-"""Games with staff at the lines: they run by themselves, and each line may step in at any time.
+"""Games with staff at the lines, at any time or by turns.
 
-One thread runs the games, another reads the lines, so that a STOP waits for nothing. At the end of
-the lines nobody is there any more: a game that goes on is played to its end, one that waits for
-somebody is ended.
+At any time (`run`): the games run by themselves, and each line may step in. One thread runs the
+games, one reads the lines, and one carries out what has to wait for its turn, so that a STOP waits
+for nothing. At the end of the lines nobody is there any more: a game that goes on is played to its
+end, one that waits for somebody is ended.
+
+By turns (`run_by_turns`): a line is read only where Tangy waits for somebody, so that a script
+answers what is asked, however fast the game is.
 """
 
 from __future__ import annotations
@@ -11,18 +15,33 @@ import queue
 import re
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import MEANINGS, nearest_command, read_command
-from tangy_tui.app.game_commands import Confirm, EndGame, Pause, StaffNote, StopRobot
+from tangy_tui.app.command_grammar import nearest_command, read_command
+from tangy_tui.app.game_commands import (
+    AT_ONCE,
+    CallExpert,
+    Confirm,
+    EndGame,
+    GameCommand,
+    GoOn,
+    Pause,
+    StaffNote,
+    StopRobot,
+)
 from tangy_tui.app.game_controller import GameController, Told
-from tangy_tui.console.faults import HALTED, advice_lines, list_lines
-from tangy_tui.console.games import belief_lines, game_lines, why_lines
+from tangy_tui.app.robot_controls import ENDED
+from tangy_tui.app.scripted_staff import go_on_by_script
+from tangy_tui.console.faults import HALTED, expert_line
+from tangy_tui.console.games import belief_lines, game_lines
+from tangy_tui.console.inquiries import ANSWER_IN_WORDS, Inquiries
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.learning.verification import (
+    ANSWER_HELP,
     ANSWERS,
     Asked,
     NotUnderstood,
@@ -32,16 +51,17 @@ from tangy_tui.learning.verification import (
     Reply,
     Say,
     Verified,
-    answer_help,
 )
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.control import noted_words, proposal_words
-from tangy_tui.text.situations import Name, state_words, verification_lines
+from tangy_tui.text.situations import Name, verification_lines
 
 LOOK_SECONDS = 0.1  # between two looks at the devices, and for the next line
+WORKS_SECONDS = 5.0  # for what was still to be done when the last game ended
 LONGEST_WAIT = 600.0  # s that a script may wait
-HELP = "You can type, at any time:"
+ACCEPTABLE = "If all is well, type: all right. What should I do? Type: what."
 NOBODY = "Nobody is there any more, so the game ends here."
+NOT_BEGUN = "No other game is begun."
 NO_MORE = "There are no more lines: the game goes on by itself."
 _WAIT = re.compile(
     r"wait (?:(\d{1,3}(?:\.\d{1,2})?)(?: ?s)?|until (asked|halted|called|over|paused))"
@@ -81,23 +101,28 @@ class StaffLines:
         self._game = controller.supervision
         self._name, self._find_person = name, find_person
         self._read, self._teacher, self._speed = read, teacher, speed
-        self._also, self._demonstrations = also, demonstrations
+        self._also = also
+        self._inquiries = Inquiries(controller, name, demonstrations)
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._writing = threading.Lock()
         self._write_line = write
         self._prompted = ""
         self._calls = 0
-        self._alone = self._stopped = self._ended = False
+        self._alone = self._stopped = self._ended = self._by_turns = False
+        self._leaves = False  # staff ended it while no game could begin
+        self._begun = threading.Event()
+        self._tasks: queue.Queue[Callable[[], Sequence[Told]] | None] = queue.Queue()
         self._title = frozenset(self._game.world.activity.title.casefold().split())
 
     def run(self, games: int) -> bool:
         """Play games; return whether all came to their end, or to that which staff set."""
         threading.Thread(target=self._read_all, daemon=True).start()
+        working = threading.Thread(target=self._work_off, daemon=True)
+        working.start()
         for _ in range(games):
-            if self._game.halted is not None:
-                self._write(f"No other game is begun: nobody cleared {self._game.halted.name!r}.")
+            if self._left_uncleared():
                 break
-            self._tell(self._controller.begin())
+            self._begun.clear()
             playing = threading.Thread(target=self._play, daemon=True)
             playing.start()
             try:
@@ -106,6 +131,45 @@ class StaffLines:
             except BaseException:  # the program was told to end
                 self._controller.abandon()
                 raise
+        self._tasks.put(None)
+        working.join(WORKS_SECONDS)
+        return self._end()
+
+    def run_by_turns(self, games: int, *, scripted: bool = False, expert: bool = False) -> bool:
+        """Play games, and read a line only where Tangy waits; return as `run` does.
+
+        Args:
+            games: how many.
+            scripted: a scripted teacher answers, and no line is read.
+            expert: scripted staff clear what halts Tangy; otherwise the lines do, or the game ends.
+        """
+        controller = self._controller
+        self._by_turns = True
+        for _ in range(games):
+            if self._left_uncleared():
+                break
+            self._tell(controller.begin())
+            while not self._game.over:
+                halted = self._game.halted is not None
+                if controller.phase == "running" or (expert if halted else scripted):
+                    self._tell(go_on_by_script(controller, expert=expert))
+                    continue
+                self._prompt()
+                line = None if scripted else self._read()
+                if line is None:
+                    self._tell(controller.give_up() or controller.apply(EndGame()))
+                else:
+                    self._take(line.strip())
+        return self._end()
+
+    def _left_uncleared(self) -> bool:
+        """Say that no other game is begun, where nobody cleared what halts Tangy."""
+        fault = self._game.halted
+        if fault is not None:
+            self._write(f"No other game is begun: nobody cleared {fault.name!r}.")
+        return fault is not None
+
+    def _end(self) -> bool:
         for line in belief_lines(self._game, self._name):
             self._write(line)
         return not self._stopped
@@ -115,6 +179,14 @@ class StaffLines:
     def _play(self) -> None:
         """Play one game to its end, in a thread of its own."""
         controller, game = self._controller, self._game
+        while not (events := controller.begin()):  # staff have stopped it between two games
+            if self._alone or self._leaves:
+                self._write(NOBODY if self._alone else NOT_BEGUN)
+                self._stopped |= self._alone
+                return
+            controller.nudge.wait(LOOK_SECONDS)
+        self._tell(events)
+        self._begun.set()
         while not game.over:
             before = game.seconds
             try:
@@ -124,7 +196,8 @@ class StaffLines:
                 continue
             self._tell(events)
             self._prompt()
-            if self._alone and controller.phase not in ("running", "idle"):
+            busy = self._tasks.unfinished_tasks
+            if self._alone and not busy and controller.phase not in ("running", "idle"):
                 self._write(NOBODY)
                 self._tell(controller.give_up() or controller.apply(EndGame()))
             passed = 0.0 if self._speed is None else (game.seconds - before) / self._speed
@@ -137,6 +210,8 @@ class StaffLines:
         asked = "" if proposal is None else proposal_words(proposal, self._name)
         if not asked and self._controller.phase == "halted":
             asked = HALTED
+        if not asked and self._game.acceptable:
+            asked = ACCEPTABLE
         if asked != self._prompted:
             self._prompted = asked
             if asked:
@@ -147,11 +222,12 @@ class StaffLines:
         events: list[Event] = []
         for one in told:
             if isinstance(one, StaffNote):
-                self._ended |= one.kind == "ended" and not self._alone
                 self._write(noted_words(one, self._name))
             elif isinstance(one, Asked | Offered | NotUnderstood | Refused | Rejected):
                 for line in verification_lines(one):
                     self._write(line)
+                if isinstance(one, NotUnderstood):
+                    self._write(ANSWER_IN_WORDS)
             elif not isinstance(one, Verified):
                 events.append(one)
                 broken_off = isinstance(one, GameEnded) and one.stopped is not None
@@ -173,27 +249,75 @@ class StaffLines:
         self._lines.put(None)
 
     def _take_lines(self, playing: threading.Thread) -> None:
+        """Take lines while a game is played. Until it has begun, only a STOP does not wait.
+
+        In a script that waits for something a STOP comes after that, as it is written.
+        """
+        early: deque[str] = deque()
         while playing.is_alive():
+            if early and self._begun.is_set():
+                self._take_or_wait(early.popleft(), playing)
+                continue
+            if self._alone:
+                if self._begun.wait(LOOK_SECONDS):
+                    playing.join()
+                continue
             try:
                 line = self._lines.get(timeout=LOOK_SECONDS)
             except queue.Empty:
                 continue
+            waits = any(_WAIT.fullmatch(one.casefold()) for one in early)
             if line is None:
-                self._alone = True
-                if not self._game.over and self._controller.phase == "running":
+                self._alone = not early
+                if early:  # they come first
+                    self._lines.put(None)
+                elif self._controller.phase in ("idle", "running"):
                     self._write(NO_MORE)
                 self._controller.nudge.set()
-                playing.join()
+            elif self._begun.is_set() or (not waits and self._needs_no_game(line)):
+                self._take_or_wait(line.strip(), playing)
             else:
-                self._take(line.strip(), playing)
+                early.append(line.strip())
 
-    def _take(self, text: str, playing: threading.Thread) -> None:
+    def _needs_no_game(self, line: str) -> bool:
+        """Say whether a line is a STOP, or goes on or ends after one."""
+        try:
+            command = read_command(line, self._find_person, self._title)
+        except TangyError:
+            return False
+        stopped = self._controller.stopped
+        self._leaves |= stopped and isinstance(command, EndGame)
+        after = stopped and isinstance(command, GoOn | EndGame)
+        return after or isinstance(command, StopRobot)
+
+    def _take_or_wait(self, text: str, playing: threading.Thread) -> None:
+        if wait := _WAIT.fullmatch(text.casefold()):
+            self._wait(float(wait[1] or LONGEST_WAIT), wait[2], playing)
+        else:
+            self._take(text)
+
+    def _work_off(self) -> None:
+        """Carry out, one after the other, what has to wait for its turn."""
+        while (task := self._tasks.get()) is not None:
+            self._tell(task())
+            self._tasks.task_done()
+
+    def _carry_out(self, command: GameCommand) -> None:
+        """Carry out a command now, or when it is its turn: the lines are read meanwhile."""
+        if isinstance(command, CallExpert) and self._game.halted is not None:
+            self._write(expert_line(self._game))
+        self._ended |= isinstance(command, EndGame)
+        if self._by_turns or isinstance(command, AT_ONCE):
+            self._tell(self._controller.apply(command))
+            return
+        if isinstance(command, EndGame):
+            self._controller.robot.stop(ENDED)
+        self._tasks.put(lambda: self._controller.apply(command))
+
+    def _take(self, text: str) -> None:
         if not text or text.startswith("#"):
             return
         controller = self._controller
-        if wait := _WAIT.fullmatch(text.casefold()):
-            self._wait(float(wait[1] or LONGEST_WAIT), wait[2], playing)
-            return
         try:
             command = read_command(text, self._find_person, self._title)
         except TangyError as error:
@@ -203,7 +327,7 @@ class StaffLines:
             controller.answers.reply(Reply(yes=False))
         answer = text.casefold()
         if command is not None:
-            self._tell(controller.apply(command))
+            self._carry_out(command)
         elif controller.answers.verifying and (answer in ANSWERS or answer.isdecimal()):
             number = int(answer) if answer.isdecimal() else None
             said = controller.answers.reply(Reply(ANSWERS.get(answer, False), number))
@@ -211,10 +335,12 @@ class StaffLines:
             if isinstance(said, Verified):
                 self._answer(said)
         elif controller.proposal is not None and answer in ANSWERS:
-            self._tell(controller.apply(Confirm(ANSWERS[answer])))
-        elif (told := self._asked(answer)) is not None:
+            self._carry_out(Confirm(ANSWERS[answer]))
+        elif (told := self._inquiries.lines(answer)) is not None:
             for line in told:
                 self._write(line)
+        elif controller.answers.verifying:
+            self._write(ANSWER_HELP)
         elif self._game.question is not None:
             self._tell([controller.answers.say(Say(text))])
         else:
@@ -222,33 +348,19 @@ class StaffLines:
             meant = f" Did you mean: {near}?" if near else ""
             self._write(plain(f"I do not know {text[:60]!r} here.{meant} Type: help."))
 
-    def _answer(self, verified: Verified) -> None:
-        try:
-            self._tell(self._controller.answer(verified))
-        except TangyError as error:
-            self._write(str(error))
+    def _answer(self, said: Verified) -> None:
+        """Have an answer carried out, which takes its time."""
 
-    def _asked(self, word: str) -> list[str] | None:
-        """Return the answer to a word that asks for something, or None."""
-        game, activity = self._game, self._game.world.activity
-        match word:
-            case "help" | "?":
-                if (verifying := self._controller.answers.verifying) is not None:
-                    return answer_help(verifying)
-                meanings = (f"  {key}: {what}" for key, what in MEANINGS)
-                return [HELP, *meanings, "While Tangy asks, type what it should do, in words."]
-            case "where":
-                state = game.world.observe()
-                seen = state_words(activity, state, game.world.scene(), self._name)
-                how = self._controller.phase
-                return [f"Now: {activity.in_words(state.situation)}. {seen} ({how})"]
-            case "why":
-                return why_lines(game, self._demonstrations)
-            case "what" | "what to do":
-                return advice_lines(game) or ["Nothing is wrong."]
-            case "faults":
-                return list_lines(game.faults)
-        return None
+        def answer() -> Sequence[Told]:
+            try:
+                return self._controller.answer(said.behaviour, said.target)
+            except TangyError as error:
+                return [StaffNote("cannot", str(error))]
+
+        if self._by_turns:
+            self._tell(answer())
+        else:
+            self._tasks.put(answer)
 
     def _wait(self, seconds: float, what: str | None, playing: threading.Thread) -> None:
         """Let time pass before the next line, or until something has come about."""

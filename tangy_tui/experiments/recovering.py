@@ -14,6 +14,7 @@ from typing import Any
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments import comparison, published
 from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of
 from tangy_tui.experiments.estimates import spread
@@ -38,7 +39,6 @@ from tangy_tui.experiments.supervised import people_of, supervised
 from tangy_tui.experiments.sweep import Case, Piece, Settings, Sweep, Where
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 GAMES_A_PIECE = 20
@@ -97,10 +97,11 @@ def play_games(game: Supervision, inducer: Inducer, first: int, some: int) -> di
 
 
 def _game(game: Supervision, inducer: Inducer, tally: Tally, number: int) -> dict[str, Any]:
-    events: list[Event] = game.begin()
+    control = scripted_controller(game)
+    events: list[Event] = control.begin()
     while not game.over:
         inducer.held = game.question is not None
-        events += go_on_by_script(game, expert=True)
+        events += go_on_by_script(control, expert=True)
     tally.add(events)
     stopped = next(event.stopped for event in events if isinstance(event, GameEnded))
     matches = match_faults(inducer.induced, game.faults)

@@ -20,6 +20,7 @@ from tangy_profiles.person import Person, load_people
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.store import Store
 from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
@@ -27,7 +28,6 @@ from tangy_tui.learning.library import BEGUN, FINISHED, STEP
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import expected_effects
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 DEMONSTRATIONS = 3
@@ -123,11 +123,12 @@ def play(
     Raises:
         RuntimeError: it goes round in circles.
     """
-    events = game.begin()
+    control = scripted_controller(game)
+    events = control.begin()
     for _ in range(ENDLESS):
         if game.over or until(game):
             return events
-        events += go_on_by_script(game, expert=True)
+        events += go_on_by_script(control, expert=True)
     raise RuntimeError(f"A game did not end within {ENDLESS} moves.")
 
 

@@ -23,17 +23,14 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.fault import (
-    ENDINGS,
     OPEN,
     OVER,
     Diagnosed,
     Fault,
-    FaultEvent,
     Moved,
 )
 from tangy_tui.monitoring.games import uncleared
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.monitoring.telling import move_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
@@ -41,7 +38,6 @@ from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
 from tangy_tui.ui.fault_words import (
     banner_words,
     doing_words,
-    kind_words,
     said_words,
     status_words,
     told_in_banner,
@@ -49,8 +45,6 @@ from tangy_tui.ui.fault_words import (
 from tangy_tui.ui.widgets.command_bar import CommandInput
 from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
-from tangy_tui.ui.widgets.log_view import Kind, LogView
-from tangy_tui.ui.widgets.room_view import RoomView
 from tangy_tui.ui.widgets.status_line import StatusLine
 
 LOOK_SECONDS = 0.025
@@ -301,14 +295,8 @@ class FaultConsole:
         Raises:
             TangyError: it could not be logged, so it was not done.
         """
-        events: list[Event] = []
-        for told in self._control.apply(command):
-            if isinstance(told, StaffNote):
-                if told.kind == "cannot":
-                    raise TangyError(told.about)
-            else:
-                events.append(told)
-        return events
+        told = self._control.carry_out(command)
+        return [one for one in told if not isinstance(one, StaffNote)]
 
     @property
     def takes_time(self) -> bool:
@@ -393,24 +381,3 @@ class FaultConsole:
 def _told_so_far(fault: Fault) -> tuple[str, int]:
     """Return what a fault is told by: each time that Tangy asks somebody it is told anew."""
     return fault.id, sum(bool(move.speech) for move in fault.moves)
-
-
-def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
-    """Write a fault, or what was done about it, into the log; what Tangy says is seen as well."""
-    fault, log = event.fault, screen.query_one(LogView)
-    if isinstance(event, Moved) and event.move.speech:
-        screen.query_one(RoomView).say(event.move.speech)
-    if fault.asks_only:
-        return  # the question that Tangy asks says all of it
-    kind: Kind = "bad" if fault.critical else "warn"
-    if isinstance(event, Diagnosed):
-        log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
-        return
-    move = event.move
-    if move.kind in ENDINGS:
-        kind = "good"
-    elif move.kind not in ("halted", "still there", "escalated", "given up"):
-        kind = "dim"
-    log.write(f"{fault.name}: {move_words(move)}.", kind)
-    if move.speech:
-        log.write(move.speech)

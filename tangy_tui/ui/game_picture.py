@@ -22,7 +22,7 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.situations import counted, lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
-from tangy_tui.ui.fault_console import write_fault
+from tangy_tui.ui.fault_log import write_fault
 from tangy_tui.ui.reasons import Ground, why_asked, why_row, why_step
 from tangy_tui.ui.screens.policy import policy_rows
 from tangy_tui.ui.widgets.log_view import LogView

@@ -27,6 +27,7 @@ from tangy_tui.verbs.playing import (
     PolicyName,
     Teacher,
     list_injections,
+    play_by_turns,
     play_with_staff,
     recall,
     who_answers,
@@ -149,24 +150,7 @@ def play(
                 workspace, supervision, games, as_json, expert=bool(expert), injected=bool(faults)
             )
             return
-        from tangy_tui.console.games import play_by_lines
-        from tangy_tui.console.inputs import line_reader
-        from tangy_tui.learning.library import read_library
-
-        read = None if scripted else line_reader(None)
-        play_by_lines(
-            supervision,
-            games,
-            workspace.name,
-            common.print_line,
-            read,
-            who,
-            demonstrations=lambda: [
-                entry.demonstration
-                for entry in read_library(workspace.store, workspace.activity.name).entries.values()
-            ],
-            expert=bool(expert),
-        )
+        play_by_turns(workspace, supervision, games, who, expert=bool(expert))
 
 
 def demo(
@@ -205,10 +189,10 @@ def _play_headless(
     injected: bool,
 ) -> None:
     from tangy_sim.worlds.faulty_world import FaultyWorld
+    from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
     from tangy_tui.interaction.game_events import GameEnded, Taught
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
-    from tangy_tui.monitoring.scripted_people import go_on_by_script
     from tangy_tui.text.documents import lesson_document
     from tangy_tui.text.situations import counted, lesson_words
     from tangy_tui.ui import reports
@@ -216,12 +200,13 @@ def _play_headless(
     tally = Tally()
     lessons: list[Lesson] = []
     faults: list[dict[str, Any]] = []
+    control = scripted_controller(supervision)
     for _ in reports.progress(range(games), "Playing", quiet=as_json or games < 20):
         with workspace.store.transaction():  # one commit a game: .1 ms a step instead of 4
-            tally.add(supervision.begin())
+            tally.add(control.begin())
             stopped = None
             while not supervision.over:
-                events = go_on_by_script(supervision, expert=expert)
+                events = go_on_by_script(control, expert=expert)
                 tally.add(events)
                 stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), None)
                 lessons += [event.lesson for event in events if isinstance(event, Taught)]

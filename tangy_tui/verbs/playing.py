@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
     from tangy_profiles.demonstration import Demonstration
     from tangy_tui.app.workspace import Workspace
+    from tangy_tui.console.staff import StaffLines
     from tangy_tui.learning.policy import Policy
     from tangy_tui.monitoring.supervision import Supervision
 
@@ -115,6 +116,33 @@ def play_with_staff(
         robot: the world of a robot that is there.
         speed: times life, for simulated games.
     """
+    return _lines(workspace, supervision, teacher, robot=robot, speed=speed).run(games)
+
+
+def play_by_turns(
+    workspace: Workspace, supervision: Supervision, games: int, teacher: str, *, expert: bool
+) -> None:
+    """Play simulated games by lines that are read only where Tangy waits for somebody.
+
+    Args:
+        workspace: of the games.
+        supervision: what runs them.
+        games: how many.
+        teacher: who answers; a scripted one reads no line.
+        expert: scripted staff clear what halts the robot.
+    """
+    scripted = teacher == SCRIPTED
+    _lines(workspace, supervision, teacher).run_by_turns(games, scripted=scripted, expert=expert)
+
+
+def _lines(
+    workspace: Workspace,
+    supervision: Supervision,
+    teacher: str,
+    *,
+    robot: LiveWorld | None = None,
+    speed: float | None = None,
+) -> StaffLines:
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
     from tangy_tui.console.inputs import line_reader
@@ -130,7 +158,7 @@ def play_with_staff(
         return [entry.demonstration for entry in entries]
 
     live = None if robot is None else LiveGames(workspace, supervision)
-    lines = StaffLines(
+    return StaffLines(
         GameController(supervision, teacher, robot=robot, void=void),
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
@@ -141,4 +169,3 @@ def play_with_staff(
         also=(lambda events: ()) if live is None else live.take,
         demonstrations=shown,
     )
-    return lines.run(games)

@@ -141,7 +141,7 @@ def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:
     assert isinstance(asked, Asked) and control.answers.verifying is not None
     yes = control.answers.reply(Reply(yes=True))
     assert isinstance(yes, Verified)
-    done = control.answer(yes)
+    done = control.answer(yes.behaviour, yes.target)
     assert "Acted" in kinds(done) and "DoneOnce" in kinds(done)
     assert control.answers.verifying is None
     control.apply(TakeOver())

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.game_commands import GoOn, StopRobot
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.console.staff import NO_MORE, NOBODY, StaffLines
 from tangy_tui.learning.policies import load_policy
+from tests.support.staff_lines import play_by_turns
 
 
 @pytest.fixture
@@ -104,3 +108,43 @@ def test_a_log_that_cannot_be_written_pauses_the_game(
     monkeypatch.setattr(workspace.store, "append", append)
     written, ended = told(workspace, "wait until paused", "go on", "wait until called", "end")
     assert "The disk is full." in written and ended
+
+
+def test_a_stop_is_read_while_an_answer_is_still_carried_out(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer, seen = GameController.answer, list[bool]()
+
+    def slow(self: GameController, *answered: Any) -> Any:
+        seen.append(stopped.wait(20))
+        return answer(self, *answered)
+
+    stopped, stop = threading.Event(), GameController.apply
+
+    def applied(self: GameController, command: Any) -> Any:
+        if isinstance(command, StopRobot):
+            stopped.set()
+        return stop(self, command)
+
+    monkeypatch.setattr(GameController, "answer", slow)
+    monkeypatch.setattr(GameController, "apply", applied)
+    told(workspace, "take over", "wait until asked", "tell a joke", "y", "stop the robot", "end")
+    assert seen == [True]
+
+
+def test_by_turns_a_line_is_read_only_where_tangy_waits(workspace: Workspace) -> None:
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    game = workspace.supervision(learnt, 4, asks=True, injections=("laser-disconnected@2",))
+    written = play_by_turns(game, "pause", "go on", "seen", "expert", "clear", "end")
+    assert game.steps >= 2 and "Paused: Tangy does nothing more after this. Type: go on." in written
+    assert "The simulated expert has looked at it." in written
+    assert any("The game is over" in line for line in written), "the rest was not asked for"
+
+
+def test_after_a_stop_no_game_begins_before_staff_let_it_go_on(workspace: Workspace) -> None:
+    learnt, _ = load_policy(workspace.store, workspace.activity)
+    control = GameController(workspace.supervision(learnt, 4, asks=True), "Ada")
+    control.apply(StopRobot())
+    assert control.begin() == [] and control.supervision.over
+    control.apply(GoOn())
+    assert control.begin() and not control.supervision.over

@@ -9,12 +9,12 @@ from shutil import copytree
 import pytest
 
 from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 
 Supervise = Callable[..., Supervision]
@@ -28,9 +28,10 @@ def world_of(game: Supervision) -> FaultyWorld:
 
 def play(game: Supervision, *, expert: bool = True) -> list[Event]:
     """Play one game to its end, with scripted people."""
-    events = game.begin()
+    control = scripted_controller(game)
+    events = control.begin()
     while not game.over:
-        events += go_on_by_script(game, expert=expert)
+        events += go_on_by_script(control, expert=expert)
     return events
 
 

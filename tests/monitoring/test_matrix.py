@@ -11,10 +11,10 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.health import Fact
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments import monitoring
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.monitoring.diagnosis import diagnose
-from tangy_tui.monitoring.scripted_people import answer_by_script
 from tests.monitoring.conftest import Supervise, world_of
 
 WITH_MARKS = ("incorrectly marked", "missing numbers")
@@ -55,7 +55,9 @@ def test_what_a_person_did_not_do_after_an_answer_is_no_effect_to_be_expected(
         _ = game.begin() if game.over else game.step()
     world_of(game).inject("never-complies")
     game.game.ask("Something is wrong here.", "Say what to do.", "")
-    acted = next(e for e in answer_by_script(game) if isinstance(e, Acted))
+    acted = next(
+        e for e in go_on_by_script(scripted_controller(game), expert=True) if isinstance(e, Acted)
+    )
     assert acted.outcome.response is not None and not acted.outcome.response.followed
     known = game._effects_of(game.policy).values[acted.action.behaviour.name]
     assert known["what was asked about"] == {"settled"}
@@ -80,7 +82,7 @@ def test_what_follows_an_answer_is_expected_only_where_nothing_was_shown(
     while "request-stuck" not in world.present:
         _ = game.begin() if game.over else game.game.step()  # nobody looks
     game.game.ask("Something is wrong here.", "Say what to do.", "")
-    answer_by_script(game)
+    go_on_by_script(scripted_controller(game), expert=True)
     known = game._effects_of(game.policy).values
     assert not any("open with nothing left" in one.get("request", ()) for one in known.values())
 

@@ -15,7 +15,6 @@ from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.games import play_by_lines
 from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.interaction.game_events import DoneOnce
 from tangy_tui.learning.policy import Policy
@@ -31,6 +30,7 @@ from tests.monitoring.conftest import (
     until,
     world_of,
 )
+from tests.support.staff_lines import play_by_turns
 
 
 def test_no_name_of_a_person_gets_into_the_log(
@@ -237,25 +237,22 @@ def test_what_only_excludes_another_fault_is_not_told_as_its_evidence(supervise:
 
 def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervise) -> None:
     game = supervise("link-lost@3", seed=3)
-    typed, said = iter(["quit"]), list[str]()
-    play_by_lines(game, 2, str, said.append, lambda: next(typed, None), "Ada")
+    said = play_by_turns(game, "quit", games=2)
     assert "No other game is begun: nobody cleared 'Link to the robot lost'." in said
     assert "Game 2 begins." not in said
 
 
 def test_by_lines_who_says_stop_while_it_stands_still_hears_so(supervise: Supervise) -> None:
     game = supervise("link-lost@3", seed=3)
-    typed, said = iter(["stop the bingo", "quit"]), list[str]()
-    play_by_lines(game, 1, str, said.append, lambda: next(typed, None), "Ada")
-    halted = [line for line in said if line.startswith("Tangy stands still. Type: seen")]
-    assert len(halted) == 2
+    said = play_by_turns(game, "stop the bingo", "quit")
+    assert any(line.startswith("Tangy stands still. Type: seen") for line in said)
+    assert any(line.startswith("STOP: Tangy stands still.") for line in said)
     assert not any("I do not know" in line for line in said)
 
 
 def test_an_answer_that_holds_once_is_put_down_to_who_gave_it(supervise: Supervise) -> None:
     game = supervise("no-effect@1", seed=3)
-    typed, said = iter(["call number", "y"]), list[str]()
-    play_by_lines(game, 1, str, said.append, lambda: next(typed, None), "Ada")
+    said = play_by_turns(game, "call number", "y")
     (done,) = [line for line in said if line.startswith("2. ")]
     assert done.endswith("as Ada said")
     assert any(line.startswith("   Done this once.") for line in said)

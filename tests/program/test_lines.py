@@ -19,12 +19,13 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.games import belief_lines, game_lines, play_by_lines
+from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.console.teaching import TeachingLines, command_line
 from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
+from tests.support.staff_lines import play_by_turns
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]
 Tangy = Callable[..., CompletedProcess[str]]
@@ -273,8 +274,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
         workspace.activity, cover("bingo", 1, 4), settings=ForestSettings(trees=5)
     )
     supervision = workspace.supervision(policy, 3)
-    said: list[str] = []
-    play_by_lines(supervision, 3, workspace.name, said.append)
+    said = play_by_turns(supervision, games=3, name=workspace.name, scripted=True)
     assert said[0] == "Game 1 begins."
     assert said[1] == "1. start · nobody asks -> greeting, 100% of the votes"
     assert sum(line.startswith("The game is over after ") for line in said) == 3
@@ -307,8 +307,7 @@ def test_what_counts_as_no_is_said_to(workspace: Workspace, cover: Cover) -> Non
 def test_a_stopped_game_says_why(workspace: Workspace, cover: Cover) -> None:
     shown = [demonstration.without_last() for demonstration in cover("bingo", 1, 4)]
     policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
-    said: list[str] = []
-    play_by_lines(workspace.supervision(policy, 3), 1, workspace.name, said.append)
+    said = play_by_turns(workspace.supervision(policy, 3), scripted=True)
     stopped = next(line for line in said if line.startswith("The game stopped after "))
     assert "Nobody has shown Tangy what to do here yet: end · somebody asks." in stopped
 
@@ -323,16 +322,12 @@ def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
     present = teaching.demonstration
     shown = [replace(present, steps=present.steps[1:])]
     policy = learn_policy(workspace.activity, shown, settings=ForestSettings(trees=5))
-    typed = iter(lines)
-    said: list[str] = []
-    play_by_lines(
+    said = play_by_turns(
         workspace.supervision(policy, 3, asks=True),
-        1,
-        workspace.name,
-        said.append,
-        lambda: next(typed, None),
-        "Cleo",
-        (lambda: shown) if knows else None,
+        *lines,
+        name=workspace.name,
+        teacher="Cleo",
+        demonstrations=(lambda: shown) if knows else None,
     )
     assert said[1].startswith("Tangy asks. Nobody has shown Tangy what to do here yet: start")
     stopped = next(n for n, line in enumerate(said) if line.startswith("The game stopped after"))
@@ -342,7 +337,7 @@ def asked(workspace: Workspace, *lines: str, knows: bool = True) -> list[str]:
 def test_while_tangy_asks_a_typed_stop_stops_and_nothing_asked_is_done(
     workspace: Workspace,
 ) -> None:
-    stands = "STOP: Tangy stands still until you say what it should do."
+    stands = "STOP: Tangy stands still. Type: go on."
     assert asked(workspace, "stop the robot") == [stands]
     *_, said, last = asked(workspace, "greet everyone", "stop the bingo", "y")
     assert (said, last) == (stands, "There is no question open: give a command.")
@@ -353,7 +348,10 @@ def test_while_tangy_asks_it_says_why_and_what_it_sees(workspace: Workspace) -> 
     assert why == "Situation: start · nobody asks."
     assert "Nobody has shown Tangy what to do here: it does not act, it asks." in others
     assert "Votes of the trees: call number 100%." in others
-    assert others[-1] == "Now: start · nobody asks. Tangy is at the front. Nobody asks for help."
+    assert (
+        others[-1]
+        == "Now: start · nobody asks. Tangy is at the front. Nobody asks for help. (asking)"
+    )
 
 
 def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace) -> None:
@@ -364,20 +362,19 @@ def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace
 
 
 def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> None:
-    answer = "Answer with a behaviour in words, or type one of: where, why, help, quit."
+    answer = "Answer with a behaviour in words, or type: where, why, help, end."
     said = asked(workspace, "help")
     assert said[0] == answer
     for behaviour in workspace.activity.behaviours.values():
         assert f"  {behaviour.question}: say {behaviour.phrases[0]!r}" in said
-    assert [line.partition(":")[0] for line in said[-3:]] == ["  where", "  why", "  quit"]
+    assert "  where, why: says what Tangy sees, and why it does the next thing" in said
     assert asked(workspace, "qwertz")[-1] == answer
     assert asked(workspace, "yes") == ["There is no question open: give a command."]
 
 
-@pytest.mark.parametrize("word", ["undo", "redo", "again 3"])
+@pytest.mark.parametrize("word", ["undo", "redo"])
 def test_while_tangy_asks_nothing_is_taken_back(workspace: Workspace, word: str) -> None:
-    does = {"again 3": "show again"}.get(word, word)
-    assert asked(workspace, word) == [f"There is nothing to {does} here: answer, or quit."]
+    assert asked(workspace, word) == [f"There is nothing to {word} in a game."]
 
 
 def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: Workspace) -> None:
@@ -387,7 +384,7 @@ def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: 
     assert said[3].startswith("  y: ")
     assert "1. start · nobody asks -> greeting, as Cleo said" in said, "not by votes for another"
     left = asked(workspace, "greet everyone", "quit", "greet everyone", "y")
-    assert len(left) == 1, "after quit nothing is read"
+    assert left[1:] == ["You ended the game. Tangy stands still."], "after quit nothing is read"
 
 
 def test_what_was_said_is_in_the_log(workspace: Workspace) -> None:

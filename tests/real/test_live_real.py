@@ -17,12 +17,12 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.store import Store
 from tangy_sim.worlds.injection import read_injection
 from tangy_tui.app.robot_opening import open_bench
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.monitoring.fault import Diagnosed, read_faults
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tests.support.terminal import TANGY, Terminal
 
@@ -44,8 +44,9 @@ def games(workspace: Workspace, world: BenchedWorld) -> Supervision:
 def play(game: Supervision, steps: int) -> list[Event]:
     told: list[Event] = []
     wanted = game.steps + steps
+    control = scripted_controller(game)
     while game.steps < wanted and not game.over:
-        told += go_on_by_script(game, expert=True)
+        told += go_on_by_script(control, expert=True)
     return told
 
 

@@ -10,6 +10,7 @@ from tangy_profiles.game_world import BENCH
 from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import LOST, Store
 from tangy_profiles.voice import VoicePreference
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import AWAITED, Feedback
 from tangy_tui.interaction.game_worlds import GameWorlds
@@ -21,7 +22,6 @@ from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.monitoring.accepted import read_accepted, take_back
 from tangy_tui.monitoring.drill_sheet import DRILL, AnsweredRound, Sheet
 from tangy_tui.monitoring.fault import ACCEPTED, FAULT
-from tangy_tui.monitoring.scripted_people import go_on_by_script
 from tangy_tui.speech import calibration, recordings
 
 
@@ -73,9 +73,10 @@ def _play(workspace: Workspace) -> None:
     policy, _ = load_policy(workspace.store, workspace.activity)
     for injections in (["voice-dead@3", "base-stuck"], ["never-complies"], ["link-lost@6"]):
         game = workspace.supervision(policy, None, asks=True, injections=injections)
-        game.begin()
+        control = scripted_controller(game)
+        control.begin()
         while not game.over:
-            go_on_by_script(game, expert=True)
+            go_on_by_script(control, expert=True)
             game.note("stopped the robot", "Ada") if game.steps == 5 else None
     fault = workspace.store.last(FAULT)
     step = next(workspace.store.events("demonstration step"))

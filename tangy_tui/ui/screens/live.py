@@ -18,6 +18,7 @@ from textual.screen import Screen
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.state import FRONT
+from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     AUTONOMY,
@@ -30,7 +31,6 @@ from tangy_tui.app.game_commands import (
     TakeBackCall,
     TakeOver,
 )
-from tangy_tui.app.game_controller import Result
 from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors

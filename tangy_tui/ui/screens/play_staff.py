@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Sequence
 from contextlib import suppress
 
+from tangy_tui.app.fault_commands import Result
 from tangy_tui.app.game_commands import (
     Accept,
     Confirm,
@@ -15,7 +16,7 @@ from tangy_tui.app.game_commands import (
     Proposal,
     StaffNote,
 )
-from tangy_tui.app.game_controller import GameController, Result
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
@@ -24,7 +25,7 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
 from tangy_tui.ui.screens.play_keys import NOT_ACCEPTABLE
 from tangy_tui.ui.screens.play_panels import PlayPanels
-from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, learn_answer, wanted
+from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 
 SEEN_ANYWAY = ("paused", "goes on", "one step", "no game")
 """What the keys' line and the status say."""
@@ -125,7 +126,7 @@ class PlayStaff(PlayPanels):
         self._learning = True
         self._show_status()
         try:
-            return await learn_answer(self, self.control, answer)
+            return await asyncio.to_thread(self.control.answer, answer.behaviour, answer.target)
         finally:
             self._learning = False
 

@@ -12,9 +12,7 @@ from typing import Any, TypeVar
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
-from textual.screen import Screen
 from textual.widgets import Static
-from textual.worker import WorkerFailed
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.answers import Spoken
@@ -28,11 +26,10 @@ from tangy_tui.app.game_commands import (
     StaffNote,
     StopRobot,
 )
-from tangy_tui.app.game_controller import GameController, Result
+from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -43,15 +40,16 @@ from tangy_tui.learning.verification import (
     Say,
     Verified,
 )
-from tangy_tui.text.situations import ALL_RIGHT, counted, state_words
+from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
 from tangy_tui.ui.hearing import hearing_of
 from tangy_tui.ui.messages import Stop
-from tangy_tui.ui.reasons import why_of
+from tangy_tui.ui.screens.question_text import question_words, seen_words
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
+from tangy_tui.ui.widgets.answer_bar import AnswerBar
 from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 
@@ -74,50 +72,9 @@ class Instead(Enum):
     WITHDRAWN = "withdrawn"
 
 
-class AnswerBar(CommandBar):
-    """The line to answer in, whose resting text goes with the game."""
-
-    def rest(self, text: str) -> None:
-        """Say other keys while the line does not have them."""
-        self._texts = (self._texts[0], text)
-        if not self._input.has_focus:
-            self.on_descendant_blur()
-
-
-def answers_words(why: Why) -> str:
-    """Say which answers demonstrations give in a situation, how often and by whom."""
-    given: dict[str, list[str]] = {}
-    for shown in (*why.rests_on, *why.against):
-        given.setdefault(shown.step.behaviour, []).append(shown.teacher)
-    parts = [
-        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
-        for behaviour, teachers in given.items()
-    ]
-    return f"Shown so far: {', '.join(parts)}." if parts else ""
-
-
 def wanted(question: Unsure) -> bool:
     """Say whether staff wanted to be asked: then Tangy can go on by itself after all."""
     return question.fault == TAKEN_OVER
-
-
-async def learn_answer(
-    screen: Screen[Any], control: GameController, answer: Verified
-) -> list[Result]:
-    """Act on an answer and learn from it, beside the screen: the forest takes a moment.
-
-    Raises:
-        TangyError: it could not be kept, and nothing of it is.
-    """
-
-    def learn() -> list[Result]:
-        return control.answer(answer)
-
-    worker = screen.run_worker(learn, thread=True, exit_on_error=False, group="learning")
-    try:
-        return await worker.wait()
-    except WorkerFailed as failed:
-        raise failed.error or failed from None
 
 
 class AskingPanel(Vertical):
@@ -178,8 +135,16 @@ class AskingPanel(Vertical):
     def compose(self) -> ComposeResult:
         """Lay out the question, what Tangy sees, and the line."""
         other = f"{ALL_RIGHT[0]}, " if self._acceptable else ""
-        yield Static(self._asks(), classes="asks", markup=False)
-        yield Static(self._sees(), classes="now", markup=False)
+        yield Static(
+            question_words(self._workspace, self._supervision, self._question),
+            classes="asks",
+            markup=False,
+        )
+        yield Static(
+            seen_words(self._workspace, self._supervision, self._question),
+            classes="now",
+            markup=False,
+        )
         yield Static(self._before, classes="said", markup=False)
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
@@ -420,19 +385,3 @@ class AskingPanel(Vertical):
     def _ready(self) -> None:
         self.query_one(CommandBar).ready()
         self._be_open(True)
-
-    def _asks(self) -> str:
-        """Write why Tangy asks; where answers were given, which."""
-        words = self._question.reason
-        if self._acceptable:
-            return clean(f"{words} If all is well, type: {ALL_RIGHT[0]}. If not, what to do?")
-        if not self._question.fault and self._question.decision.seen:
-            situation = self._question.state.situation
-            why = why_of(self._workspace, self._supervision.policy, situation)
-            words = f"{words} {answers_words(why)}"
-        return clean(f"{words} What should Tangy do?")
-
-    def _sees(self) -> str:
-        world, workspace = self._supervision.world, self._workspace
-        words = state_words(workspace.activity, self._question.state, world.scene(), workspace.name)
-        return clean(f"Now: {words}")

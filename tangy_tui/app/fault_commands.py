@@ -1,0 +1,31 @@
+"""What staff do about faults in a game: say that they saw one, call the expert, clear, accept."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from tangy_tui.app.game_commands import Accept, Acknowledge, CallExpert, Clear, StaffNote
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+Result: TypeAlias = Event | StaffNote
+"""What comes of a command."""
+FaultCommand: TypeAlias = Acknowledge | CallExpert | Clear | Accept
+
+
+def attend(game: Supervision, command: FaultCommand, by: str) -> list[Result]:
+    """Carry out what staff do about a fault, and return what came of it."""
+    fault = game.halted
+    match command:
+        case Accept():
+            return list(game.accept(by)) or [StaffNote("not acceptable")]
+        case Acknowledge(wanted) if wanted:
+            seen = next((one for one in game.faults if one.id == wanted), None)
+            return list(game.acknowledge(by, seen))
+        case _ if fault is None:
+            return [StaffNote("not halted")]
+        case Acknowledge():
+            return list(game.acknowledge(by)) or [StaffNote("seen before")]
+        case CallExpert():
+            return list(game.call_expert(by))
+        case Clear():
+            return list(game.clear(by)) if fault.acknowledged else [StaffNote("not seen yet")]

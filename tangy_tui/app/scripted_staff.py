@@ -1,0 +1,62 @@
+"""Scripted people in a game: a teacher who answers, and staff who clear what an expert mended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_tui.app.fault_commands import Result
+from tangy_tui.app.game_commands import CallExpert, Clear, StaffNote
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.learning.scripted_teacher import SCRIPTED
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+TIMES_CALLED = 3
+"""An expert who comes so often and cannot mend it has the game given up."""
+
+
+def scripted_controller(game: Supervision) -> GameController:
+    """Make a controller of simulated games with nobody but scripted people."""
+    return GameController(game, SCRIPTED)
+
+
+def go_on_by_script(control: GameController, *, expert: bool) -> list[Event]:
+    """Do the next thing, with scripted people where somebody is needed.
+
+    Args:
+        control: of the game.
+        expert: staff are there; without them a robot that halts ends the game.
+    """
+    told: Sequence[Result]
+    game = control.supervision
+    if game.halted is not None:
+        told = _clear(control) if expert else control.give_up()
+    elif game.question is not None:
+        told = _answer(control)
+    else:
+        told = control.next()
+    return [one for one in told if not isinstance(one, StaffNote)]
+
+
+def _answer(control: GameController) -> list[Result]:
+    """Answer the open question; give the game up where the activity expects nothing."""
+    game = control.supervision
+    question, activity = game.question, game.world.activity
+    if question is None:
+        return []
+    expected = activity.expected.get(question.state.situation)
+    if expected is None:
+        return list(control.give_up())
+    behaviour = activity.behaviour(expected)
+    target = question.state.attended if behaviour.attends else None
+    return control.answer(behaviour, target)
+
+
+def _clear(control: GameController) -> list[Result]:
+    """Acknowledge what halts the robot, call the expert, and clear it, or give the game up."""
+    game, told = control.supervision, list[Result]()
+    fault = game.halted
+    for _ in range(TIMES_CALLED):
+        told += control.carry_out(CallExpert()) + control.carry_out(Clear())
+        if game.halted is not fault:
+            return told
+    return [*told, *control.give_up()]

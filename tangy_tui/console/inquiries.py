@@ -1,0 +1,61 @@
+"""What staff can ask in a game by lines: for help, what Tangy sees, why, and what is wrong."""
+
+from __future__ import annotations
+
+from tangy_tui.app.command_grammar import MEANINGS
+from tangy_tui.app.game_controller import GameController
+from tangy_tui.console.faults import advice_lines, list_lines
+from tangy_tui.console.games import Demonstrations, why_lines
+from tangy_tui.learning.verification import NO_QUESTION, answer_help
+from tangy_tui.text.situations import Name, state_words
+
+HELP = "You can type, at any time:"
+ANSWER_IN_WORDS = "Answer with a behaviour in words, or type: where, why, help, end."
+
+
+class Inquiries:
+    """Answers words that ask about the game."""
+
+    def __init__(
+        self, controller: GameController, name: Name, demonstrations: Demonstrations | None
+    ) -> None:
+        """Answer about the games of a controller; demonstrations are the grounds of a question."""
+        self._controller = controller
+        self._game = controller.supervision
+        self._name, self._demonstrations = name, demonstrations
+
+    def lines(self, word: str) -> list[str] | None:
+        """Return the answer to a word that asks for something; None: it does not."""
+        match word:
+            case "help" | "?":
+                return self._help()
+            case "where":
+                return [self._where()]
+            case "why":
+                return why_lines(self._game, self._demonstrations)
+            case "what" | "what to do" | "what should i do" | "what should i do?":
+                return advice_lines(self._game) or ["Nothing is wrong."]
+            case "faults":
+                return list_lines(self._game.faults)
+            case "y" | "yes" | "n" | "no":
+                return [NO_QUESTION]
+            case "undo" | "redo":
+                return [f"There is nothing to {word} in a game."]
+        return None
+
+    def _help(self) -> list[str]:
+        if (verifying := self._controller.answers.verifying) is not None:
+            return answer_help(verifying)
+        meanings = [f"  {key}: {what}" for key, what in MEANINGS]
+        if self._game.question is None:
+            return [HELP, *meanings, "While Tangy asks, type what it should do, in words."]
+        known = self._game.world.activity.behaviours.values()
+        spoken = [f"  {one.question}: say {one.phrases[0]!r}" for one in known]
+        return [ANSWER_IN_WORDS, *spoken, HELP, *meanings]
+
+    def _where(self) -> str:
+        world = self._game.world
+        state = world.observe()
+        seen = state_words(world.activity, state, world.scene(), self._name)
+        now = world.activity.in_words(state.situation)
+        return f"Now: {now}. {seen} ({self._controller.phase})"

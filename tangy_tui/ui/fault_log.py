@@ -1,0 +1,34 @@
+"""Faults in the log of a screen that shows games."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual.screen import Screen
+
+from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, FaultEvent, Moved
+from tangy_tui.monitoring.telling import move_words
+from tangy_tui.ui.fault_words import kind_words
+from tangy_tui.ui.widgets.log_view import Kind, LogView
+from tangy_tui.ui.widgets.room_view import RoomView
+
+
+def write_fault(screen: Screen[Any], event: FaultEvent) -> None:
+    """Write a fault, or what was done about it, into the log; what Tangy says is seen as well."""
+    fault, log = event.fault, screen.query_one(LogView)
+    if isinstance(event, Moved) and event.move.speech:
+        screen.query_one(RoomView).say(event.move.speech)
+    if fault.asks_only:
+        return  # the question that Tangy asks says all of it
+    kind: Kind = "bad" if fault.critical else "warn"
+    if isinstance(event, Diagnosed):
+        log.write(f"Fault, {kind_words(fault)}: {fault.name}. {fault.console}", kind)
+        return
+    move = event.move
+    if move.kind in ENDINGS:
+        kind = "good"
+    elif move.kind not in ("halted", "still there", "escalated", "given up"):
+        kind = "dim"
+    log.write(f"{fault.name}: {move_words(move)}.", kind)
+    if move.speech:
+        log.write(move.speech)
