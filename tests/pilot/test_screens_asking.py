@@ -325,9 +325,10 @@ async def test_an_answered_step_says_who_answered(
 ) -> None:
     async with run(app=playing(workspace, gappy), size=LARGE) as pilot:
         screen = await asked(pilot)
+        count = screen.query_one(Transcript).count
         await pilot.press("escape", "p", "colon")
         await answer(pilot)
-        while screen._supervision.question is not None:
+        while screen.query_one(Transcript).count == count:
             await pilot.pause(0.02)
         await pilot.pause()
         await pilot.press("w")
@@ -354,6 +355,7 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
             await answer(pilot)
             while not isinstance(pilot.app.screen, MessageDialog):
                 await pilot.pause(0.02)
+        await pilot.pause()
         assert "the disk is full" in screen_text(pilot.app)
         assert screen._supervision.policy is policy
         await pilot.press("enter")
