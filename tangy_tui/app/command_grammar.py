@@ -1,14 +1,17 @@
-"""What staff may type or say in a game, and which command it is: one grammar for every door.
+"""What may be typed while teaching, in a game and in a drill: one grammar, on screens and by lines.
 
 Words that are no command are left to whoever asks (`None`): while Tangy asks they are the answer,
-which the phrasebook understands. A sentence whose aim is to stop is a STOP, whatever else it says.
+and while teaching a behaviour in words, which the phrasebook understands. A sentence whose aim is
+to stop is a STOP, whatever else it says.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection
+from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import Literal, TypeAlias
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
@@ -36,6 +39,40 @@ from tangy_tui.app.game_commands import (
     VoidResponse,
 )
 from tangy_tui.language.stop_sentence import stops
+from tangy_tui.learning.teaching_events import Next, Redo, Undo
+from tangy_tui.learning.verification import Reply, StopCommand
+
+Inquiry = Literal["help", "where", "why", "shown", "what to do", "faults", "phrases", "voice"]
+"""What can be asked of the program; it changes nothing."""
+
+INQUIRIES: dict[str, Inquiry] = {
+    **dict.fromkeys(("help", "?"), "help"),
+    "where": "where",
+    "why": "why",
+    **dict.fromkeys(("what", "what to do", "what should i do", "what should i do?"), "what to do"),
+    "faults": "faults",
+    "phrases": "phrases",
+    "voice": "voice",
+}
+
+ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
+LONGEST_NUMBER = 4  # digits
+LEAVING = ("quit", "exit", "leave")
+
+
+@dataclass(frozen=True, slots=True)
+class Leave:
+    """Leave; what was confirmed is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class AgainFrom:
+    """Show the present game again from a step on, counted from 1; None: it was not said which."""
+
+    step: int | None
+
+
+TeachingWord: TypeAlias = Undo | Redo | Next | AgainFrom | Leave | StopCommand | Inquiry
 
 FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("pause", "wait a moment"), Pause()),
@@ -49,7 +86,7 @@ FIXED: dict[str, GameCommand] = {
     **dict.fromkeys(("expert", "call expert", "call the expert"), CallExpert()),
     **dict.fromkeys(("clear", "cleared", "all is well"), Clear()),
     **dict.fromkeys(("all right", "that is all right"), Accept()),
-    **dict.fromkeys(("end", "quit", "exit", "leave"), EndGame()),
+    **dict.fromkeys(("end", *LEAVING), EndGame()),
 }
 """Words that are a command as they stand; the first of a command is the one that help shows."""
 
@@ -74,6 +111,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 )
 """What help lists."""
 
+_AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
 _DIAL = re.compile(r"autonomy (\w+)")
@@ -123,3 +161,38 @@ def nearest_command(text: str) -> str:
     """Return the command that words come nearest to, "" if none is near."""
     close = get_close_matches(text.casefold().strip(), [*FIXED, "stop", "autonomy", "drive"], 1)
     return close[0] if close else ""
+
+
+def read_teaching(text: str, game: Collection[str] = ()) -> TeachingWord | None:
+    """Return what words mean while teaching, where they are no behaviour (None)."""
+    words = " ".join(text.split()).casefold()
+    if words == "stop" or stops(text, game):
+        return StopCommand(text)
+    if again := _AGAIN.fullmatch(words):
+        number = again[1]
+        return AgainFrom(int(number) if number and number.isdecimal() else None)
+    match words:
+        case "undo":
+            return Undo()
+        case "redo":
+            return Redo()
+        case "next":
+            return Next()
+        case "seen":
+            return "shown"
+    return Leave() if words in LEAVING else read_inquiry(text)
+
+
+def read_inquiry(text: str) -> Inquiry | None:
+    """Return what words ask of the program, None if they ask for nothing."""
+    return INQUIRIES.get(" ".join(text.split()).casefold())
+
+
+def read_answer(text: str) -> Reply | None:
+    """Return the answer to a verification that words are: yes, no, or the number of another."""
+    words = text.strip().casefold()
+    if words in ANSWERS:
+        return Reply(ANSWERS[words])
+    if words.isdecimal() and words.isascii() and len(words) <= LONGEST_NUMBER:
+        return Reply(yes=False, alternative=int(words))
+    return None

@@ -8,8 +8,9 @@ from types import MappingProxyType
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.reading import nearest, plain
-from tangy_tui.language.stop_sentence import stops
+from tangy_tui.app.command_grammar import ANSWERS, Leave, read_teaching
 from tangy_tui.language.words import words_of
+from tangy_tui.learning.verification import StopCommand
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
 from tangy_tui.monitoring.drill_sheet import AnsweredRound, Sheet
@@ -267,15 +268,16 @@ def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: 
                 write(f"  {choice.key}  {choice.words}")
         line = read()
         word = "quit" if line is None else line.strip().lower()
-        if word in ("quit", "exit", "leave"):
-            return False
         if not word or word.startswith("#"):
             continue
-        if stops(word, words_of(drill.tabletop.activity.title)):
+        command = read_teaching(word, words_of(drill.tabletop.activity.title))
+        if isinstance(command, Leave):
+            return False
+        if isinstance(command, StopCommand):
             write(NOTHING_MOVES)
             continue
-        if question.kind == "clear":
-            word = {"yes": "y", "no": "n"}.get(word, word)
+        if question.kind == "clear" and word in ANSWERS:
+            word = "y" if ANSWERS[word] else "n"
         if word not in question.keys:
             if strict:
                 drill.leave()

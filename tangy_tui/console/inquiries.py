@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tangy_tui.app.command_grammar import MEANINGS
+from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.console.faults import advice_lines, list_lines
 from tangy_tui.console.games import Demonstrations, why_lines
@@ -26,21 +26,21 @@ class Inquiries:
 
     def lines(self, word: str) -> list[str] | None:
         """Return the answer to a word that asks for something; None: it does not."""
-        match word:
-            case "help" | "?":
+        match read_inquiry(word):
+            case "help" | "phrases":
                 return self._help()
             case "where":
                 return [self._where()]
             case "why":
                 return why_lines(self._game, self._demonstrations)
-            case "what" | "what to do" | "what should i do" | "what should i do?":
+            case "what to do":
                 return advice_lines(self._game) or ["Nothing is wrong."]
             case "faults":
                 return list_lines(self._game.faults)
-            case "y" | "yes" | "n" | "no":
-                return [NO_QUESTION]
-            case "undo" | "redo":
-                return [f"There is nothing to {word} in a game."]
+        if word in ANSWERS:
+            return [NO_QUESTION]
+        if word in ("undo", "redo"):
+            return [f"There is nothing to {word} in a game."]
         return None
 
     def _help(self) -> list[str]:

@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import nearest_command, read_command
+from tangy_tui.app.command_grammar import ANSWERS, nearest_command, read_answer, read_command
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     CallExpert,
@@ -42,7 +42,6 @@ from tangy_tui.console.inquiries import ANSWER_IN_WORDS, Inquiries
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.learning.verification import (
     ANSWER_HELP,
-    ANSWERS,
     Asked,
     NotUnderstood,
     Offered,
@@ -328,9 +327,8 @@ class StaffLines:
         answer = text.casefold()
         if command is not None:
             self._carry_out(command)
-        elif controller.answers.verifying and (answer in ANSWERS or answer.isdecimal()):
-            number = int(answer) if answer.isdecimal() else None
-            said = controller.answers.reply(Reply(ANSWERS.get(answer, False), number))
+        elif controller.answers.verifying and (reply := read_answer(text)) is not None:
+            said = controller.answers.reply(reply)
             self._tell([said])
             if isinstance(said, Verified):
                 self._answer(said)

@@ -6,7 +6,6 @@ It drives the same sessions as the screens. One thing is said per line, and noth
 from __future__ import annotations
 
 import asyncio
-import re
 import shlex
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -15,24 +14,20 @@ from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.language.stop_sentence import stops
+from tangy_tui.app.command_grammar import AgainFrom, Inquiry, Leave, read_answer, read_teaching
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
     Executed,
     Finished,
-    Next,
-    Redo,
     StepUndone,
     TeacherCommand,
     TeachingEvent,
-    Undo,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import (
     ANSWER_HELP,
-    ANSWERS,
     NO_QUESTION,
     WHICH,
     Asked,
@@ -67,9 +62,6 @@ MEANINGS = (
     ("quit", "leave; what you confirmed is kept"),
 )
 STOPPED = "STOP: the simulated robot stands still until the next command is carried out."
-LONGEST_NUMBER = 5  # characters
-_AGAIN = re.compile(r"again (?:from )?(?:step )?(\d{1,4})")
-_AGAIN_FROM_WHERE = re.compile(r"again(?: from)?(?: step)?(?: n)?")
 
 
 def command_line(verb: str, **options: str | None) -> str:
@@ -142,14 +134,14 @@ class TeachingLines:
         self._where()
         while (line := await self._next_line()) is not None:
             command = self._command(line) if isinstance(line, str) else line
-            if command == "quit":
+            if isinstance(command, Leave):
                 break
             asked = teaching.question
             if isinstance(command, StopCommand):
                 if asked is not None:
                     self._tell(teaching.apply(Reply(yes=False)))
                 write(STOPPED)
-            elif not isinstance(command, str):
+            elif command is not None:
                 self._tell(teaching.apply(command))
             if self._ears is not None:
                 if asked is not None and teaching.question is not asked:  # it answers no other
@@ -225,56 +217,48 @@ class TeachingLines:
     def _answers(self) -> bool:
         return self._ears is not None and self._ears.answers
 
-    def _command(self, line: str) -> TeacherCommand | StopCommand | str:
+    def _command(self, line: str) -> TeacherCommand | StopCommand | Leave | None:
         text = line.strip()
-        lower = text.lower()
         if not text or text.startswith("#"):
-            return "nothing"
-        if stops(text, self._teaching.phrasebook.game):
-            return StopCommand(text)
-        if self._teaching.question is not None and lower != "quit":
-            if lower in ANSWERS:
-                return Reply(yes=ANSWERS[lower])
-            if lower.isdecimal() and len(lower) < LONGEST_NUMBER:
-                return Reply(yes=False, alternative=int(lower))
-            asks_help = lower in ("help", "?")
-            question = self._teaching.question
-            short = WHICH if isinstance(question, Offered) else ANSWER_HELP
-            self._write_all(answer_help(question) if asks_help else [short])
-            return "nothing"
-        match lower:
-            case "quit" | "exit" | "leave":
-                return "quit"
-            case "undo":
-                return Undo()
-            case "redo":
-                return Redo()
-            case _ if (again := _AGAIN.fullmatch(lower)) is not None:
-                return Again(self._teaching.demonstration.id, int(again[1]) - 1)
-            case _ if _AGAIN_FROM_WHERE.fullmatch(lower):
-                self._write("Say which step: again 5 goes back before step 5.")
-            case _ if lower in ANSWERS:
-                self._write(NO_QUESTION)
-            case "seen":
+            return None
+        word = read_teaching(text, self._teaching.phrasebook.game)
+        answer, question = read_answer(text), self._teaching.question
+        if question is not None and not isinstance(word, StopCommand | Leave):
+            if answer is None:
+                short = WHICH if isinstance(question, Offered) else ANSWER_HELP
+                self._write_all(answer_help(question) if word == "help" else [short])
+            return answer
+        if word is None and (answer is None or text.isdecimal()):
+            return Say(text)
+        if word is None:
+            self._write(NO_QUESTION)
+        elif isinstance(word, str):
+            self._inquire(word)
+        elif isinstance(word, AgainFrom):
+            if word.step is not None:
+                return Again(self._teaching.demonstration.id, word.step - 1)
+            self._write("Say which step: again 5 goes back before step 5.")
+        else:
+            return word
+        return None
+
+    def _inquire(self, what: Inquiry) -> None:
+        match what:
+            case "shown":
                 count, *missing = self._seen() or [""]
                 self._write(count)
                 if missing:
                     self._write_all([NOT_SHOWN, *missing])
             case "why":
                 self._write_all(self._why())
-            case "next":
-                return Next()
             case "where":
                 self._where()
-            case "help" | "?":
+            case _:
                 self._write(HELP)
                 for behaviour in self._teaching.activity.behaviours.values():
                     self._write(f"  {behaviour.question}: say {behaviour.phrases[0]!r}")
                 for word, meaning in MEANINGS:
                     self._write(f"  {word}: {meaning}")
-            case _:
-                return Say(text)
-        return "nothing"
 
     def _write_all(self, lines: Iterable[str]) -> None:
         for line in lines:

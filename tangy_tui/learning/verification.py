@@ -15,8 +15,6 @@ from tangy_profiles.state import ActivityState
 from tangy_tui.language.commands import MOST_ALTERNATIVES, Command, Phrasebook
 from tangy_tui.language.stop_sentence import stops
 
-ANSWERS = {"y": True, "yes": True, "n": False, "no": False}
-"""What is typed for an answer where lines are read."""
 ANSWER_HELP = "Please answer Y to execute it, or N to give a new command."
 LEAVE = "leave without executing it"
 WHICH = "Please say which: type its number, or N for a new command."

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
-from tangy_tui.app.command_grammar import FIXED, MEANINGS, nearest_command, read_command
+from tangy_tui.app.command_grammar import (
+    FIXED,
+    MEANINGS,
+    AgainFrom,
+    Leave,
+    nearest_command,
+    read_answer,
+    read_command,
+    read_inquiry,
+    read_teaching,
+)
 from tangy_tui.app.game_commands import (
     AUTONOMY,
     DIRECTIONS,
@@ -22,6 +34,10 @@ from tangy_tui.app.game_commands import (
     TakeBackCall,
     VoidResponse,
 )
+from tangy_tui.learning.teaching_events import Next, Redo, Undo
+from tangy_tui.learning.verification import Reply, StopCommand
+
+LANTERNS = Path(__file__).parent.parent / "lanterns.toml"
 
 
 def find(wanted: str) -> str:
@@ -96,3 +112,37 @@ def test_any_text_is_a_command_none_or_refused(text: str) -> None:
         read(text)
     except TangyError as error:
         assert str(error).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("typed", "word"),
+    [
+        ("undo", Undo()), ("REDO", Redo()), ("next", Next()), ("quit", Leave()),
+        ("again 7", AgainFrom(7)), ("show again from step 12", AgainFrom(12)),
+        ("again", AgainFrom(None)), ("again n", AgainFrom(None)),
+        ("seen", "shown"), ("why", "why"), ("?", "help"), ("where", "where"),
+        ("stop the robot", StopCommand("stop the robot")),
+        ("next number", None), ("tell a joke", None), ("go to rosa", None),
+    ],
+)  # fmt: skip
+def test_while_teaching_words_are_read_alike_on_screens_and_by_lines(
+    typed: str, word: object
+) -> None:
+    assert read_teaching(typed, {"bingo"}) == word
+
+
+def test_an_answer_is_yes_no_or_a_number() -> None:
+    assert read_answer(" YES ") == Reply(yes=True) and read_answer("n") == Reply(yes=False)
+    assert read_answer("3") == Reply(yes=False, alternative=3)
+    for other in ("", "perhaps", "99999", "-1", "²", "٣"):
+        assert read_answer(other) is None
+
+
+@pytest.mark.parametrize("activity", ["bingo", str(LANTERNS)])
+def test_no_phrase_of_an_activity_is_taken_for_another_command(activity: str) -> None:
+    profile = load_activity(activity)
+    phrases = [phrase for one in profile.behaviours.values() for phrase in one.phrases]
+    title = profile.title.casefold().split()
+    taken = [one for one in phrases if read_teaching(one, title) or read_inquiry(one)]
+    in_games = [one for one in phrases if read_command(one, str, title) is not None]
+    assert (taken, in_games) == ([], [])

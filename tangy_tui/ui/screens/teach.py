@@ -15,8 +15,8 @@ from textual.widgets import Static
 from textual.worker import Worker
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.app.command_grammar import AgainFrom, Leave, read_teaching
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.language.stop_sentence import stops
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -30,7 +30,15 @@ from tangy_tui.learning.teaching_events import (
     Undo,
 )
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected, Say
+from tangy_tui.learning.verification import (
+    Asked,
+    NotUnderstood,
+    Offered,
+    Refused,
+    Rejected,
+    Say,
+    StopCommand,
+)
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
@@ -40,7 +48,7 @@ from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
 from tangy_tui.ui.policy_preview import show_why
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
-from tangy_tui.ui.screens.teach_keys import AGAIN, WATCHING
+from tangy_tui.ui.screens.teach_keys import WATCHING, WHICH_STEP
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
@@ -150,33 +158,32 @@ class TeachScreen(TangyScreen[bool]):
         """Put a typed command to Tangy."""
         event.stop()
         self._listener.by_voice = False
-        match event.text.strip().lower():
-            case "help":
-                self.query_one(CommandBar).ready()
-                self.app.run_worker(self.run_action("app.help"))
-            case words if stops(words, self._teaching.phrasebook.game):
+        word = read_teaching(event.text, self._teaching.phrasebook.game)
+        match word:
+            case None | "where" | "what to do" | "faults":
+                self._apply(Say(event.text))
+            case StopCommand():
                 self.app.run_worker(self.run_action("app.stop"))
-            case "undo":
-                self.action_undo()
-            case "redo":
-                self.action_redo()
+            case Undo() | Redo():
+                self._apply(word)
+            case Next():
+                self.action_next()
+            case Leave():
+                self.close(False)
+            case AgainFrom(step):
+                self.query_one(CommandBar).ready()
+                if step is None:
+                    self._log.write(WHICH_STEP, "warn")
+                else:
+                    self.again(self._teaching.demonstration.id, step - 1)
             case "why":
                 self.action_why()
-            case "seen":
+            case "shown":
                 self.query_one(CommandBar).ready()
                 self.action_coverage()
-            case typed if found := AGAIN.fullmatch(typed):
-                self.query_one(CommandBar).ready()
-                self.again(self._teaching.demonstration.id, int(found[1]) - 1)
-            case "next":
-                self.action_next()
-            case "phrases" | "voice" as word:
+            case "help" | "phrases" | "voice":
                 self.query_one(CommandBar).ready()
                 self.app.run_worker(self.run_action(f"app.{word}"))
-            case "quit" | "exit" | "leave":
-                self.close(False)
-            case _:
-                self._apply(Say(event.text))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave a scripted teacher alone: who watches can only look, leave or stop."""
@@ -203,7 +210,7 @@ class TeachScreen(TangyScreen[bool]):
         """Show the present game again from the step that is chosen."""
         number = self.query_one(Transcript).chosen
         if number is None:
-            self._log.write("Choose the step first: up and down, or type again 7.", "warn")
+            self._log.write(WHICH_STEP, "warn")
         else:
             self.again(self._teaching.demonstration.id, number - 1)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from textual.binding import Binding, BindingType
 
 KEYS = "u undo  U redo  a again  w why  c seen  d next  r learn  : type  esc home"
@@ -13,8 +11,7 @@ HEARING_KEYS = "t talk  u undo  a again  w why  c seen  d next  r learn  : type 
 WATCHING = "up down a step  w why  c seen  ? help  esc leave"
 """The keys that a scripted teacher leaves to who watches."""
 
-AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)? (\d{1,6})")
-"""Typed: from which step on the present game is to be shown again."""
+WHICH_STEP = "Choose the step first: up and down, or type again 7."
 
 HELP = (
     "You are the teacher. Look at the room, decide what Tangy should do, and type it. Tangy "
