@@ -2,41 +2,22 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-HOUSE = Path(__file__).parents[2]
-FLOORS = ("tangy_tui", "sim", "hw", "profiles")
+from tests.support.source_copy import copy_sources, run_on
 
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
-    """Copy the sources and the contracts."""
-    shutil.copy(HOUSE / "pyproject.toml", tmp_path)
-    for floor in FLOORS:
-        for source in (HOUSE / floor).rglob("*.py"):
-            to = tmp_path / source.relative_to(HOUSE)
-            to.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(source, to)
-    return tmp_path
+    return copy_sources(tmp_path)
 
 
 def lint(folder: Path) -> str:
     """Check the contracts of a copy; return what is said of those that are broken."""
-    way = os.pathsep.join(str(folder / floor) for floor in ("", *FLOORS[1:]))
     check = "from importlinter.cli import lint_imports; raise SystemExit(lint_imports())"
-    done = subprocess.run(  # noqa: S603
-        [sys.executable, "-c", check],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": way, "COLUMNS": "200"},
-        capture_output=True,
-        text=True,
-    )
+    done = run_on(folder, "-c", check)
     return done.stdout + done.stderr if done.returncode else ""
 
 

@@ -1,0 +1,167 @@
+"""What CONTRIBUTING.md says of adding a thing, carried out on a copy of the sources."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.source_copy import copy_sources, edit, run_on, tangy_on
+
+pytestmark = pytest.mark.slow
+CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    return copy_sources(tmp_path)
+
+
+def recipe(title: str) -> str:
+    """Return the section of CONTRIBUTING.md under a title."""
+    _, section = CONTRIBUTING.read_text(encoding="utf-8").split(f"## {title}\n", 1)
+    return section.partition("\n## ")[0]
+
+
+def places(title: str, *named: str) -> None:
+    """Check that a recipe names every place that the test edits."""
+    missing = [place for place in named if place not in recipe(title)]
+    assert not missing, f"CONTRIBUTING.md, {title!r}, does not name {missing}"
+
+
+def test_an_activity_is_a_file_of_ones_own(copy: Path, tmp_path: Path) -> None:
+    source = "profiles/tangy_profiles/activities/bingo.toml"
+    places("Add an activity", source, "tangy activity check FILE")
+    mine = tmp_path / "mine.toml"
+    text = (copy / source).read_text(encoding="utf-8")
+    mine.write_text(text.replace('name = "bingo"', 'name = "mine"', 1), encoding="utf-8")
+    checked = tangy_on(copy, "activity", "check", mine)
+    assert checked.returncode == 0, checked.stderr
+    edit(mine, 'effect = "draw"', 'effect = "drow"')
+    checked = tangy_on(copy, "activity", "check", mine)
+    assert checked.returncode == 2
+    assert all(word in checked.stderr for word in ("mine.toml", "effect", "drow", "draw"))
+
+
+def test_a_fault_is_a_rule_and_a_kind_that_brings_it_about(copy: Path, taught: Path) -> None:
+    rules, kinds = "profiles/tangy_profiles/faults.toml", "sim/tangy_sim/worlds/injection.py"
+    robot, well = "profiles/tangy_profiles/robots/tangy.toml", "sim/tangy_sim/worlds/devices.py"
+    places("Add a fault", rules, kinds, robot, well, "`KINDS`", "`READINGS`")
+    edit(
+        copy / robot,
+        'label = "chest screen"\n',
+        'label = "chest screen"\nfacts.brightness = { says = "brightness, 0 to 1", high = 1 }\n',
+    )
+    edit(copy / well, '"screen": {}', '"screen": {"brightness": 0.8}')
+    edit(
+        copy / rules,
+        '[[faults]]\ncode = "arm-failed"',
+        """[[faults]]
+code = "screen-dim"
+name = "Chest screen too dim"
+criticality = "non-critical"
+recovery = ["continue"]
+device = "screen"
+when = [{ "screen.brightness" = { below = 0.2 } }]
+console = "The chest screen can hardly be read."
+advice = ["Turn its brightness up."]
+
+[[faults]]
+code = "arm-failed\"""",
+    )
+    edit(
+        copy / kinds,
+        '    Kind("never-complies",',
+        """    Kind("screen-dim", "the chest screen goes dim", "screen-dim", AT_ONCE,
+         otherwise("screen", brightness=0.1)),
+    Kind("never-complies",""",
+    )
+    assert "screen-dim" in tangy_on(copy, "play", "--inject", "help").stdout
+    played = tangy_on(
+        copy, "play", "--data", taught, "--seed", 4, "--inject", "screen-dim@3", "--json"
+    )
+    assert played.returncode == 0, played.stderr
+    document = json.loads(played.stdout)
+    assert [fault["code"] for fault in document["faults"]] == ["screen-dim"], played.stderr
+    assert document["finished"] == 1
+
+
+def test_a_method_of_persuasion_is_a_class_and_a_name(copy: Path, taught: Path) -> None:
+    methods, names = "tangy_tui/interaction/methods.py", "profiles/tangy_profiles/persuading.py"
+    words = "tangy_tui/ui/dialogs/method.py"
+    places("Add a method of persuasion", methods, names, words, "`METHODS`", "`_plain`")
+    edit(copy / names, '["thompson", "bayes-ucb"]', '["thompson", "bayes-ucb", "turns"]')
+    edit(
+        copy / methods,
+        "class BayesUcb(Plain):",
+        """class Turns(Plain):
+    words = "each in turn"
+
+    def scores(self, beliefs, rng):
+        return {name: -float(belief.trials) for name, belief in beliefs.items()}
+
+
+class BayesUcb(Plain):""",
+    )
+    edit(
+        copy / methods,
+        '        case "bayes-ucb":',
+        '        case "turns":\n            return Turns()\n        case "bayes-ucb":',
+    )
+    edit(copy / words, '    "bayes-ucb": "B', '    "turns": "each in turn",\n    "bayes-ucb": "B')
+    chosen = tangy_on(copy, "people", "method", "user1", "turns", "--data", taught)
+    assert chosen.returncode == 0, chosen.stderr
+    shown = tangy_on(copy, "people", "show", "user1", "--data", taught)
+    assert "each in turn" in shown.stdout
+
+
+def test_a_panel_is_a_widget_and_a_line_in_a_screen(copy: Path, taught: Path) -> None:
+    places("Add a panel", "tangy_tui/ui/widgets/", "tangy_tui/ui/panels.py", "`compose`")
+    (copy / "tangy_tui/ui/widgets/hello_panel.py").write_text(
+        '''"""A panel."""
+
+from textual.widgets import Static
+
+
+class HelloPanel(Static):
+    """Says hello."""
+''',
+        encoding="utf-8",
+    )
+    screen = copy / "tangy_tui/ui/screens/policy.py"
+    edit(
+        screen,
+        "        yield panel(PolicyTable())\n",
+        '        yield panel(HelloPanel("hello there"), "Greeting")\n'
+        "        yield panel(PolicyTable())\n",
+    )
+    edit(
+        screen,
+        "from tangy_tui.ui.widgets.policy_table import",
+        "from tangy_tui.ui.widgets.hello_panel import HelloPanel\n"
+        "from tangy_tui.ui.widgets.policy_table import",
+    )
+    drawn = run_on(
+        copy,
+        "-c",
+        f"""
+import asyncio
+from pathlib import Path
+from tangy_tui.app.workspace import Workspace
+from tangy_tui.learning.policies import load_policy
+from tangy_tui.ui.program import Program
+
+async def main():
+    workspace = Workspace(Path({str(taught)!r}))
+    policy, _ = load_policy(workspace.store, workspace.activity)
+    program = Program(workspace, lambda program: program.open_policy(policy))
+    async with program.run_test(size=(120, 40)) as pilot:
+        await pilot.pause()
+        lines = program.screen._compositor.render_strips()
+        print("\\n".join("".join(segment.text for segment in strip) for strip in lines))
+
+asyncio.run(main())
+""",
+    )
+    assert "Greeting" in drawn.stdout and "hello there" in drawn.stdout, drawn.stderr
