@@ -95,7 +95,7 @@ class Clock(Protocol):
         ...
 
     async def sleep(self, seconds: float) -> None:
-        """Let so much of it pass."""
+        """Let so much of it pass, in s."""
         ...
 
 

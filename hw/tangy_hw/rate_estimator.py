@@ -22,7 +22,7 @@ class RateEstimator:
         self._began: float | None = None
 
     def count(self, now: float, number: int = 1) -> None:
-        """Count something that comes now, or so many at once."""
+        """Count something that comes now (in s), or so many at once."""
         if self._began is None:
             self._began = now
         self._came.append((now, number))

@@ -61,7 +61,7 @@ class Beta:
         return float(betaincinv(self.alpha, self.beta, share))
 
     def interval(self, sure: float = SURE) -> tuple[float, float]:
-        """Return the equal-tailed credible interval: as much may lie below it as above it."""
+        """Return the equal-tailed credible interval; it holds the value with probability `sure`."""
         return self.quantile((1 - sure) / 2), self.quantile((1 + sure) / 2)
 
     def sample(self, rng: Random) -> float:
@@ -69,7 +69,7 @@ class Beta:
         return rng.betavariate(self.alpha, self.beta)
 
     def density(self, points: int) -> list[float]:
-        """Return the density of Eq. 1 at the midpoints of `points` equal parts of [0, 1]."""
+        """Return the probability density of Eq. 1 at the midpoints of `points` parts of [0, 1]."""
         a, b = self.alpha, self.beta
         scale = math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b)
         mids = ((i + 0.5) / points for i in range(points))
@@ -115,7 +115,7 @@ def probability_best(beliefs: Mapping[str, Beta]) -> dict[str, float]:
 
 
 def leading(best: Mapping[str, float]) -> str | None:
-    """Return the strategy that is most probably the best; None where no single one is."""
+    """Return the strategy of the highest probability of being best; None where no single one is."""
     top = max(best.values(), default=0.0)
     leaders = [strategy for strategy, share in best.items() if share > top - 1e-9]
     return leaders[0] if len(leaders) == 1 else None

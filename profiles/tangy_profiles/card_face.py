@@ -68,12 +68,12 @@ class CardLayout:
 
     @cached_property
     def number_high(self) -> float:
-        """How high a number is printed: as large as the longest one allows."""
+        """How high a number is printed, in mm: as large as the longest one allows."""
         longest = max(len(str(number)) for number in self.deck.numbers)
         return 0.729 * min(0.6 * self.cell, 0.84 * self.cell / (0.696 * longest))
 
     def crossings(self) -> list[tuple[float, float]]:
-        """Return where the lines cross, row by row."""
+        """Return where the lines cross, in mm, row by row."""
         return [
             (self.grid.left + column * self.cell, self.grid.top + row * self.cell)
             for row in range(self.deck.rows + 1)

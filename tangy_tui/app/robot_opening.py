@@ -160,7 +160,7 @@ def open_robot(
     cards: Mapping[str, int] | None = None,
     cancellation: Cancellation | None = None,
 ) -> Iterator[LiveWorld]:
-    """Open a robot that is there, by the drivers of its profile.
+    """Open a robot that is there, by the drivers of its profile; `pace` is in s.
 
     Who asks is told by `requests` (and the `corners` of the table in its pictures), or by what the
     robot's file names. It stands at the front, unless it is `lost`: then it is to find its place by

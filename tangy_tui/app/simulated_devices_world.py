@@ -215,7 +215,7 @@ class BenchedWorld(LiveWorld):
                 self.inject(kind.name)
 
     def recover(self, remedy: Remedy) -> float:
-        """Let the robot, somebody at the table or an expert do something about a fault."""
+        """Let the robot, people at the table or an expert act on a fault; return the s it took."""
         for kind in self._to_come.due_in_recovery():
             if kind.name not in self.present:
                 self.inject(kind.name)

@@ -203,7 +203,7 @@ def earlier_people(crowd: str, strategies: int, seed: int) -> tuple[Counts, ...]
 
 
 def lai_robbins(best: float, others: Sequence[float]) -> float:
-    """Return the factor of log T below which no uniformly good method's regret can stay.
+    """Return the factor of log T (in responses) that no uniformly good method's regret beats.
 
     It is the sum over the other strategies of (best - p) / KL(p, best) (Lai and Robbins 1985). It
     says how regret grows in the long run, and does not bound it at a small T.

@@ -70,7 +70,7 @@ class InducingBench(BenchedWorld):
             fault.hidden = nowhere or (late and fault.kind.shows == WAITING)
 
     def recover(self, remedy: Remedy) -> float:
-        """Note that something is done about a fault, and do it."""
+        """Note that something is done about a fault, and do it; return the s it took."""
         self.inducer.treated(remedy.fault)
         seconds = super().recover(remedy)
         self._note_lifted()

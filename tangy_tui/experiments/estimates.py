@@ -29,7 +29,7 @@ def share_interval(share: float, n: int) -> tuple[float, float]:
 
 
 def spread(values: Sequence[float]) -> dict[str, Any]:
-    """Return n, the median, and what 95 of 100 do not exceed (None of nothing)."""
+    """Return n, the median, and the quantile that 95% do not exceed (None of nothing)."""
     ordered = sorted(values)
     if not ordered:
         return {"n": 0, "median": None, "p95": None}

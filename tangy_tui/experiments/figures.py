@@ -23,7 +23,7 @@ BARS: dict[str, Any] = {"ecolor": INK, "capsize": 3, "error_kw": {"elinewidth": 
 
 
 class Figure:
-    """One drawing with some axes side by side; `svg` is what goes into the page."""
+    """One drawing (its height in px), with some axes side by side; `svg` goes into the page."""
 
     def __init__(self, name: str, panels: int = 1, *, height: float = 3.2, rows: int = 1) -> None:
         from matplotlib.figure import Figure as Drawing
@@ -181,7 +181,7 @@ def regrets(
     names: Mapping[str, str],
     log_term: Mapping[str, float],
 ) -> str:
-    """Draw the regret of every method at every horizon, a panel for each crowd.
+    """Draw the regret (in responses) of every method at every horizon, a panel for each crowd.
 
     Args:
         crowds: (title, method -> row); the first one gets the Lai-Robbins log term drawn in.

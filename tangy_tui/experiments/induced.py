@@ -171,7 +171,7 @@ class Inducer:
         return ""
 
     def came(self, name: str, step: int, seconds: float) -> None:
-        """Note that a fault of a kind has come."""
+        """Note that a fault of a kind has come, at a time in s of the game."""
         self.induced.append(Induced(KINDS[name], step, seconds))
 
     def lifted(self, name: str, step: int) -> None:
@@ -241,6 +241,6 @@ class InducingWorld(FaultyWorld):
         super().lift(kind)
 
     def recover(self, remedy: Remedy) -> float:
-        """Note that something is done about a fault, and do it."""
+        """Note that something is done about a fault, and do it; return the s it took."""
         self.inducer.treated(remedy.fault)
         return super().recover(remedy)

@@ -85,7 +85,7 @@ class HalfHeartedWorld(InducingWorld):
 
 
 def complying(workspace: Supervised, share: float | None) -> Preferences | None:
-    """Return people who comply with every strategy alike (None: with their own preferences)."""
+    """Return people who comply with every strategy with one probability (None: with their own)."""
     if share is None:
         return None
     strategies = activity_of(workspace.activity).strategies

@@ -78,13 +78,13 @@ class Terminal:
         os.write(self._mine, keys.encode())
 
     def watch(self, seconds: float) -> None:
-        """Look at the screen for some time."""
+        """Look at the screen for so many s."""
         until = monotonic() + seconds
         while (left := until - monotonic()) > 0:
             self._read(left)
 
     def sees(self, seen: Callable[[Screen], bool], seconds: float) -> bool:
-        """Watch until something is on the screen, or the time is over; say whether it is."""
+        """Watch, for so many s at most, until something is on the screen; say whether it is."""
         deadline = monotonic() + seconds
         while not seen(self.screen):
             if monotonic() > deadline or not self._read(max(0.0, deadline - monotonic())):

@@ -74,7 +74,7 @@ class Plain:
         return uniform_beliefs(strategies)
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
-        """Return the beliefs as they are: nothing is forgotten."""
+        """Return the beliefs as they are, however many days ago: nothing is forgotten."""
         return beliefs
 
     def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
@@ -88,7 +88,7 @@ class Thompson(Plain):
     words = "Thompson sampling"
 
     def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
-        """Return one draw for each strategy."""
+        """Return one draw for each strategy, a probability."""
         draw = rng.betavariate
         return {strategy: draw(b.alpha, b.beta) for strategy, b in beliefs.items()}
 
@@ -142,15 +142,15 @@ class EarlierPeople:
         return prior
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
-        """Do as the inner one does."""
+        """As the inner method does."""
         return self.inner.faded(beliefs, prior, days)
 
     def updated(self, beliefs: Beliefs, prior: Beliefs, strategy: str, complied: bool) -> Beliefs:
-        """Do as the inner one does."""
+        """As the inner method does."""
         return self.inner.updated(beliefs, prior, strategy, complied)
 
     def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
-        """Do as the inner one does."""
+        """As the inner method does."""
         return self.inner.scores(beliefs, rng)
 
 
@@ -175,7 +175,7 @@ class Forgetting:
         return f"{self.inner.words}, forgetting {100 * (1 - self.keep):.3g}% {every}"
 
     def prior(self, strategies: Iterable[str]) -> Beliefs:
-        """Do as the inner one does."""
+        """As the inner method does."""
         return self.inner.prior(strategies)
 
     def faded(self, beliefs: Beliefs, prior: Beliefs, days: float) -> Beliefs:
@@ -190,7 +190,7 @@ class Forgetting:
         return self.inner.updated(beliefs, prior, strategy, complied)
 
     def scores(self, beliefs: Mapping[str, Beta], rng: Random) -> dict[str, float]:
-        """Do as the inner one does."""
+        """As the inner method does."""
         return self.inner.scores(beliefs, rng)
 
 

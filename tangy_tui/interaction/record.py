@@ -115,7 +115,7 @@ def on_of(beliefs: Beliefs, off: frozenset[str]) -> Beliefs:
 
 
 def settled_of(on: Beliefs, best: Mapping[str, float]) -> str | None:
-    """Return the strategy that is settled on: the best of several, and one that ever worked."""
+    """Return the strategy that is settled on, by the probability of being best; it has worked."""
     found = settled(best)
     return found if found is not None and len(on) > 1 and on[found].complied else None
 

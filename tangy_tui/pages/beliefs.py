@@ -17,7 +17,7 @@ LONGEST = 13
 
 @cache
 def interval(alpha: float, beta: float) -> tuple[float, float]:
-    """Return the interval of a belief, worked out once."""
+    """Return the interval of a Beta belief, two probabilities, worked out once."""
     return Beta(alpha, beta).interval()
 
 

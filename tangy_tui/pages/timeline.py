@@ -42,15 +42,15 @@ class Scale:
         self.end = max(end, 1.0)
 
     def at(self, seconds: float, step: int) -> float:
-        """Return where a moment is."""
+        """Return where a moment, in s of the game, is on the axis (a share of it)."""
         return seconds if self.timed else float(step)
 
     def x(self, where: float) -> float:
-        """Return the place on the drawing."""
+        """Return the place on the drawing, in px, of a share of the axis."""
         return LEFT + (WIDTH - LEFT - RIGHT) * min(max(where, 0.0), self.end) / self.end
 
     def ticks(self) -> Iterator[tuple[float, str]]:
-        """Yield where the axis is marked, and with what."""
+        """Yield where the axis is marked (a share of it), and with what."""
         unit = 60 if self.timed else 1
         whole = self.end / unit
         step = next((s for s in STEPS if whole / s < MOST_TICKS), max(1, round(whole / 10)))

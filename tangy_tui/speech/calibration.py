@@ -70,7 +70,7 @@ class Figures:
 
     @property
     def gain(self) -> float:
-        """What it is worth: a choice half as much as what is surely understood."""
+        """What it is worth, a score: a choice half as much as what is surely understood."""
         return self.understood + self.offered / 2 - self.taken
 
     @property

@@ -15,7 +15,7 @@ MARGIN = 0.3  # s that are kept before an utterance, and of a recording after it
 
 
 class Endpoints:
-    """Finds an utterance in a stream of samples (16 kHz mono s16le)."""
+    """Finds an utterance in a stream of samples (16 kHz mono s16le); its window is in s."""
 
     def __init__(self, window: float = WINDOW) -> None:
         import pocketsphinx
@@ -41,7 +41,7 @@ class Endpoints:
 
     @property
     def end(self) -> float:
-        """Where it ended."""
+        """Where it ended, in s."""
         return float(self._endpointer.speech_end)
 
     def feed(self, pcm: bytes) -> Iterator[tuple[bool, bytes, bool]]:

@@ -39,7 +39,7 @@ def dictionary(pronunciations: Mapping[str, Sequence[str]], *, phones: bool = Fa
 
 
 def grammar(phrases: Sequence[str], garbage: float) -> str:
-    """Return a JSGF grammar: one of the phrases, or any phones.
+    """Return a JSGF grammar: one of the phrases, or any phones (by a probability).
 
     The weight stands on the branch: JSGF normalises weights within each alternative, so those of
     single phones would be divided by their number.

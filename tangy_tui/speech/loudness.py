@@ -26,7 +26,7 @@ def loudness(pcm: bytes, share: float) -> float:
 
 
 def advice(room: float, voice: float, sounds: Sequence[bytes], perfect: bool) -> list[str]:
-    """Say what to change, a sentence each: nothing if the sound is as it should be."""
+    """Say what to change, a sentence each, by the levels in dB: nothing if the sound is right."""
     said = []
     if sum(_cut_off(pcm) for pcm in sounds) > 1:
         said.append("Some of it was too loud: move a little away, or turn the microphone down.")

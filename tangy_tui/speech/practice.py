@@ -208,7 +208,7 @@ async def practise(
 def judged(
     file: Path, label: UtteranceLabel, said: Say | StopCommand, seconds: float, latency: float
 ) -> PracticeRow:
-    """Compare what was understood with what was said."""
+    """Compare what was understood with what was said; both times are in s."""
     tier = tier_of(said)
     commands = (said.commands or ()) if isinstance(said, Say) else ()
     choices = tuple(UtteranceLabel(c.behaviour, c.arguments.get("user")) for c in commands)
@@ -235,7 +235,7 @@ def judged(
 
 
 def cpu_seconds(pid: int | None) -> float | None:
-    """Return the CPU time that a process has used; None where the system does not tell it so."""
+    """Return the CPU time in s that a process has used; None where the system does not tell it."""
     try:
         told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
         return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")

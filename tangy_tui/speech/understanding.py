@@ -81,7 +81,7 @@ def understand(
 
 
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:
-    """Return what was said, and the margin of these words.
+    """Return what was said, and the margin of these words (a log-likelihood a frame).
 
     Mostly those are the words of the n-gram model. Where they end as a number sounds, and the
     number makes a phrase of them, it was the number. Where they are no phrase, but sound like the

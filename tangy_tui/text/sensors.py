@@ -215,7 +215,7 @@ def _value(value: Fact) -> str:
 
 
 def age_words(seconds: float | None) -> str:
-    """Say how old something is, in a few characters; it does not flicker with what is new."""
+    """Say how old something is (in s), in a few characters that do not flicker."""
     if seconds is None:
         return ""
     if seconds < 10:

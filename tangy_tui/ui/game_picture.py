@@ -64,7 +64,7 @@ class GamePicture:
         self._show_beliefs(None)
 
     def tell(self, events: Sequence[Event], pace: float) -> None:
-        """Show events; `pace` is how many times faster than life they are shown (0: at once)."""
+        """Show events; `pace` is in times life (0: at once)."""
         taught = next((event for event in events if isinstance(event, Taught | DoneOnce)), None)
         log = self._screen.query_one(LogView)
         for event in events:

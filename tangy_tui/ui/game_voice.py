@@ -62,7 +62,7 @@ class GameVoice:
             speaker_of(self._app).hush()
 
     async def heard(self, pace: float, nudge: asyncio.Event) -> bool:
-        """Wait until the last line was heard, in life's pace; a nudge ends that.
+        """Wait until the last line was heard (speed in times life); a nudge ends that.
 
         Returns:
             Whether there is nothing to wait for (any more).

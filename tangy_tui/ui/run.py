@@ -75,7 +75,7 @@ def run_playing(
     ears: SpeechInput | None = None,
     sensors: CameraHub | None = None,
 ) -> int:
-    """Open the playing screen; return the exit status.
+    """Open the playing screen (speed in times life); return the exit status.
 
     Without a speed the game goes as in life where Tangy speaks, and faster where it does not.
     Cameras that are given count as the robot's, and the game goes as in life.

@@ -73,7 +73,7 @@ class Meter:
 
     @property
     def level(self) -> float:
-        """How loud it is now on a scale of decibels: 0 is silence, 1 as loud as can be."""
+        """How loud it is now on a scale of dB: 0 is silence, 1 as loud as can be."""
         return max(0.0, self._shown - FALL * (self._clock() - self._shown_at))
 
     def loudest(self, seconds: float) -> float:

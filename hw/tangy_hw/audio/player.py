@@ -76,7 +76,7 @@ class ProgramPlayer:
     """Plays with the first of some programs that works; one that failed is not tried again."""
 
     def __init__(self, commands: Sequence[Sequence[str]], *, late: float = LATE) -> None:
-        """Take the commands, to which the path of a WAV is added.
+        """Take the commands, to which the path of a WAV is added; `late` is in s.
 
         Raises:
             PlayerError: there is none.

@@ -77,7 +77,7 @@ def decode_wav(content: bytes, name: str) -> bytes:
 
 
 def seconds_cut_off(path: Path) -> float:
-    """Return how much sound a WAV file lacks at its end of what it says it holds; 0 if none.
+    """Return the s of sound that a WAV file lacks at its end of what it says it holds; 0 if none.
 
     What is written as it is recorded often says nothing, or as much as can be said: that counts as
     nothing. So does what is no WAV file.

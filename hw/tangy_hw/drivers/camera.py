@@ -53,7 +53,7 @@ class Frame:
     sight: Sight
 
     def image(self) -> Image:
-        """Return it as OpenCV has it; it cannot be written to."""
+        """Return it as OpenCV has it, (rows, columns, 3) in BGR; it cannot be written to."""
         import numpy as np
 
         return np.frombuffer(self.pixels, np.uint8).reshape(self.height, self.width, 3)

@@ -59,7 +59,7 @@ class Child:
         self._busy = ("", time.monotonic())
 
     def write(self, answer: dict[str, Any], image: Image | None = None) -> None:
-        """Send one answer, and the picture that belongs to it."""
+        """Send one answer, and the picture (BGR) that belongs to it."""
         line = json.dumps(answer).encode() + b"\n"
         with self._writing:
             try:
@@ -174,7 +174,7 @@ class Child:
 
 
 def fitted(image: Image, columns: int, rows: int) -> Image:
-    """Return a picture as large as fits, in its own proportions."""
+    """Return a picture (BGR) as large as fits, in its own proportions."""
     import cv2
 
     height, width = image.shape[:2]

@@ -45,7 +45,7 @@ class Grabber(Protocol):
         """
 
     def read(self) -> Image:
-        """Return the next picture, as soon as there is one.
+        """Return the next picture (BGR), as soon as there is one.
 
         Raises:
             Gone: it gives none any more and must be opened anew.
@@ -117,7 +117,7 @@ class Capture:
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
-        """Return the next picture."""
+        """Return the next picture (BGR)."""
         image = self._read() if self._held is None else self._held
         self._held = None
         if self._source.kind == "stream" and _perhaps_half(image):
@@ -163,7 +163,7 @@ class Folder:
             raise Over("the folder cannot be read any more") from None
 
     def read(self) -> Image:
-        """Return the next picture."""
+        """Return the next picture (BGR)."""
         while self._left:
             image = _read_picture(self._left.pop())
             if image is not None:

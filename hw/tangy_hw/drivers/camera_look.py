@@ -39,7 +39,7 @@ class Look(NamedTuple):
 
 
 def measure(image: Image, seq: int, stamp: float) -> Look:
-    """Measure a picture (BGR or grey)."""
+    """Measure a picture (BGR or grey) taken at a time in s."""
     import zlib
 
     import cv2

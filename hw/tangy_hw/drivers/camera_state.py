@@ -61,7 +61,7 @@ class Sight:
     rate: float | None = None
 
     def evidence(self) -> dict[str, float | None]:
-        """Return the evidence, rounded, as it is written down."""
+        """Return the evidence (s, and shares of full light), rounded, as it is written down."""
         found = {
             "age": self.age,
             "unchanged": self.unchanged,
@@ -144,7 +144,7 @@ class CameraWatch:
         self._over = why
 
     def at(self, now: float) -> Sight:
-        """Return the state at a time."""
+        """Return the state at a time in s."""
         look = self._look
         age = now - (look.stamp if look is not None else self._began)
         unchanged = 0.0 if look is None else look.stamp - self._first_alike

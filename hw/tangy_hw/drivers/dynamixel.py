@@ -119,7 +119,7 @@ class DynamixelArms:
 
     @property
     def positions(self) -> Mapping[str, float]:
-        """The newest position of each joint, in radians."""
+        """The newest position of each joint, in rad."""
         return self._moves.positions
 
     async def start(self) -> None:

@@ -41,7 +41,7 @@ def meaning(bits: int) -> str:
 
 
 def speed(degrees: float, seconds: float, mode: int) -> int:
-    """Return the speed to write for a movement, in the unit of the servo's drive mode."""
+    """Return the speed to write for a movement (rad, s), in the unit of the servo's drive mode."""
     if mode & TIME_BASED:
         return max(1, min(round(1000 * seconds), FASTEST))
     return max(1, min(round(degrees / max(seconds, 0.02) / SPEED_UNIT), FASTEST))

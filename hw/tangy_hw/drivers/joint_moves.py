@@ -62,7 +62,7 @@ class JointMoves:
         move.over.result()
 
     def hear(self, positions: Mapping[str, float]) -> None:
-        """Take new positions."""
+        """Take new positions, in rad."""
         self.positions.update(positions)
         for move in self._moves:
             move.heard |= positions.keys() & move.goals.keys()

@@ -31,7 +31,7 @@ class RosLaser:
         turned: float = 0.0,
         diagnostics: RosDiagnostics | None = None,
     ) -> None:
-        """Name its topic.
+        """Name its topic, and by how many rad the scanner is turned.
 
         Args:
             bridge: the link to the robot.

@@ -30,7 +30,7 @@ def number(value: object) -> float:
 
 
 def time_message(seconds: float, ros: int) -> dict[str, int]:
-    """Return a time or duration as this ROS spells it."""
+    """Return a time or duration in s as this ROS spells it."""
     whole = math.floor(seconds)
     rest = min(round((seconds - whole) * 1e9), 999_999_999)
     return {"secs": whole, "nsecs": rest} if ros == 1 else {"sec": whole, "nanosec": rest}
@@ -49,13 +49,13 @@ def header(frame: str, ros: int) -> dict[str, Any]:
 
 
 def heading_of(quaternion: Message) -> float:
-    """Return the heading of an orientation; one that is all zeros was not filled in, and is 0."""
+    """Return the heading (rad) of an orientation; all zeros were not filled in, and mean 0."""
     x, y, z, w = (number(quaternion[axis]) for axis in "xyzw")
     return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def quaternion_message(heading: float) -> dict[str, float]:
-    """Return a heading as an orientation."""
+    """Return a heading in rad as an orientation."""
     return {"x": 0.0, "y": 0.0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)}
 
 
@@ -92,7 +92,7 @@ def odometry_of(message: Message) -> Odometry:
 
 
 def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.float64]]:
-    """Return a sensor_msgs/LaserScan, and its ranges as they came.
+    """Return a sensor_msgs/LaserScan, and its ranges as they came: (n,) in m.
 
     What a scanner measures below its least or beyond its greatest range, or not at all (null, as
     rosbridge writes infinity), is inf in the scan.
@@ -112,7 +112,7 @@ def scan_of(message: Message, turned: float = 0.0) -> tuple[Scan, NDArray[np.flo
 
 
 def joints_of(message: Message) -> dict[str, float]:
-    """Return the positions of a sensor_msgs/JointState by joint, in radians."""
+    """Return the positions of a sensor_msgs/JointState by joint, in rad."""
     names, positions = message["name"], message["position"]
     if not positions:  # some publish only how fast joints move, or how hard
         return {}
@@ -185,13 +185,13 @@ def joined_names(text: str) -> dict[str, str]:
 
 
 def near_share(raw: NDArray[np.float64], near: float) -> float:
-    """Return the share of beams that end within so many m; 0 is a beam that met nothing."""
+    """Return the share of beams (n,) that end within so many m; 0 is a beam that met nothing."""
     with np.errstate(invalid="ignore"):
         return float(np.mean((raw > 0) & (raw < near)))
 
 
 def changed_share(scans: Sequence[NDArray[np.float64]]) -> float:
-    """Return the share of beams that changed over some scans."""
+    """Return the share of beams that changed over some scans, each (n,)."""
     ranges = np.nan_to_num(np.stack(scans), nan=np.inf)
     return float(np.mean(ranges.min(0) != ranges.max(0)))
 

@@ -168,7 +168,7 @@ class RosNavigator:
         self._bridge.publish(self._initial, {"header": head, "pose": there})
 
     async def go(self, goal: Pose, seconds: float = DRIVE_SECONDS) -> None:
-        """Drive somewhere in the room, and wait until it is there; cancelling this cancels that.
+        """Drive to a place, and wait (for s at most) until it is there; cancelling cancels that.
 
         Raises:
             DeviceError: nobody takes goals, there is no way, it took longer, another goal came, or

@@ -100,7 +100,7 @@ class Rosbridge:
 
     @property
     def heard(self) -> float | None:
-        """When the newest message of any kind came, by the clock; None: never."""
+        """When the newest message of any kind came, in s of the clock; None: never."""
         return self._heard
 
     async def start(self) -> None:

@@ -43,7 +43,7 @@ class SteppedClock:
         return self._now
 
     async def sleep(self, seconds: float) -> None:
-        """Let so much of the bench's time pass, and wait for what it brings."""
+        """Let so many s of the bench's time pass, and wait for what they bring."""
         if self._link is None or not await self._link.wait_connected(CONNECT_SECONDS):
             await asyncio.sleep(seconds)
             return

@@ -76,7 +76,7 @@ class ExternalNavigator:
         return self._since_blocked >= CLEARING_SECONDS
 
     def tick(self, odometry: Odometry, scan: Scan | None, dt: float) -> Twist:
-        """Hand the goal over when it may drive, and turn to look round; else it drives itself."""
+        """Hand the goal over when it may drive, and turn to look round; `dt` in s."""
         self._allowed += dt
         self._since_blocked += dt
         if self.state == "spinning":
@@ -109,7 +109,7 @@ class ExternalNavigator:
         return {"path": self._way(), "fit": fit, "spread": spread, "slip": 0.0, "still": 0.0}
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
-        """Return the readings of "localisation" and "navigator", as old as the robot's own."""
+        """Return the readings of "localisation" and "navigator", their age in s the robot's own."""
         place, way = self._navigation.localisation(), self._navigation.reading()
         return (
             place._replace(device="localisation", age=max(place.age, age)),

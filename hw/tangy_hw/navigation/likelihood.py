@@ -25,7 +25,7 @@ WALL = 15  # cells that hang together and make a wall; chairs have fewer, and ar
 
 
 def thin(scan: Scan, farthest: float, laser: Pose = HERE, beams: int = BEAMS) -> Floats:
-    """Return the ends of some beams (n, 2) spread evenly over those that met something."""
+    """Return the ends of some beams (n, 2), in m, spread evenly over those that met something."""
     points = endpoints(scan, farthest, laser, NEAREST)
     if len(points) <= beams:
         return points

@@ -99,7 +99,7 @@ def _write_one(map_: OccupancyMap, cells: Cells, path: Path) -> list[Path]:
 
 
 def grey(cells: Cells) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-    """Return the picture of a map, its first row at the top: white free, black occupied."""
+    """Return the picture of a map (rows, columns), north up: white free, black occupied."""
     shade = np.full(cells.shape, GREY, dtype=np.uint8)
     shade[cells == FREE] = WHITE
     shade[cells == OCCUPIED] = BLACK

@@ -37,7 +37,7 @@ class Placed:
 
 
 def sparse(scans: Iterable[Placed], metres: float = 0.1, radians: float = 0.1) -> list[Placed]:
-    """Leave out scans from where the last one was taken already."""
+    """Leave out scans taken within so many m and rad of the last one."""
     kept: list[Placed] = []
     for one in scans:
         if kept:
@@ -105,7 +105,7 @@ class MapMaker:
         return np.asarray((points - np.array(self.origin)) / self.resolution)
 
     def map(self, share: float = SHARE) -> OccupancyMap:
-        """Return the map as far as it is known."""
+        """Return the map as far as it is known: occupied from this share of beams on."""
         cells = np.full(self._hits.shape, UNKNOWN, dtype=np.int8)
         cells[self._visits > 0] = FREE
         cells[(self._hits > 0) & (self._hits >= share * self._visits)] = OCCUPIED
@@ -123,7 +123,7 @@ def extent(scans: Sequence[Placed], margin: float = 0.5) -> tuple[float, float, 
 
 
 def map_of_scans(scans: Sequence[Placed], resolution: float = 0.05) -> OccupancyMap:
-    """Draw the map of scans whose poses are known.
+    """Draw the map of scans whose poses are known, with cells of so many m.
 
     Raises:
         MapError: there are none, or the map would be too large.

@@ -125,7 +125,7 @@ class Navigator:
         self._without = 0.0
 
     def spin(self, angle: float = 2 * pi) -> None:
-        """Turn on the spot by an angle, slowly, so that the robot finds itself."""
+        """Turn on the spot by an angle in rad, slowly, so that the robot finds itself."""
         if self.state != "spinning":
             self.cancel()
         self.state = "spinning"
@@ -199,7 +199,7 @@ class Navigator:
         }
 
     def readings(self, age: float = 0.0) -> tuple[Reading, Reading]:
-        """Return the readings of the devices "localisation" and "navigator"."""
+        """Return the readings of "localisation" and "navigator"; `age` is in s."""
         facts = self.facts()
         place = {"fit": facts["fit"], "spread": facts["spread"]}
         return (

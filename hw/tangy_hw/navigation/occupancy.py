@@ -72,7 +72,7 @@ class OccupancyMap:
 
     @cached_property
     def seen_distance(self) -> NDArray[np.float32]:
-        """Metres from each cell to the nearest one that a laser sees occupied."""
+        """Distances (rows, columns), in m, to the nearest cell that a laser sees occupied."""
         occupied = self.cells == OCCUPIED
         if not occupied.any():
             return np.full(self.shape, np.float32(max(self.size)))
@@ -80,7 +80,7 @@ class OccupancyMap:
         return np.asarray(distance, dtype=np.float32)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return the row and column of a point; they may lie outside the map."""
+        """Return the row and column of a point in m; they may lie outside the map."""
         column = int(np.floor((x - self.origin[0]) / self.resolution))
         return int(np.floor((y - self.origin[1]) / self.resolution)), column
 

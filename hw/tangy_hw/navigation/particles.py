@@ -19,7 +19,7 @@ CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a guess that belo
 
 
 def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) -> Floats:
-    """Move each by the step of the wheels, and by its own error of it (Thrun et al., table 5.6)."""
+    """Move each of (n, 3) by the wheels' step (m, rad) and an error (Thrun et al., table 5.6)."""
     distance = hypot(step.x, step.y)
     first = atan2(step.y, step.x) if distance > 0.01 else 0.0
     last = wrap(step.heading - first)
@@ -43,7 +43,7 @@ def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) ->
 def around(
     pose: Pose, deviations: tuple[float, float, float], count: int, rng: Generator
 ) -> Floats:
-    """Draw particles around a pose, with standard deviations in x, y (metres) and heading."""
+    """Draw particles (n, 3) around a pose; standard deviations in m and rad."""
     drawn: Floats = np.asarray(pose) + rng.standard_normal((count, 3)) * np.asarray(deviations)
     drawn[:, 2] = wrap(drawn[:, 2])
     return drawn
@@ -64,7 +64,7 @@ def _bins(particles: Floats, width: float, angle: float) -> NDArray[np.int64]:
 
 
 def needed(particles: Floats) -> int:
-    """Return how many particles stand for as many places (KLD sampling; D. Fox, 2003)."""
+    """Return how many of particles (n, 3) stand for as many places (KLD sampling; D. Fox, 2003)."""
     k = len(np.unique(_bins(particles, BIN, BIN_ANGLE)))
     if k < 2:
         return FEWEST
@@ -73,7 +73,7 @@ def needed(particles: Floats) -> int:
 
 
 def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> Floats:
-    """Draw so many in proportion to their weights, which sum to 1, with one random number."""
+    """Draw so many of (n, 3) in proportion to their weights (n,), with one random number."""
     if count == 0:
         return particles[:0]
     at = (np.arange(count) + rng.random()) / count
@@ -82,7 +82,7 @@ def resample(particles: Floats, weights: Floats, count: int, rng: Generator) -> 
 
 
 def mean(particles: Floats, weights: Floats) -> Pose:
-    """Return the weighted mean."""
+    """Return the weighted mean of the particles (n, 3)."""
     total = weights.sum()
     x, y = weights @ particles[:, :2] / total
     heading = atan2(weights @ np.sin(particles[:, 2]), weights @ np.cos(particles[:, 2]))

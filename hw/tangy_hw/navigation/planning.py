@@ -53,7 +53,7 @@ class Costs:
     distance: Floats
 
     def at(self, x: float, y: float) -> float:
-        """Return the cost at a point; inf outside the map."""
+        """Return the cost (times the way's length) at a point in m; inf outside the map."""
         row, column = self.map.cell(x, y)
         return float(self.cost[row, column]) if self.map.inside(row, column) else inf
 
@@ -105,7 +105,7 @@ def inflate(
 def near_ends(
     blocked: Floats, ends: Sequence[tuple[float, float]], keep: float = KEEP
 ) -> NDArray[np.bool_]:
-    """Say of points (n, 2) whether a way that begins and ends there cannot keep off them."""
+    """Say of points (n, 2) in m whether a way that begins and ends there cannot keep off them."""
     near = np.zeros(len(blocked), dtype=np.bool_)
     for end in ends:
         near |= lengths(blocked - end) < keep + SLACK
@@ -122,7 +122,7 @@ def _distance(map_: OccupancyMap, free: NDArray[np.bool_]) -> Floats:
 
 
 def nearest_free(costs: Costs, x: float, y: float, within: float = inf) -> tuple[float, float]:
-    """Return the point nearest to another at which the robot can stand.
+    """Return the point nearest to another at which the robot can stand; all in m.
 
     Raises:
         PlanError: there is none so near.
@@ -182,7 +182,7 @@ def plan(
 
 
 def check_goal(map_: OccupancyMap, goal: tuple[float, float], radius: float = RADIUS) -> None:
-    """Make sure that the map has room for the robot at a goal.
+    """Make sure that the map has room for the robot (its radius in m) at a goal.
 
     Raises:
         PlanError: it has not.
@@ -224,7 +224,7 @@ def cheapest(
 
 
 def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
-    """Return what the straight line between two points costs; inf if it touches something."""
+    """Return the cost in m of the line between two points (2,); inf if it touches something."""
     length = hypot(*(end - start))
     count = max(2, ceil(length / (costs.map.resolution / 2)) + 1)
     points = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
@@ -233,7 +233,7 @@ def line_cost(costs: Costs, start: Floats, end: Floats) -> float:
 
 
 def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
-    """Leave out the points of a way that a straight line can do without at hardly more cost."""
+    """Leave out points of a way (n, 2) that a straight line does without; slack is a cost ratio."""
     steps = np.array([line_cost(costs, a, b) for a, b in pairwise(points)])
     spent = np.concatenate(([0.0], np.cumsum(np.where(np.isfinite(steps), steps, 1e6))))
     kept, here, last = [0], 0, len(points) - 1
@@ -254,7 +254,7 @@ def straighten(costs: Costs, points: Floats, slack: float = 1.01) -> Floats:
 
 
 def resample(points: Floats, step: float = STEP) -> Floats:
-    """Return points (n, 2) at even distances along a way, with both its ends."""
+    """Return points (n, 2) every `step` m along a way, with both its ends."""
     along = np.concatenate(([0.0], np.cumsum(lengths(np.diff(points, axis=0)))))
     if along[-1] < 1e-9:
         return points[[0, -1]]

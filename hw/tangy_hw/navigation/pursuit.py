@@ -43,7 +43,7 @@ class Pursuit:
 
         Args:
             path: points (n, 2) some centimetres apart, as `planning.plan` returns them.
-            heading: which way the robot faces at the end; None: as it comes.
+            heading: which way the robot faces at the end, in rad; None: as it comes.
             limits: how it may drive.
             laser: where the scanner sits on the robot.
         """

@@ -96,7 +96,7 @@ class SeenCard:
     def of(
         cls, deck: Deck, card: int, marked: int, hidden: int, stamp: float, deck_seed: int
     ) -> SeenCard:
-        """Return a card of a deck as it was read, with the numbers that it has."""
+        """Return a card of a deck as it was read (at a time in s), with the numbers that it has."""
         numbers = numbers_of(deck, card, deck_seed)
         return cls(card, numbers, marked, hidden, deck.free, len(deck.columns), stamp)
 

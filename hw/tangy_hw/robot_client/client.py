@@ -264,7 +264,7 @@ class RobotLink:
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
-        """Wait a moment for an answer; return whether it is there."""
+        """Wait so many s for an answer; return whether it is there."""
         with suppress(TooLate):
             asked.exception(seconds)
         return asked.done()

@@ -57,12 +57,12 @@ class Commands:
     def perform(
         self, text: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
     ) -> dict[str, Any]:
-        """Let the robot say, show and gesture; raises as `do`."""
+        """Let the robot say, show and gesture (joints in rad); raises as `do`."""
         angles = {limb: list(joints) for limb, joints in (posture or {}).items()}
         return self.do("perform", text=text, picture=picture._asdict(), posture=angles)
 
     def wait(self, seconds: float, *, asks: bool = False) -> None:
-        """Let time pass, with `asks` until somebody else asks; raises as `do`."""
+        """Let s pass, with `asks` until somebody else asks; raises as `do`."""
         self.do("wait", seconds=seconds, asks=asks)
 
     def settle(self) -> None:

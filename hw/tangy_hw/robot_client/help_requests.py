@@ -42,13 +42,13 @@ class HelpRequestTracker:
 
     @property
     def signs(self) -> dict[str, float]:
-        """Who has a sign up, and since when."""
+        """Who has a sign up, and since when, in s."""
         asks = self._link.state.asks
         return {self._people[seat - 1]: since for seat, since in asks if seat <= len(self._people)}
 
     @property
     def all(self) -> dict[str, float]:
-        """Who asks, by a sign that was not set aside or by word, and since when."""
+        """Who asks, by a sign that was not set aside or by word, and since when, in s."""
         signs = self.signs
         self._aside &= signs.keys()  # who has turned the sign down may put it up again
         if self._unseen and self._sees:

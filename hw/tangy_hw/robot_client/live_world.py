@@ -218,7 +218,7 @@ class LiveWorld:
     def say(
         self, speech: str, picture: Picture, posture: Mapping[str, Sequence[float]] | None = None
     ) -> None:
-        """Say and show something; while there is no voice, the screen shows what is said.
+        """Say and show something (joints in rad); without a voice the screen shows what is said.
 
         Raises:
             DeviceError: neither could be done.

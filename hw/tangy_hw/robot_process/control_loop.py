@@ -94,5 +94,5 @@ class ControlLoop:
             self._waiting -= 1
 
     async def sleep(self, seconds: float) -> None:
-        """Let so much time pass."""
+        """Let so many s pass."""
         await self.until(lambda: False, seconds)

@@ -194,7 +194,7 @@ class LiveRobot:
         posture: Mapping[str, Sequence[float]] | None = None,
         gazes: bool = False,
     ) -> dict[str, bool]:
-        """Say, show and gesture at once; return which of it was done.
+        """Say, show and gesture (joints in rad) at once; return which of it was done.
 
         What cannot be done is left out: its device says so in its reading. With an arm that has
         an error there are no gestures; the eyes are still turned, which `gazes` says this is for.

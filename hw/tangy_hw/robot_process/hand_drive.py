@@ -30,7 +30,7 @@ class HandDrive:
         self._until = 0.0
 
     def tell(self, twist: Twist, now: float) -> None:
-        """Take a command; it holds for a moment."""
+        """Take a command, `now` in s; it holds for a moment."""
         self._told, self._until = self._limits.clamped(twist), now + HOLDS_SECONDS
 
     def end(self) -> None:

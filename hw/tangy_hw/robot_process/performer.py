@@ -42,7 +42,7 @@ class Performer:
         posture: Angles | None = None,
         gazes: bool = False,
     ) -> dict[str, bool]:
-        """Say, show and gesture; see `LiveRobot.perform`."""
+        """Say, show and gesture (joints in rad)."""
         doing: dict[str, Coroutine[Any, Any, None]] = {}
         if self._body.voice is not None and text:
             doing["said"] = self._body.voice.say(text)

@@ -43,7 +43,7 @@ class Faults:
             self.lift(kind)
 
     def inject(self, kind: str, now: float) -> SimulatedFault:
-        """Bring about a fault.
+        """Bring about a fault at a time in s.
 
         Raises:
             KeyError: there is no such kind.

@@ -45,7 +45,7 @@ class Circle(NamedTuple):
 
 
 def chair(x: float, y: float, turned: float = 0.0) -> tuple[Circle, ...]:
-    """Return the legs of a chair whose middle is at (x, y)."""
+    """Return the legs of a chair whose middle is at (x, y) in m, turned by rad."""
     half = CHAIR / 2**0.5
     return tuple(
         Circle(x + half * cos(angle), y + half * sin(angle), CHAIR_LEG)
@@ -109,7 +109,7 @@ class Floor:
         return float(self._random.exponential(1 / (FIDGETS * len(self._legs))))
 
     def clear(self, x: float, y: float, radius: float) -> bool:
-        """Say whether something round can stand there: in the room, off the table and the rest."""
+        """Say whether something round (m) can stand there: in the room, off all the rest."""
         room = self.room
         if not (radius <= x <= room.width - radius and radius <= y <= room.depth - radius):
             return False

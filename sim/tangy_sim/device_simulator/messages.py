@@ -14,18 +14,18 @@ OK, WARN, ERROR, STALE = range(4)
 
 
 def time(seconds: float) -> dict[str, int]:
-    """Return a time, or how long something takes."""
+    """Return a time, or how long something takes, in s."""
     whole = floor(seconds)
     return {"secs": whole, "nsecs": min(round((seconds - whole) * 1e9), 999_999_999)}
 
 
 def header(seconds: float, frame: str) -> Message:
-    """Return the header of a message of that time."""
+    """Return the header of a message of that time in s."""
     return {"stamp": time(seconds), "frame_id": frame}
 
 
 def odometry(seconds: float, pose: FloorPose, forward: float, turn: float) -> Message:
-    """Return nav_msgs/Odometry; covariances are left out, as nobody reads them."""
+    """Return nav_msgs/Odometry (s, m/s, rad/s); covariances are left out, as nobody reads them."""
     where = {
         "position": {"x": pose.x, "y": pose.y, "z": 0.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": sin(pose.heading / 2), "w": cos(pose.heading / 2)},
@@ -45,7 +45,7 @@ def odometry(seconds: float, pose: FloorPose, forward: float, turn: float) -> Me
 def joint_states(
     seconds: float, positions: Mapping[str, float], speeds: Mapping[str, float]
 ) -> Message:
-    """Return sensor_msgs/JointState of joints in radians, by name."""
+    """Return sensor_msgs/JointState of joints in rad and rad/s, by name, at a time in s."""
     return {
         "header": header(seconds, ""),
         "name": list(positions),
@@ -56,7 +56,7 @@ def joint_states(
 
 
 def diagnostics(seconds: float, devices: Mapping[str, tuple[int, str]]) -> Message:
-    """Return diagnostic_msgs/DiagnosticArray: the level of each device, and what it says."""
+    """Return diagnostic_msgs/DiagnosticArray at a time in s: each device's level and words."""
     return {
         "header": header(seconds, ""),
         "status": [

@@ -105,7 +105,7 @@ class People:
         self.begin(0.0)
 
     def begin(self, now: float) -> None:
-        """Deal other cards and begin a game; nobody asks before it is opened."""
+        """Deal other cards and begin a game at a time in s; nobody asks before it is opened."""
         activity = self.activity
         self.now = now
         self.game = GameProgress()
@@ -144,7 +144,7 @@ class People:
     # -------------------------------------------------------------- what the robot does
 
     def step(self, now: float) -> None:
-        """Let time pass until `now`."""
+        """Let time pass until `now`, in s."""
         self.now = now
         if "request-withdrawn" in self._faults.present:
             self._withdraw()

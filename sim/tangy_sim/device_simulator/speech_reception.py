@@ -87,7 +87,7 @@ class SpeechReception:
 
 
 def speaking_seconds(text: str) -> float:
-    """Return how long the robot takes to say a text."""
+    """Return how many s the robot takes to say a text."""
     return BEGINS + EACH * len(text)
 
 

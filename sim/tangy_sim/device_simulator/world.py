@@ -108,7 +108,7 @@ class BenchWorld:
         return {person: sitter.card for person, sitter in self.people.sitters.items()}
 
     def step(self, seconds: float) -> None:
-        """Let time pass."""
+        """Let s pass."""
         left = seconds
         while left > 1e-9:
             part = min(left, PHYSICS)

@@ -32,7 +32,7 @@ class Outline:
     hole: float = 0.0
 
     def beyond(self, u: Real, v: Real, radius: float) -> Real:
-        """Return how far places are outside of the outline, less than 0 inside."""
+        """Return how far (px) places are outside of the outline, less than 0 inside."""
         import numpy as np
 
         along, aside = (
@@ -79,7 +79,7 @@ class Chip:
     y: float = 0.0
 
     def at(self, x: float, y: float) -> Chip:
-        """Return the chip at another place."""
+        """Return the chip at another place, in px."""
         return replace(self, x=float(x), y=float(y))
 
     def thrown(
@@ -160,7 +160,7 @@ def put_chip(
     tilted_to: float,
     random: np.random.Generator,
 ) -> None:
-    """Draw a chip with its shadow, its side (as the camera's tilt shows it) and its top."""
+    """Draw a chip (px) with its shadow, its side (as the camera's tilt shows it) and its top."""
     import numpy as np
 
     high = chip.thick * tan(radians(min(tilt, 70)))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def project(plane: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
-    """Return where points of the card (mm) are in the picture."""
+    """Return where points (n, 2) of the card, in mm, are in the picture, in px."""
     import numpy as np
 
     seen = np.column_stack([points, np.ones(len(points))]) @ plane.T
@@ -26,7 +26,7 @@ def project(plane: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
 
 
 def lit_scene(scene: Real, plane: NDArray[Any], view: View, random: np.random.Generator) -> Real:
-    """Return the scene in the light of a view: its slope, warmth, shadow and glare."""
+    """Return the scene (BGR) in the light of a view: its slope, warmth, shadow and glare."""
     import cv2
     import numpy as np
 
@@ -73,7 +73,7 @@ def moved(scene: Real, length: float, random: np.random.Generator) -> Real:
 def exposed(
     lit: Real, noise: float, quality: int, random: np.random.Generator, *, grey: bool = False
 ) -> Picture:
-    """Return the picture that a camera delivers: noise in grey levels, JPEG below quality 100."""
+    """Return the picture that a camera delivers: noise in grey levels, JPEG quality in %."""
     import cv2
     import numpy as np
 

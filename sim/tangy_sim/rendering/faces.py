@@ -22,7 +22,7 @@ def drawn_face(
     light: float = 1.0,
     blur: float = 0.0,
 ) -> Any:
-    """Draw one picture (BGR) of one person."""
+    """Draw one picture (BGR) of one person; light is a ratio, blur in px."""
     who, now = np.random.default_rng(person), np.random.default_rng((person, picture))
     side = 100 * _FINE
     face: Any = np.full((side, side, 3), now.uniform(95, 150, 3), np.float32)

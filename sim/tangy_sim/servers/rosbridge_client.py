@@ -49,7 +49,7 @@ class Client:
         self._fragmented = 0
 
     def subscribe(self, topic: str, key: str, throttle: float, largest: int) -> None:
-        """Remember a subscription; one of the same key is replaced."""
+        """Remember a subscription, of one message in `throttle` s; one of the same key goes."""
         self.topics.setdefault(topic, {})[key] = throttle, largest
 
     def unsubscribe(self, topic: str, key: object = None) -> None:
@@ -60,7 +60,7 @@ class Client:
             self.topics.pop(topic, None)
 
     def is_due(self, topic: str, now: float) -> bool:
-        """Whether a message of a topic is to be sent now; it counts as sent then."""
+        """Whether a message of a topic is to be sent now (s); it counts as sent then."""
         if topic not in self.topics:
             return False
         throttle = min(seconds for seconds, _ in self.topics[topic].values())

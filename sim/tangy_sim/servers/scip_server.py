@@ -101,7 +101,7 @@ class ScipServer:
         return far
 
     def send(self, ranges: NDArray[np.float64], stamp_ms: int) -> int:
-        """Give a scan to everybody who measures.
+        """Give a scan, (n,) in m, to everybody who measures.
 
         Args:
             ranges: metres, one for each beam; inf or beyond the scanner's reach: nothing is there.
@@ -150,7 +150,7 @@ class ScipServer:
 
 
 def in_millimetres(scanner: Scanner, ranges: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return distances as a scanner writes them, in mm: what is out of its reach is `nothing`."""
+    """Return distances (n,) in mm as a scanner writes them: out of its reach is `nothing`."""
     with np.errstate(invalid="ignore"):
         reached = (ranges >= scanner.nearest) & (ranges <= scanner.farthest)
     whole = np.rint(np.where(reached, ranges, 0.0) * 1000).astype(np.int64)

@@ -39,12 +39,12 @@ class Scanner:
 
     @property
     def step(self) -> float:
-        """The angle between two beams in radians."""
+        """The angle between two beams, in rad."""
         return 2 * math.pi / self.resolution
 
     @property
     def first(self) -> float:
-        """Where the first beam looks, in radians from straight ahead, counter-clockwise."""
+        """Where the first beam looks, in rad from straight ahead, counter-clockwise."""
         return -self.front * self.step
 
 
@@ -66,7 +66,7 @@ def number(value: int, signs: int) -> bytes:
 
 
 def measurement(distances: NDArray[np.int64], signs: int) -> bytes:
-    """Write distances in mm as lines of 64 characters, each with its checksum."""
+    """Write distances (n,) in mm as lines of 64 characters, each with its checksum."""
     shifts = np.arange(6 * signs - 6, -1, -6)
     body = (48 + (distances[:, None] >> shifts) % 64).astype(np.uint8).tobytes()
     pieces = (body[begin : begin + LINE] for begin in range(0, len(body), LINE))
@@ -123,7 +123,7 @@ class ScipSession:
                 self._obey(command)
 
     def offer(self, distances: NDArray[np.int64], ticks: int) -> bool:
-        """Give a scan, in mm, of a time in ms; return whether the client got it."""
+        """Give a scan, (n,) in mm, of a time in ms; return whether the client got it."""
         self._ticks = ticks
         got = False
         while self._single:

@@ -15,7 +15,7 @@ Preferences = Mapping[str, Mapping[str, float]]
 def preferences_in_turn(
     people: Sequence[str], strategies: Sequence[str], model: UserModel
 ) -> dict[str, dict[str, float]]:
-    """Give the people different preferences, strategy by strategy in turn.
+    """Give the people different preferences (probabilities), strategy by strategy in turn.
 
     They do not depend on the seed: a person whom Tangy has got to know stays the same person.
     """

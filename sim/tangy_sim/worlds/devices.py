@@ -53,7 +53,7 @@ def lasting(device: str, fact: str) -> Symptom:
 
 
 def readings(symptoms: list[tuple[Symptom, float]]) -> Health:
-    """Return what all devices report, with the symptoms of faults and how long they have lasted."""
+    """Return what all devices report, with symptoms of faults and the s that they have lasted."""
     found: dict[str, Reading] = {reading.device: reading for reading in WELL}
     for symptom, seconds in symptoms:
         for device, (age, state, facts) in symptom(seconds).items():

@@ -116,5 +116,5 @@ def waiting_calls(uniform: Callable[[], float], chance: float) -> int:
 
 
 def waiting_time(uniform: Callable[[], float], rate: float) -> float:
-    """Draw the time until something of this rate happens (exponential)."""
+    """Draw the s until something of this rate (1/s) happens (exponential)."""
     return -log(1 - uniform()) / rate if rate > 0 else 1e18

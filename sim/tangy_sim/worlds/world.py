@@ -138,7 +138,7 @@ class SimulatedWorld:
         return WELL
 
     def recover(self, remedy: Remedy) -> float:
-        """Do nothing: here is nothing that could be mended."""
+        """Do nothing, in 0 s: here is nothing that could be mended."""
         return 0.0
 
     # Effects return the numbers that they were about, or None if they came to nothing.

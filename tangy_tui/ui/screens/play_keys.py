@@ -28,7 +28,7 @@ def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
 
 
 def faster(speed: float, by: int) -> float:
-    """Return the next speed but `by` from the nearest one that there is."""
+    """Return the speed (times life) `by` places from the nearest one that there is."""
     nearest = min(range(len(SPEEDS)), key=lambda i: abs(SPEEDS[i] - speed))
     return SPEEDS[min(len(SPEEDS) - 1, max(0, nearest + by))]
 

@@ -74,7 +74,7 @@ class LogView(ScrollView, can_focus=True):
         self._show(self._at_end)
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Take note whether the end is shown: by the size of now that cannot be told later."""
+        """Take note whether the end (in rows) is shown: the size of now is not known later."""
         super().watch_scroll_y(old_value, new_value)
         self._at_end = self.is_vertical_scroll_end
 

@@ -50,7 +50,7 @@ class Level(Protocol):
 
     @property
     def level(self) -> float:
-        """From 0, silence, to 1."""
+        """The loudness, from 0 to 1."""
 
 
 class Microphone(Protocol):

@@ -106,7 +106,7 @@ class Grid:
         self.front = self.column(room.front.x)
 
     def column(self, x: float) -> int:
-        """Return the column of a place."""
+        """Return the column, in cells, of a place in m."""
         return min(self._plan.width - 1, max(0, int((x - self._from) * self._scale)))
 
     def sprite(self, point: Point) -> tuple[int, int]:

@@ -177,7 +177,7 @@ class RoomView(Widget):
         self._draw_again()
 
     def drive(self, to: str, seconds: float) -> None:
-        """Let the robot walk to the front or to a person; posts `Arrived` when it is there.
+        """Let the robot walk to the front or a person in so many s; posts `Arrived` when there.
 
         It walks from where it is seen, so it does not matter whether the scene that has it at
         the end of its way is shown before or after.

@@ -45,7 +45,7 @@ class Sighting:
 
 
 def project(plane: Plane, points: NDArray[Any]) -> NDArray[Any]:
-    """Return where points of the card are in the picture."""
+    """Return where points (n, 2) of the card are in the picture, in px."""
     import numpy as np
 
     seen = np.column_stack([points, np.ones(len(points))]) @ plane.T

@@ -144,7 +144,7 @@ def _mask(places: Any, deck: Deck) -> int:
 
 
 def count_labelled(labels: list[CardLabel], read: Callable[[NDArray[Any]], CardReading]) -> Counted:
-    """Read each picture and compare it with its label.
+    """Read each picture (BGR) and compare it with its label.
 
     Raises:
         PictureError: a picture cannot be read.

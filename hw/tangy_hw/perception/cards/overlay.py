@@ -17,7 +17,7 @@ SIDE = 100  # a cell straight on, in the units in which is drawn
 
 
 def draw_reading(picture: Picture, reading: CardReading, deck: Deck) -> Picture:
-    """Return the picture with the grid, a ring around each marked cell, and hidden ones crossed."""
+    """Return the picture (BGR) with the grid, marked cells ringed, and hidden ones crossed."""
     import cv2
     import numpy as np
 

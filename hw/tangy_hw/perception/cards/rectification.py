@@ -42,7 +42,7 @@ class Flat:
 
 @lru_cache(maxsize=64)
 def expected_grid(face: CardLayout, card: int, seed: int) -> Picture:
-    """Return how the grid of a card is printed, as it should look straight on."""
+    """Return how the grid of a card looks straight on: (rows, columns), grey."""
     import cv2
 
     drawn = draw_face(face, card, seed, "", SIDE / face.cell)
@@ -75,7 +75,7 @@ def _to_flat(face: CardLayout) -> Plane:
 
 
 def flatten(picture: Picture, seen: Sighting, face: CardLayout, seed: int) -> Flat | None:
-    """See a card's grid straight on; None where too few of its crossings match."""
+    """Return a card's grid straight on (rows, columns, 3); None where too few crossings match."""
     import cv2
     import numpy as np
 

@@ -57,7 +57,7 @@ class Tag:
 
 
 def tags_in(grey: Picture) -> list[Tag]:
-    """Return the tags in a picture: after a quick look, or a thorough one if any are small."""
+    """Return the tags in a grey picture: after a quick look, or a thorough one if any are small."""
     tags = joined([], _detected(grey, QUICK))
     if not tags or min(tag.side for tag in tags) < SMALL:
         tags = joined(tags, _detected(grey, THOROUGH))
@@ -88,7 +88,7 @@ def joined(tags: list[Tag], more: list[Tag]) -> list[Tag]:
 
 
 def is_printed(grey: Picture, tag: Tag) -> bool:
-    """Say whether a tag is black on white paper, every module of it.
+    """Say whether a tag (corners (4, 2) in px) is black on white paper, every module of it.
 
     In a picture full of detail some pattern may happen to be read as a tag.
     """

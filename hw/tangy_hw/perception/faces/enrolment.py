@@ -48,7 +48,7 @@ class Enrolment:
         return len(self._vectors)
 
     def offer(self, picture: Picture) -> str:
-        """Take a picture; return why it is refused, "" if it is not."""
+        """Take a picture (BGR); return why it is refused, "" if it is not."""
         self._seen += 1
         problem, vector = one_face(self._reader.read(picture))
         if vector is None:

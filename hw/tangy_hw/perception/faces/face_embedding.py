@@ -57,7 +57,7 @@ def describe(face: Grey) -> Vector:
 
 
 def symmetry(face: Grey) -> float:
-    """Say how much an aligned face is like its mirror image, up to 1: turned faces are not."""
+    """Return the likeness (cosine, up to 1) of an aligned face and its mirror image, as a ratio."""
     import numpy as np
 
     relief = _relief(face)

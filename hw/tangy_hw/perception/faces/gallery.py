@@ -93,7 +93,7 @@ class Gallery:
 
 
 def decide(likenesses: Mapping[str, float]) -> FaceMatch:
-    """Say who it is by the likeness to everybody who is enrolled."""
+    """Say who it is by the likeness (cosine, a score up to 1) to everybody who is enrolled."""
     ranked = sorted(likenesses, key=lambda person: -likenesses[person])
     if not ranked:
         return FaceMatch(None, None, 0.0)

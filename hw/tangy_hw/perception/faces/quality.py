@@ -58,7 +58,7 @@ class Quality:
         return ""
 
     def document(self) -> dict[str, float]:
-        """Return it for JSON."""
+        """Return it for JSON: px, rad and scores as measured."""
         return {name: round(value, 3) for name, value in asdict(self).items()}
 
 

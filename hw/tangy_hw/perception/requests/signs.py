@@ -69,7 +69,7 @@ class TableView:
         return Point(a / c, b / c) if c > 1e-9 else None
 
     def seat(self, x: float, y: float) -> int:
-        """Return the seat (from 1) at which a sign stands that is seen there, or 0."""
+        """Return the seat (from 1) at which a sign stands that is seen at this px, or 0."""
         place = self.place(x, y)
         left, near, right, far = self._table
         if (
@@ -91,7 +91,7 @@ class Persistence:
         self._believed: set[int] = set()
 
     def take(self, found: dict[int, float]) -> dict[int, float]:
-        """Take what one picture shows, seat to how sure; return the same of what is believed."""
+        """Take what one picture shows, seat to probability; return the same of what is believed."""
         for seat in found:
             self._seen.setdefault(seat, deque((0.0,) * OF, OF))
         for seat, last in list(self._seen.items()):
@@ -117,7 +117,7 @@ class SignWatcher:
         """Of the last picture alone: seat to how sure."""
 
     def look(self, image: Image) -> dict[int, float]:
-        """Take a picture; return who asks: seat (from 1) to how sure."""
+        """Take a picture (BGR); return who asks: seat (from 1) to probability."""
         self.found = {}
         for one in find_triangles(image, self._limits):
             seat = self._view.seat(one.x, one.y)

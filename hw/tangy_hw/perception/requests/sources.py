@@ -28,7 +28,7 @@ def open_requests(
     corners: Sequence[tuple[float, float]] = (),
     each: bool = False,
 ) -> RequestSource:
-    """Open a source by its name; it is not started yet.
+    """Open a source by its name; it is not started yet. Times are in s.
 
     Args:
         name: one of those above.

@@ -76,7 +76,7 @@ def find_triangles(image: Image, limits: TriangleLimits = USUAL) -> list[Triangl
 
 
 def how_sure(shape: Shape, limits: TriangleLimits = USUAL) -> float:
-    """Return how sure it is that a shape is a triangle, from 0 (it is none) to 1."""
+    """Return the probability that a shape is a triangle."""
     least, most = limits.corner
     if (
         shape.fills < limits.fills
