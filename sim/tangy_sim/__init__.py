@@ -1,1 +1,5 @@
 """A simulated world: people with cards, their requests and responses, and a robot among them."""
+
+import logging
+
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # or it would go to stderr

@@ -7,6 +7,8 @@ import logging
 import os
 import re
 import stat
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -110,3 +112,10 @@ def test_a_log_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
 
 def test_every_file_says_whose_it_is() -> None:
     assert PROGRAM_LOG in LOGS and all(LOGS.values())
+
+
+@pytest.mark.parametrize("package", ["tangy_tui", "tangy_hw", "tangy_sim", "tangy_profiles"])
+def test_where_no_log_was_opened_a_warning_stays_out_of_the_terminal(package: str) -> None:
+    warns = f"import {package}, logging; logging.getLogger('{package}.room').warning('broken')"
+    done = subprocess.run([sys.executable, "-c", warns], capture_output=True, check=True)  # noqa: S603
+    assert done.stderr == b""
