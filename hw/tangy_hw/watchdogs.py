@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from tangy_profiles.health import ERROR, OK, STALE, Health, Reading, state_of
+from tangy_profiles.health import ERROR, OK, STALE, DeviceState, Health, Reading, state_of
 from tangy_profiles.robot import Robot
 
 Report = Callable[[], Reading]
@@ -34,13 +34,13 @@ class Watchdogs:
         """
         self._robot = robot
         self._reports = dict(reports)
-        self._silenced: dict[str, str] = {}
+        self._silenced: dict[str, DeviceState] = {}
 
     def health(self) -> Health:
         """Return the newest reading of every device."""
         return tuple(self._reading(name) for name in self._robot.devices)
 
-    def fail(self, device: str, state: str = ERROR) -> None:
+    def fail(self, device: str, state: DeviceState = ERROR) -> None:
         """Take a device for broken, whatever it says; "OK" takes that back."""
         if state == OK:
             self._silenced.pop(device, None)
@@ -69,7 +69,7 @@ class Watchdogs:
         device = self._robot.devices.get(name)
         return name if device is None else device.label
 
-    def state(self, reading: Reading) -> str:
+    def state(self, reading: Reading) -> DeviceState:
         """Return the state of a device of the robot, as `state_of` does."""
         return state_of(self._robot.devices.get(reading.device), reading)
 

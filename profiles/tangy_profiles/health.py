@@ -8,13 +8,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 if TYPE_CHECKING:
     from tangy_profiles.robot import DeviceProfile
 
-OK, WARN, ERROR, STALE = "OK", "WARN", "ERROR", "STALE"
-STATES = (OK, WARN, STALE, ERROR)
+DeviceState = Literal["OK", "WARN", "ERROR", "STALE"]
+OK: Final = "OK"
+WARN: Final = "WARN"
+ERROR: Final = "ERROR"
+STALE: Final = "STALE"
+STATES: tuple[DeviceState, ...] = (OK, WARN, STALE, ERROR)
 """The states of a device from best to worst. Stale is not an error: nothing was heard, so nothing
 is known; as ROS's diagnostics have it."""
 
@@ -32,7 +36,7 @@ class Reading(NamedTuple):
 
     device: str
     age: float = 0.0
-    state: str = OK
+    state: DeviceState = OK
     facts: Mapping[str, Fact] = MappingProxyType({})
     rate: float | None = None
 
@@ -41,7 +45,7 @@ Health = tuple[Reading, ...]
 """The readings of all devices of a robot."""
 
 
-def state_of(device: DeviceProfile | None, reading: Reading) -> str:
+def state_of(device: DeviceProfile | None, reading: Reading) -> DeviceState:
     """Return the state of a device: what it says of itself, or STALE if its data is too old.
 
     A measurement that is no number is an error. An age that is none, or has no end, is too old
@@ -51,3 +55,8 @@ def state_of(device: DeviceProfile | None, reading: Reading) -> str:
         return ERROR
     oldest = math.inf if device is None else device.stale_after
     return reading.state if math.isfinite(reading.age) and reading.age <= oldest else STALE
+
+
+def device_state(told: object) -> DeviceState | None:
+    """Return the state that another process or a file tells; None: there is no such state."""
+    return next((one for one in STATES if one == told), None)

@@ -15,6 +15,7 @@ from tangy_hw.drivers.camera import Frame
 from tangy_hw.drivers.camera_state import Sight
 from tangy_hw.perception.camera_hub import CARDS, CardSight, SeenCard
 from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_process.requests import Request
 from tangy_profiles.cards import Deck
 from tangy_profiles.health import Health
 from tangy_profiles.robot import Robot
@@ -138,7 +139,7 @@ class LinkedSensors:
                 self._take(told, time.monotonic())
             await asyncio.sleep(LOOK_SECONDS)
 
-    async def _ask(self, do: str, **what: Any) -> dict[str, Any] | None:
+    async def _ask(self, do: Request, **what: Any) -> dict[str, Any] | None:
         """Ask the robot process; None if it cannot tell."""
         if not self._link.silent:  # or lines would heap up before one that hangs
             answer = asyncio.wrap_future(self._link.ask(do, **what))

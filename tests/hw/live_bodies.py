@@ -18,7 +18,7 @@ from tangy_hw.device_protocols import (
     Twist,
 )
 from tangy_hw.robot_process.body import Body
-from tangy_profiles.health import OK, Reading
+from tangy_profiles.health import OK, DeviceState, Reading
 
 HERE = Pose(2.0, 1.0, 0.0)
 
@@ -28,7 +28,8 @@ class ToldDevice:
 
     def __init__(self, name: str, told: list[Any]) -> None:
         self.name, self.told = name, told
-        self.state, self.age = OK, 0.0
+        self.state: DeviceState = OK
+        self.age = 0.0
         self.facts: dict[str, Any] = {}
 
     async def start(self) -> None:

@@ -12,7 +12,7 @@ from tangy_hw.robot_process.device_diagnostics import device_diagnostics
 from tangy_hw.robot_process.drive_monitor import DriveMonitor
 from tangy_hw.watchdogs import Watchdogs
 from tangy_profiles.activity import load_activity
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Reading
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import ToldBody, ToldDevice
 from tests.hw.navigated import MAP
@@ -24,7 +24,7 @@ BASE, VOICE = "ws://10.0.0.1:9090", "ws://10.0.0.2:9090"
 class Link(ToldDevice):
     """One of several links; the robot may drive by it."""
 
-    def __init__(self, state: str = OK, age: float = 0.0, *, drives: bool = True) -> None:
+    def __init__(self, state: DeviceState = OK, age: float = 0.0, *, drives: bool = True) -> None:
         super().__init__("link", [])
         self.state, self.age, self.drives = state, age, drives
 

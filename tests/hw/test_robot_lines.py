@@ -26,6 +26,8 @@ from tangy_hw.robot_process.control_loop import TICK
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
 from tangy_hw.robot_process.process import RobotProcess
+from tangy_hw.robot_process.requests import AT_ONCE, DEEDS, Request
+from tangy_profiles.health import ERROR
 from tangy_profiles.process_log import PROGRAM_LOG, logging_to
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
@@ -232,3 +234,21 @@ async def test_the_id_of_a_command_goes_from_its_line_to_the_driver_and_back(
     logged = (tmp_path / PROGRAM_LOG).read_text(encoding="utf-8").splitlines()
     served = [line.partition(" [c0ffee42] ")[2] for line in logged if "[c0ffee42]" in line]
     assert served == ["begins relax", "has done relax"]
+
+
+@pytest.mark.parametrize("asked", (*AT_ONCE, *DEEDS))
+async def test_every_request_of_the_closed_set_is_known_to_the_process(asked: Request) -> None:
+    async with spoken() as one:
+        await one.take(id=1, do=asked)
+        await until(lambda: bool(one.said))
+        assert "cannot do" not in json.dumps(one.said)
+
+
+async def test_a_device_state_that_there_is_not_is_refused_and_never_taken_for_well() -> None:
+    async with spoken() as one:
+        await one.take(id=1, do="fail", device="laser", state="FINE")
+        await until(lambda: bool(one.said))
+        assert one.said[0]["failed"] == "There is no state 'FINE' of a device."
+        beat = json.loads(json.dumps(beat_of(one.robot, 1)))
+        beat["health"][0][2] = "BETTER THAN EVER"
+        assert RobotState.from_json(beat).health[0].state == ERROR

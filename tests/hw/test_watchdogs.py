@@ -10,7 +10,7 @@ import pytest
 
 from tangy_hw.watchdogs import BLIND, DARK, Watchdogs
 from tangy_profiles.fault_file import load_faults
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Reading
 from tangy_profiles.robot import load_robot
 
 ROBOT = load_robot()
@@ -58,13 +58,15 @@ def test_a_robot_that_is_well_may_drive() -> None:
 @pytest.mark.parametrize(
     ("state", "why"), [(ERROR, "has an error"), (STALE, "says nothing"), (WARN, "")]
 )
-def test_it_must_not_drive_by_a_device_that_is_not_well(device: str, state: str, why: str) -> None:
+def test_it_must_not_drive_by_a_device_that_is_not_well(
+    device: str, state: DeviceState, why: str
+) -> None:
     assert hazard(Reading(device, state=state)) == (f"{label(device)} {why}" if why else "")
 
 
 @pytest.mark.parametrize("device", NEEDED)
 @pytest.mark.parametrize("state", [OK, WARN])
-def test_it_must_not_drive_by_data_that_is_too_old(device: str, state: str) -> None:
+def test_it_must_not_drive_by_data_that_is_too_old(device: str, state: DeviceState) -> None:
     fresh = ROBOT.devices[device].stale_after
     assert hazard(Reading(device, age=fresh, state=state)) == ""
     assert hazard(Reading(device, age=fresh + 0.01, state=state)) == f"{label(device)} says nothing"
@@ -76,7 +78,7 @@ def test_what_a_device_says_of_itself_is_told_before_its_age() -> None:
 
 @pytest.mark.parametrize("device", OTHERS)
 @pytest.mark.parametrize("state", [ERROR, STALE])
-def test_it_may_drive_without_a_voice_or_a_camera(device: str, state: str) -> None:
+def test_it_may_drive_without_a_voice_or_a_camera(device: str, state: DeviceState) -> None:
     assert hazard(Reading(device, age=1e6, state=state)) == ""
 
 
@@ -108,7 +110,7 @@ def test_it_stands_by_the_limits_by_which_a_covered_laser_is_diagnosed() -> None
 
 
 @pytest.mark.parametrize(("state", "why"), [(ERROR, "has an error"), (STALE, "says nothing")])
-def test_a_device_can_be_taken_for_broken_whatever_it_says(state: str, why: str) -> None:
+def test_a_device_can_be_taken_for_broken_whatever_it_says(state: DeviceState, why: str) -> None:
     dogs = Watchdogs(ROBOT, saying())
     dogs.fail("navigator", state)
     assert dogs.hazard() == f"navigation {why}"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import STAFF
-from tangy_profiles.health import OK, Fact, Reading
+from tangy_profiles.health import OK, DeviceState, Fact, Reading
 from tangy_tui.app.game_commands import Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -60,7 +60,7 @@ class HeldLink(FakeLink):
         self.released.append(by)
         self.held_by -= {by} if by else self.held_by
 
-    def ail(self, device: str, state: str = OK, **facts: Fact) -> None:
+    def ail(self, device: str, state: DeviceState = OK, **facts: Fact) -> None:
         """Let a device report this from now on."""
         ill = Reading(device, 0.0, state, facts)
         health = tuple(ill if r.device == device else r for r in self.state.health)

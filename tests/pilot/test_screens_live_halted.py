@@ -10,7 +10,7 @@ import pytest
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
 from tangy_profiles.faults import Remedy
-from tangy_profiles.health import ERROR, STALE
+from tangy_profiles.health import ERROR, STALE, DeviceState
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.critical import CriticalDialog
@@ -46,7 +46,9 @@ def seen(pilot: TangyPilot) -> str:
     return " ".join(pilot.text().split())
 
 
-async def halting(pilot: TangyPilot, link: HeldLink, device: str, state: str = "OK") -> None:
+async def halting(
+    pilot: TangyPilot, link: HeldLink, device: str, state: DeviceState = "OK"
+) -> None:
     """Pause the game, let a device fail, and wait until the dialog takes keys."""
     await paused_after(pilot, link, 2)
     if device == "link":
@@ -69,7 +71,7 @@ async def lives(pilot: TangyPilot, link: HeldLink) -> None:
 
 @pytest.mark.parametrize(("device", "state"), [("link", STALE), ("navigator", ERROR)])
 async def test_the_screen_lives_while_the_robot_process_is_started_again(
-    run: Run, program: Program, link: HeldLink, device: str, state: str
+    run: Run, program: Program, link: HeldLink, device: str, state: DeviceState
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
         await halting(pilot, link, device, state)

@@ -9,7 +9,7 @@ from typing import Literal
 from tangy_hw.drivers.camera_look import Look
 from tangy_hw.rate_estimator import RateEstimator
 from tangy_profiles.health import OK as WELL
-from tangy_profiles.health import STALE, WARN, Fact, Reading
+from tangy_profiles.health import STALE, WARN, DeviceState, Fact, Reading
 
 State = Literal[
     "OPENING", "OK", "DISCONNECTED", "FROZEN", "COVERED", "DARK", "BLURRED", "ENDED"
@@ -78,8 +78,8 @@ class Sight:
             facts["brightness"] = self.brightness
             facts["contrast"] = self.contrast
             facts["unchanged"] = min(self.unchanged, LONGEST)
-        said = STALE if self.state in ("OPENING", "DISCONNECTED", "ENDED") else WARN
-        state = WELL if self.state == "OK" else said
+        said: DeviceState = STALE if self.state in ("OPENING", "DISCONNECTED", "ENDED") else WARN
+        state: DeviceState = WELL if self.state == "OK" else said
         return Reading(device, self.age, state, MappingProxyType(facts), self.rate)
 
 

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tangy_hw.device_protocols import Odometry, Pose, Scan, Twist
-from tangy_profiles.health import ERROR, OK, STALE, WARN
+from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState
 
 Message = Mapping[str, Any]
 
-LEVELS = (OK, WARN, ERROR, STALE)
+LEVELS: tuple[DeviceState, ...] = (OK, WARN, ERROR, STALE)
 """As diagnostic_msgs/DiagnosticStatus numbers them."""
 
 
@@ -137,9 +137,9 @@ def trajectory_message(joints: Mapping[str, float], seconds: float, ros: int) ->
     return {"header": header("", ros), "joint_names": list(joints), "points": [point]}
 
 
-def statuses_of(message: Message) -> list[tuple[str, str, str, dict[str, str]]]:
+def statuses_of(message: Message) -> list[tuple[str, DeviceState, str, dict[str, str]]]:
     """Return a diagnostic_msgs/DiagnosticArray: name, state, what it says, and its values."""
-    found: list[tuple[str, str, str, dict[str, str]]] = []
+    found: list[tuple[str, DeviceState, str, dict[str, str]]] = []
     for status in message["status"]:
         level = status["level"]
         if isinstance(level, str) and len(level) == 1:  # a byte, as some bridges write it

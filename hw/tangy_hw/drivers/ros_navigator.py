@@ -24,7 +24,7 @@ from tangy_hw.drivers.ros_newest import Newest, awaited
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.rosbridge_waiting import Goal, LinkLost
 from tangy_hw.navigation.localisation import WIDE
-from tangy_profiles.health import OK, STALE, Reading
+from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
 
 DRIVE_SECONDS = 180.0
@@ -153,7 +153,7 @@ class RosNavigator:
         age, link = self._pose.age, self._bridge.reading().age
         age = min(age, self._bridge.clock() - self._since if self.state == "driving" else link)
         fit = 0.0 if self._spread > WIDE else 1.0
-        state = STALE if self.pose is None else OK
+        state: DeviceState = STALE if self.pose is None else OK
         facts = {"fit": fit, "spread": self._spread}
         return Reading("localisation", age, state, facts, self._pose.rate)
 

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from tangy_hw.device_protocols import Stamped
 from tangy_hw.rate_estimator import RateEstimator
-from tangy_profiles.health import OK, STALE, Fact, Reading
+from tangy_profiles.health import OK, STALE, DeviceState, Fact, Reading
 
 Value = TypeVar("Value")
 NOTHING: Mapping[str, Fact] = MappingProxyType({})
@@ -49,9 +49,11 @@ class Newest(Generic[Value]):
         """How often a second one comes; None: that cannot be told yet."""
         return self._arrivals.rate(self._clock())
 
-    def reading(self, device: str, state: str = OK, facts: Mapping[str, Fact] = NOTHING) -> Reading:
+    def reading(
+        self, device: str, state: DeviceState = OK, facts: Mapping[str, Fact] = NOTHING
+    ) -> Reading:
         """Return what the diagnosis is told: stale before anything came, else the given state."""
-        said = STALE if self.stamped is None else state
+        said: DeviceState = STALE if self.stamped is None else state
         return Reading(device, self.age, said, facts, self.rate)
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from tangy_hw.drivers.ros_messages import Message, statuses_of
 from tangy_hw.drivers.ros_newest import Newest
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Reading
 
 HOLDS_SECONDS = 5.0  # for which a diagnosis holds; ROS tells one a second
 NAMES = 500  # diagnoses that are kept
@@ -18,7 +18,7 @@ WORSE = (OK, WARN, STALE, ERROR)
 class DeviceStatus(NamedTuple):
     """What is said of a device: its state, a sentence, values, and when it came."""
 
-    state: str
+    state: DeviceState
     says: str
     values: Mapping[str, str]
     stamp: float
@@ -96,7 +96,7 @@ class RosDiagnostics:
             self._said.setdefault(self.device(name), {})[name] = diagnosis
 
 
-def state_told(diagnostics: RosDiagnostics | None, device: str) -> str:
+def state_told(diagnostics: RosDiagnostics | None, device: str) -> DeviceState:
     """Return the state that diagnostics give a device; OK where they say nothing of it."""
     diagnosis = None if diagnostics is None else diagnostics.of(device)
     return OK if diagnosis is None else diagnosis.state

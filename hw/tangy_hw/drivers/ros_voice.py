@@ -13,7 +13,7 @@ from tangy_hw.drivers.ros_messages import Message
 from tangy_hw.drivers.ros_newest import awaited
 from tangy_hw.drivers.ros_status import RosDiagnostics, state_told
 from tangy_hw.drivers.rosbridge import Rosbridge
-from tangy_profiles.health import ERROR, STALE, Reading
+from tangy_profiles.health import ERROR, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
 
 _LOG = logging.getLogger(__name__)
@@ -85,6 +85,7 @@ class RosVoice:
         """
         link = self._bridge.reading()
         age = None if self._diagnostics is None else self._diagnostics.age(self.name)
+        state: DeviceState
         if self._dead:
             state = ERROR
         else:

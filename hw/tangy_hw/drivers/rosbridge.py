@@ -23,7 +23,7 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_hw.drivers.rosbridge_waiting import Goal, Waiting
 from tangy_hw.rate_estimator import RateEstimator
-from tangy_profiles.health import OK, STALE, Reading
+from tangy_profiles.health import OK, STALE, DeviceState, Reading
 from tangy_profiles.reading import plain
 
 Message = Mapping[str, Any]
@@ -127,7 +127,7 @@ class Rosbridge:
     def reading(self) -> Reading:
         """Return the age of the newest message of any kind: the last that says the robot lives."""
         since = self._began if self._heard is None else self._heard
-        state = OK if self.connected and self._heard is not None else STALE
+        state: DeviceState = OK if self.connected and self._heard is not None else STALE
         now = self.clock()
         return Reading(self.name, max(now - since, 0.0), state, rate=self._arrivals.rate(now))
 

@@ -30,7 +30,7 @@ from tangy_hw.drivers.scip_codec import (
 )
 from tangy_hw.drivers.scip_link import Link, open_link
 from tangy_hw.rate_estimator import RateEstimator
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Reading
+from tangy_profiles.health import ERROR, OK, STALE, WARN, DeviceState, Fact, Reading
 
 NEAR = 0.15
 """A hand's breadth in m: beams that end within it see what covers the scanner."""
@@ -151,7 +151,7 @@ class ScipLaser:
         rate = self._arrivals.rate(now)
         if self._scan is None or age > self._stale_after:
             return Reading(self.name, age, STALE, rate=rate)
-        state = WARN if now - self._warned < WINDOW else OK
+        state: DeviceState = WARN if now - self._warned < WINDOW else OK
         return Reading(self.name, age, state, self._told(), rate)
 
     def _told(self) -> Mapping[str, Fact]:

@@ -27,6 +27,7 @@ from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.robot_state import RobotState
 from tangy_hw.robot_process.protocol import level_of
+from tangy_hw.robot_process.requests import Request
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_hw.write_queue import WriteQueue
@@ -248,7 +249,7 @@ class RobotLink:
 
     # ------------------------------------------------------------------------- what it is told
 
-    def ask(self, do: str, **what: Any) -> Future[dict[str, Any]]:
+    def ask(self, do: Request, **what: Any) -> Future[dict[str, Any]]:
         """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
         asked: Future[dict[str, Any]] = Future()
         with self._lock:  # an end of the process is answered either here or by whoever hears of it
@@ -281,7 +282,7 @@ class RobotLink:
                 self._said.wait(BEAT_SECONDS)
         return self.state
 
-    def do(self, do: str, **what: Any) -> dict[str, Any]:
+    def do(self, do: Request, **what: Any) -> dict[str, Any]:
         """Ask the robot for something, and wait for it.
 
         Raises:
@@ -293,12 +294,12 @@ class RobotLink:
         except TooLate:
             raise DeviceError(f"The robot process does not answer ({do}).") from None
 
-    def tell(self, do: str, **what: Any) -> None:
+    def tell(self, do: Request, **what: Any) -> None:
         """Tell the robot something, and wait for no answer."""
         self._write(json.dumps({**self._command(do), **what}))
 
     @staticmethod
-    def _command(do: str) -> dict[str, str]:
+    def _command(do: Request) -> dict[str, str]:
         """Begin a line: what is to be done, and the id of the command that it serves."""
         command = command_id()
         level = logging.WARNING if do == "stop" else level_of(do)
@@ -369,7 +370,7 @@ class RobotLink:
             asked.set_result(said.get("done", {}))
 
 
-def _note_answer(do: str, command: str, asked: Future[dict[str, Any]]) -> None:
+def _note_answer(do: Request, command: str, asked: Future[dict[str, Any]]) -> None:
     """Log what came of something that the robot was asked for; this is another thread."""
     with serving(command):
         failed = None if asked.cancelled() else asked.exception()

@@ -9,6 +9,7 @@ from typing import Any
 
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.robot_client.client import RobotLink
+from tangy_hw.robot_process.requests import Request
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.health import Health
 
@@ -26,7 +27,7 @@ class Commands:
         self.diagnosed: Diagnosed = _nothing
         self._heedless: frozenset[str] = frozenset()
 
-    def do(self, do: str, **what: Any) -> dict[str, Any]:
+    def do(self, do: Request, **what: Any) -> dict[str, Any]:
         """Let the robot do something; it is broken off where devices report what is critical.
 
         Raises:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tangy_hw.device_protocols import Pose
-from tangy_profiles.health import Health, Reading
+from tangy_profiles.health import ERROR, Health, Reading, device_state
 
 NOWHERE = Pose(0.0, 0.0, 0.0)
 
@@ -42,7 +42,7 @@ class RobotState:
         return cls(
             body["number"],
             body["time"],
-            tuple(Reading(*reading) for reading in body["health"]),
+            tuple(_reading(*told) for told in body["health"]),
             Pose(*body["pose"]),
             body["going"],
             tuple((x, y) for x, y in body["path"]),
@@ -55,3 +55,8 @@ class RobotState:
             body["frozen"],
             body["held"],
         )
+
+
+def _reading(device: str, age: float, state: str, *more: Any) -> Reading:
+    """Return a reading as it was told; of a state that there is not nothing good is known."""
+    return Reading(device, age, device_state(state) or ERROR, *more)

@@ -29,7 +29,7 @@ from tangy_hw.robot_process.stop_latch import FAULT, STAFF, Preempted, StopLatch
 from tangy_hw.robot_process.tick_watchdog import TickWatch
 from tangy_hw.robot_process.wheels import Wheels
 from tangy_hw.watchdogs import Watchdogs
-from tangy_profiles.health import Health
+from tangy_profiles.health import DeviceState, Health
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import FRONT
 
@@ -291,7 +291,7 @@ class LiveRobot:
         """Take it that staff know that its control was frozen; it stands until it is released."""
         self.watch.frozen = 0.0
 
-    def fail(self, device: str, state: str) -> None:
+    def fail(self, device: str, state: DeviceState) -> None:
         """Take a device for broken, whatever it says, to try what follows; "OK" takes it back."""
         self.watchdogs.fail(device, state)
 

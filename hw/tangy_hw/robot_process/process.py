@@ -13,7 +13,6 @@ nothing comes through it for a while it stops, and gives up what it was doing.
 from __future__ import annotations
 
 import asyncio
-import base64
 import gc
 import logging
 import os
@@ -21,18 +20,13 @@ import signal
 import sys
 import time
 from collections.abc import Awaitable, Callable
-from dataclasses import astuple
-from typing import Any
+from typing import Any, assert_never
 
-from tangy_hw.device_protocols import DeviceError, Twist
-from tangy_hw.perception.card_and_face_perception import (
-    MOST_PICTURES,
-    CardAndFacePerception,
-    CardSeen,
-)
+from tangy_hw.device_protocols import Twist
 from tangy_hw.robot_process.assembly import RobotRuntime, assemble
 from tangy_hw.robot_process.controller import LiveRobot
-from tangy_hw.robot_process.heartbeat import aged, beat_of
+from tangy_hw.robot_process.heartbeat import beat_of
+from tangy_hw.robot_process.looks import Looks
 from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with, open_lines
 from tangy_hw.robot_process.protocol import (
     Asked,
@@ -45,10 +39,12 @@ from tangy_hw.robot_process.protocol import (
     read_line,
     text_of,
 )
+from tangy_hw.robot_process.requests import Deed, at_once_of, deed_of
 from tangy_hw.robot_process.startup import switched_on
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.errors import TangyError
+from tangy_profiles.health import device_state
 from tangy_profiles.process_log import NO_COMMAND, log_to_stderr, serving
 
 _LOG = logging.getLogger(__name__)
@@ -59,7 +55,6 @@ SILENT_SECONDS = 0.15
 stand then, and stands when it has braked; it does not drive on when that takes longer."""
 SILENT_STEPPED = 20.0
 """On a bench in a hurry nothing moves by itself, and the program may be busy."""
-LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 
 Answer = dict[str, Any]
 
@@ -79,27 +74,9 @@ class RobotProcess:
         self._heard = time.monotonic()
         self._doing: dict[int | str, asyncio.Task[None]] = {}
         self._broken = ""  # why what was under way was given up last
-        self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
-        self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
+        self._looks = Looks(self.robot)
         self.robot.alone = self._why_alone
         self.robot.left = self._break_off
-        self._deeds: dict[str, Callable[[Asked], Awaitable[Answer | None]]] = {
-            "perform": self._perform,
-            "go": self._go,
-            "spin": self._spin,
-            "card": self._card,
-            "face": self._face,
-            "picture": self._small_picture,
-            "sights": self._sights,
-            "wait": self._wait,
-            "settle": self._settle,
-            "replan": self._replan,
-            "answered": self._answered,
-            "restart": self._restart,
-            "relax": self._relax,
-            "place": self._place,
-            "fail": self._fail,
-        }
 
     # ---------------------------------------------------------------------- the lines
 
@@ -172,7 +149,11 @@ class RobotProcess:
         Raises:
             LineError: it cannot be heeded.
         """
-        match asked.get("do"):
+        at_once = at_once_of(asked.get("do"))
+        match at_once:
+            case None:
+                self._begin(asked)
+                return
             case "stop":
                 pass
             case "release":
@@ -185,19 +166,18 @@ class RobotProcess:
             case "drive":
                 twist = Twist(number_of(asked, "forward"), number_of(asked, "turn"))
                 self.robot.drive_by_hand(twist)
-            case str(do) if do in self._deeds:
-                self._begin(asked)
-                return
-            case do:
-                raise LineError(f"It cannot do {do!r:.100}.")
+            case forgotten:
+                assert_never(forgotten)
         self._answer(asked, done={})
 
     def _begin(self, asked: Asked) -> None:
-        number = id_of(asked)
-        _LOG.log(level_of(asked["do"]), "begins %s", asked["do"])
+        deed, number = deed_of(asked.get("do")), id_of(asked)
+        if deed is None:
+            raise LineError(f"It cannot do {asked.get('do')!r:.100}.")
+        _LOG.log(level_of(deed), "begins %s", deed)
         if number is None or number in self._doing:
-            raise LineError(f"{asked['do']} needs an id of its own, to be answered by.")
-        task = asyncio.create_task(self._do(asked))
+            raise LineError(f"{deed} needs an id of its own, to be answered by.")
+        task = asyncio.create_task(self._do(deed, asked))
         self._doing[number] = task
         task.add_done_callback(lambda task: self._over(task, asked))
 
@@ -209,9 +189,44 @@ class RobotProcess:
         if id_of(asked) is not None:
             self._say({"id": asked["id"], "at": self.robot.passing.clock.now(), **what})
 
-    async def _do(self, asked: Asked) -> None:
+    def _deed(self, deed: Deed) -> Callable[[Asked], Awaitable[Answer | None]]:
+        match deed:
+            case "perform":
+                return self._perform
+            case "go":
+                return self._go
+            case "spin":
+                return self._spin
+            case "card":
+                return self._looks.card
+            case "face":
+                return self._looks.face
+            case "picture":
+                return self._looks.picture
+            case "sights":
+                return self._looks.sights
+            case "wait":
+                return self._wait
+            case "settle":
+                return self._settle
+            case "replan":
+                return self._replan
+            case "answered":
+                return self._answered
+            case "restart":
+                return self._restart
+            case "relax":
+                return self._relax
+            case "place":
+                return self._place
+            case "fail":
+                return self._fail
+            case forgotten:
+                assert_never(forgotten)
+
+    async def _do(self, deed: Deed, asked: Asked) -> None:
         try:
-            done = await self._deeds[asked["do"]](asked)
+            done = await self._deed(deed)(asked)
         except Preempted as error:
             self._answer(asked, failed=str(error), broken=True)
         except asyncio.CancelledError:
@@ -254,56 +269,6 @@ class RobotProcess:
     async def _spin(self, _: Asked) -> Answer:
         return {"found": await self.robot.spin()}
 
-    async def _card(self, asked: Asked) -> Answer:
-        senses = self._senses
-        await self.robot.look_at("card")
-        if asked.get("after"):
-            await self.robot.passing.sleep(number_of(asked, "after"))
-        seen = await senses.read_card(
-            set(asked["called"]),
-            int(asked.get("pictures", MOST_PICTURES)),
-            identify=bool(asked.get("identify")),
-        )
-        self._looked = seen, time.monotonic()
-        if seen.card is not None:
-            self._read = self._looked
-        return seen.to_json()
-
-    async def _face(self, _: Asked) -> Answer:
-        senses = self._senses
-        await self.robot.look_at("face")
-        vote = await senses.who()
-        return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
-
-    async def _small_picture(self, asked: Asked) -> Answer:
-        """Give what a camera sees, as large as fits; nothing where no newer picture comes."""
-        width, height = (min(LARGEST_PICTURE, max(1, int(one))) for one in asked["fit"])
-        frame = await self._senses.sensors.picture(
-            str(asked["device"]), (width, height), after=int(asked.get("after", -1))
-        )
-        if frame is None:
-            return {}
-        pixels = base64.b64encode(frame.pixels).decode()
-        return {"seq": frame.seq, "size": [frame.width, frame.height], "pixels": pixels}
-
-    async def _sights(self, _: Asked) -> Answer:
-        """Tell how its cameras are, and what was read of cards last."""
-        sensors = self._senses.sensors
-        return {
-            "sights": {
-                name: [sensors.source(name), *astuple(sensors.sight(name))]
-                for name in sensors.cameras
-            },
-            "looked": aged(self._looked),
-            "read": aged(self._read),
-        }
-
-    @property
-    def _senses(self) -> CardAndFacePerception:
-        if self.robot.senses is None:
-            raise DeviceError("The robot has no cameras.")
-        return self.robot.senses
-
     async def _wait(self, asked: Asked) -> None:
         """Let time pass; with "asks" only until somebody asks who did not."""
         there = {ask.seat for ask in self.robot.asking}
@@ -335,7 +300,10 @@ class RobotProcess:
         self.robot.navigator.place(pose_of(asked, "at"))
 
     async def _fail(self, asked: Asked) -> None:
-        self.robot.fail(str(asked["device"]), str(asked["state"]))
+        state = device_state(asked["state"])
+        if state is None:
+            raise LineError(f"There is no state {asked['state']!r:.100} of a device.")
+        self.robot.fail(str(asked["device"]), state)
 
     # ---------------------------------------------------------------------- what it tells
 

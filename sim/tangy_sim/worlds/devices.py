@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from tangy_profiles.health import ERROR, OK, Fact, Health, Reading
+from tangy_profiles.health import ERROR, OK, DeviceState, Fact, Health, Reading
 
 READINGS: Mapping[str, Mapping[str, Fact]] = MappingProxyType(
     {
@@ -28,7 +28,7 @@ WELL: Health = tuple(
     Reading(device, 0.05, OK, MappingProxyType(dict(facts))) for device, facts in READINGS.items()
 )
 
-Symptom = Callable[[float], dict[str, tuple[float | None, str, dict[str, Fact]]]]
+Symptom = Callable[[float], dict[str, tuple[float | None, DeviceState, dict[str, Fact]]]]
 """Seconds since a fault set in -> device -> (age or None, state, facts that are otherwise)."""
 
 

@@ -1,0 +1,85 @@
+"""What the program asks the robot's cameras: a card, a face, a picture, and how they are."""
+
+from __future__ import annotations
+
+import base64
+import time
+from dataclasses import astuple
+from typing import Any
+
+from tangy_hw.device_protocols import DeviceError
+from tangy_hw.perception.card_and_face_perception import (
+    MOST_PICTURES,
+    CardAndFacePerception,
+    CardSeen,
+)
+from tangy_hw.robot_process.controller import LiveRobot
+from tangy_hw.robot_process.heartbeat import aged
+from tangy_hw.robot_process.protocol import Asked, number_of
+
+LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
+
+
+class Looks:
+    """Looks with the robot's cameras, and keeps what was read of cards last.
+
+    Each raises DeviceError where the robot has no cameras.
+    """
+
+    def __init__(self, robot: LiveRobot) -> None:
+        """Look with the cameras of a robot."""
+        self._robot = robot
+        self._looked: tuple[CardSeen, float] | None = None  # the last look at a card, and when
+        self._read: tuple[CardSeen, float] | None = None  # the last one that told which card it is
+
+    async def card(self, asked: Asked) -> dict[str, Any]:
+        """Read the card of the person in front."""
+        senses = self._senses
+        await self._robot.look_at("card")
+        if asked.get("after"):
+            await self._robot.passing.sleep(number_of(asked, "after"))
+        seen = await senses.read_card(
+            set(asked["called"]),
+            int(asked.get("pictures", MOST_PICTURES)),
+            identify=bool(asked.get("identify")),
+        )
+        self._looked = seen, time.monotonic()
+        if seen.card is not None:
+            self._read = self._looked
+        return seen.to_json()
+
+    async def face(self, _: Asked) -> dict[str, Any]:
+        """See who is in front."""
+        senses = self._senses
+        await self._robot.look_at("face")
+        vote = await senses.who()
+        return {"person": vote.person, "votes": vote.votes, "frames": vote.frames}
+
+    async def picture(self, asked: Asked) -> dict[str, Any]:
+        """Give what a camera sees, as large as fits; nothing where no newer picture comes."""
+        width, height = (min(LARGEST_PICTURE, max(1, int(one))) for one in asked["fit"])
+        frame = await self._senses.sensors.picture(
+            str(asked["device"]), (width, height), after=int(asked.get("after", -1))
+        )
+        if frame is None:
+            return {}
+        pixels = base64.b64encode(frame.pixels).decode()
+        return {"seq": frame.seq, "size": [frame.width, frame.height], "pixels": pixels}
+
+    async def sights(self, _: Asked) -> dict[str, Any]:
+        """Tell how its cameras are, and what was read of cards last."""
+        sensors = self._senses.sensors
+        return {
+            "sights": {
+                name: [sensors.source(name), *astuple(sensors.sight(name))]
+                for name in sensors.cameras
+            },
+            "looked": aged(self._looked),
+            "read": aged(self._read),
+        }
+
+    @property
+    def _senses(self) -> CardAndFacePerception:
+        if self._robot.senses is None:
+            raise DeviceError("The robot has no cameras.")
+        return self._robot.senses

@@ -1,0 +1,42 @@
+"""What the program can ask of the robot process: a closed set, the same at both ends.
+
+What is at once is done as its line comes; a deed takes its time, and is answered when it is done.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, get_args
+
+AtOnce = Literal["stop", "release", "seen to", "cancel", "drive"]
+AT_ONCE: tuple[AtOnce, ...] = get_args(AtOnce)
+
+Deed = Literal[
+    "perform",
+    "go",
+    "spin",
+    "card",
+    "face",
+    "picture",
+    "sights",
+    "wait",
+    "settle",
+    "replan",
+    "answered",
+    "restart",
+    "relax",
+    "place",
+    "fail",
+]
+DEEDS: tuple[Deed, ...] = get_args(Deed)
+
+Request: TypeAlias = AtOnce | Deed
+
+
+def at_once_of(asked: object) -> AtOnce | None:
+    """Return what is asked for, where that is done at once."""
+    return next((one for one in AT_ONCE if one == asked), None)
+
+
+def deed_of(asked: object) -> Deed | None:
+    """Return what is asked for, where that takes its time."""
+    return next((one for one in DEEDS if one == asked), None)
