@@ -5,8 +5,8 @@ from __future__ import annotations
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.monitoring.fault import Diagnosed, Fault, FaultEvent, RecoveryEvent
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import move_words, whom_to_call
-from tangy_tui.monitoring.times import clock
+from tangy_tui.text.faults import move_words, whom_to_call
+from tangy_tui.text.times import clock
 
 HALTED = "Tangy stands still. Type: seen, expert, clear, what, faults, or quit."
 SIMULATED = "The simulated expert has looked at it."

@@ -32,9 +32,9 @@ from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.diagnosis import narrows
+from tangy_tui.monitoring.evidence import evidence_words
 from tangy_tui.monitoring.fault import Diagnosed, Fault
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import evidence_words
 
 CHOICES = 4
 """Names that are offered for what was seen."""

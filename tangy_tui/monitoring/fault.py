@@ -26,28 +26,6 @@ SOMEBODY = "somebody"
 OPEN, BORNE, OVER = "open", "borne", "over"
 """What a fault can be: still to be dealt with; there, but Tangy goes on without; over."""
 
-MOVES: Mapping[str, str] = {
-    "kept": "kept for later: another fault comes first",
-    "asked": "asked for help",
-    "remedied": "Tangy did something about it by itself",
-    "teacher asked": "asked the teacher",
-    "halted": "halted",
-    "acknowledged": "was acknowledged",
-    "expert called": "staff were shown whom to call",
-    "still there": "it is still there: it must be mended before it can be cleared",
-    "escalated": "that did not help",
-    "went on": "went on",
-    "recovered": "recovered",
-    "taught": "the teacher said what to do",
-    "accepted": "the teacher said that this is all right",
-    "cleared": "was cleared",
-    "ended": "ended by itself",
-    "left": "Tangy left it at that",
-    "given up": "the game was given up",
-    "left open": "was left open at the end of the game",
-}
-"""What can be done about a fault, in words."""
-
 ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
 """The moves after which a fault is over."""
 

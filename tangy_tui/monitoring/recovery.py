@@ -23,6 +23,7 @@ from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, GameEvent
 from tangy_tui.monitoring.detection import Detector, symptoms
 from tangy_tui.monitoring.diagnosis import Diagnosis
+from tangy_tui.monitoring.evidence import evidence_words
 from tangy_tui.monitoring.fault import (
     BORNE,
     ENDINGS,
@@ -39,7 +40,6 @@ from tangy_tui.monitoring.fault import (
     RecoveryEvent,
     rule_texts,
 )
-from tangy_tui.monitoring.telling import evidence_words
 
 _LOG = logging.getLogger(__name__)
 

@@ -12,7 +12,6 @@ from tangy_profiles.faults import CONTEXT, FaultBook, FaultRule
 from tangy_profiles.robot import Robot
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.monitoring.drill_rounds import round_kinds
-from tangy_tui.monitoring.telling import RECOVERY_WORDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,13 +77,6 @@ def looks_at(rule: FaultRule) -> tuple[str, ...]:
     """Return the evidence by which a rule is recognised, in the order of the file."""
     keys = (condition.key for conditions in rule.when for condition in conditions)
     return tuple(dict.fromkeys(key for key in keys if key not in CONTEXT))
-
-
-def recovery_words(rule: FaultRule) -> str:
-    """Say how a fault is recovered from, rung by rung."""
-    tries = f" (up to {rule.tries} times)" if rule.tries > 1 else ""
-    first, *rest = (RECOVERY_WORDS[word] for word in rule.recovery)
-    return "; else ".join([first + tries, *rest])
 
 
 def _unseen(book: FaultBook, robot: Robot) -> tuple[str, ...]:

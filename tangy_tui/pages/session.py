@@ -10,11 +10,11 @@ from tangy_tui.monitoring.fault import OVER, Fault, Moved
 from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.replay import GameReplay
 from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Session
-from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
-from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
+from tangy_tui.text.faults import RECOVERY_WORDS, move_words
+from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_DRAWN = 24
 """Games that are drawn on one page; of more, the last ones."""

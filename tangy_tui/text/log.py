@@ -10,9 +10,9 @@ from tangy_tui.monitoring.fault_table import fault_rows
 from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
-from tangy_tui.monitoring.telling import RECOVERY_WORDS, move_words
-from tangy_tui.monitoring.times import clock, day_and_time, length, time_of_day
+from tangy_tui.text.faults import RECOVERY_WORDS, move_words
 from tangy_tui.text.situations import Name, counted
+from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_TOLD = 30
 """Games that a report tells one by one; of more, only those in which something was the matter."""

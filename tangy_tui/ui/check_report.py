@@ -12,9 +12,10 @@ from rich.text import Text
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.reading import plain
-from tangy_tui.monitoring.rules import Rules, looks_at, recovery_words
+from tangy_tui.monitoring.rules import Rules, looks_at
 from tangy_tui.speech.activity_check import CheckedFile
 from tangy_tui.speech.phrase_list import PhraseList, items
+from tangy_tui.text.faults import recovery_words
 from tangy_tui.text.situations import counted
 
 

@@ -31,17 +31,18 @@ from tangy_tui.monitoring.fault import (
 )
 from tangy_tui.monitoring.games import uncleared
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.dialogs.critical import CriticalDialog
-from tangy_tui.ui.dialogs.fault import FaultDialog
-from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
-from tangy_tui.ui.fault_words import (
+from tangy_tui.text.faults import (
     banner_words,
     doing_words,
     said_words,
     status_words,
     told_in_banner,
 )
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.dialogs.confirm import ConfirmDialog
+from tangy_tui.ui.dialogs.critical import CriticalDialog
+from tangy_tui.ui.dialogs.fault import FaultDialog
+from tangy_tui.ui.dialogs.inject import InjectDialog, comes_later
 from tangy_tui.ui.widgets.command_bar import CommandInput
 from tangy_tui.ui.widgets.fault_banner import ESC_SEEN, SEEN, FaultBanner
 from tangy_tui.ui.widgets.fault_list import FaultList
@@ -173,8 +174,8 @@ class FaultConsole:
             fault = told[0]
             typing = isinstance(screen.focused, CommandInput)
             banner.show(
-                banner_words(fault, doing_words(fault, supervision.book)),
-                said=said_words(fault),
+                tuple(map(clean, banner_words(fault, doing_words(fault, supervision.book)))),
+                said=clean(said_words(fault)),
                 more=len(told) - 1,
                 critical=fault.critical,
                 key="" if supervision.over else ESC_SEEN if typing else SEEN,

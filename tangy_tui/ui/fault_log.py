@@ -7,8 +7,7 @@ from typing import Any
 from textual.screen import Screen
 
 from tangy_tui.monitoring.fault import ENDINGS, Diagnosed, FaultEvent, Moved
-from tangy_tui.monitoring.telling import move_words
-from tangy_tui.ui.fault_words import kind_words
+from tangy_tui.text.faults import kind_words, move_words
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 from tangy_tui.ui.widgets.room_view import RoomView
 

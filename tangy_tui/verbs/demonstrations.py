@@ -284,7 +284,7 @@ def accepted(
     """List what was unexpected in games and a teacher said is all right; take one back."""
     from tangy_tui.monitoring.accepted import read_accepted
     from tangy_tui.monitoring.accepted import take_back as take_it_back
-    from tangy_tui.monitoring.telling import mismatch_words
+    from tangy_tui.monitoring.evidence import mismatch_words
     from tangy_tui.ui.local_time import local_time
 
     with open_workspace(data, activity, 4, write=take_back is not None) as workspace:

@@ -15,7 +15,7 @@ from tangy_tui.monitoring.aftermath import GRACE_SECONDS, Aftermath
 from tangy_tui.monitoring.detection import device_evidence
 from tangy_tui.monitoring.diagnosis import diagnose
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.ui.fault_words import still_there_words
+from tangy_tui.text.faults import still_there_words
 from tests.monitoring.conftest import codes, moves
 
 ROBOT = load_robot()

@@ -8,10 +8,10 @@ from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE
+from tangy_tui.text.faults import status_words
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog
-from tangy_tui.ui.fault_words import status_words
 from tangy_tui.ui.widgets.fault_banner import FaultBanner
 from tangy_tui.ui.widgets.fault_list import SHORTEST_LAST, FaultList, columns_for
 from tangy_tui.ui.widgets.log_view import LogView

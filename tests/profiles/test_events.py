@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles import events
 from tangy_profiles.events import ABOUT_PEOPLE, BODIES, MOVES, WITH_STRATEGY, wrong_with
-from tangy_tui.monitoring import fault
+from tangy_tui.text import faults
 
 ROOT = Path(__file__).parents[2]
 FLOORS = {"tangy_tui": ROOT, "tangy_hw": ROOT / "hw", "tangy_sim": ROOT / "sim"}
@@ -63,7 +63,7 @@ def test_what_is_about_people_and_strategies_are_kinds() -> None:
 
 
 def test_what_can_be_done_about_a_fault_is_said_in_words_and_taken_from_the_log() -> None:
-    assert set(MOVES) == set(fault.MOVES)
+    assert set(MOVES) == set(faults.MOVES)
 
 
 @pytest.mark.parametrize("kind", sorted(BODIES.keys() - ABOUT_PEOPLE))

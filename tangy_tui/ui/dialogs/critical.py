@@ -15,19 +15,20 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import move_words, whom_to_call
+from tangy_tui.text.faults import (
+    ages_of,
+    evidence_of,
+    kind_words,
+    mark_of,
+    move_words,
+    still_there_words,
+    whom_to_call,
+)
+from tangy_tui.text.times import clock
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
-from tangy_tui.ui.fault_words import (
-    ages_of,
-    clock_words,
-    evidence_of,
-    kind_words,
-    mark_of,
-    still_there_words,
-)
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
 from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
@@ -298,7 +299,7 @@ class CriticalDialog(Dialog[None]):
             lines += paragraph(clean(f"Also wrong: {', '.join(f.name for f in others)}."), width)
         if len(fault.moves) > 1:
             last = fault.moves[-1]
-            so_far = f"Last, at {clock_words(last.seconds)}: {move_words(last)}."
+            so_far = f"Last, at {clock(last.seconds)}: {move_words(last)}."
             lines += paragraph(clean(so_far), width, "dim")
         lines += heading("What to do, and whom to call")
         lines += advice_lines(fault.advice, width)
@@ -311,6 +312,6 @@ class CriticalDialog(Dialog[None]):
         if others:
             lines += heading("Also wrong")
         for other in others:
-            words = f"{mark_of(other)} {clock_words(other.seconds)} {other.name}"
+            words = f"{mark_of(other)} {clock(other.seconds)} {other.name}"
             lines += paragraph(clean(words), width)
         return lines

@@ -13,17 +13,17 @@ from textual.content import Content
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import Fault, RecoveryEvent
-from tangy_tui.monitoring.telling import move_words
-from tangy_tui.ui.base import Dialog
-from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fault_words import (
+from tangy_tui.text.faults import (
     EvidenceLine,
-    clock_words,
     evidence_of,
     kind_words,
     mark_of,
+    move_words,
     state_words,
 )
+from tangy_tui.text.times import clock
+from tangy_tui.ui.base import Dialog
+from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.wrapping import wrap
 
@@ -96,7 +96,7 @@ def moves_so_far(moves: Sequence[RecoveryEvent], width: int) -> list[PageLine]:
 
 def _entry(seconds: float, words: str, width: int) -> list[PageLine]:
     first, *more = wrap(clean(words), max(10, width - 8))
-    head = PageLine(((f"{clock_words(seconds):>6}  ", "dim"), (first, "text")))
+    head = PageLine(((f"{clock(seconds):>6}  ", "dim"), (first, "text")))
     return [head, *(PageLine(((f"{'':8}{text}", "text"),)) for text in more)]
 
 

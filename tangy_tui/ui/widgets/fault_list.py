@@ -11,16 +11,16 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tangy_tui.monitoring.fault import OPEN, Fault
-from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.fault_words import (
+from tangy_tui.text.faults import (
     Name,
-    clock_words,
     last_words,
     mark_of,
     searched,
     short_state,
     state_words,
 )
+from tangy_tui.text.times import clock
+from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 
@@ -172,7 +172,7 @@ def fault_list_lines(faults: Sequence[Fault], width: int, none: str) -> list[Cho
 def _row(fault: Fault, columns: Columns) -> Row:
     there = fault.status == OPEN
     ink = "bad" if fault.critical and there else "warn" if there else "text"
-    time = f"{clock_words(fault.seconds):>6} " if columns.time else ""
+    time = f"{clock(fault.seconds):>6} " if columns.time else ""
     step = f"{fault.step:>4} " if columns.step else ""
     state = state_words(fault) if columns.state == STATE else short_state(fault)
     last = shorten(f"  {clean(last_words(fault))}", columns.last) if columns.last else ""

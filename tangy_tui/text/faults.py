@@ -1,19 +1,19 @@
-"""Faults in words for the screens: status, banner, list, evidence against what was expected."""
+"""Faults in words: status, banner, list, what was done, and evidence against what was expected."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
+from tangy_profiles.reading import plain
 from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_tui.monitoring.diagnosis import narrows
+from tangy_tui.monitoring.evidence import mismatch_words, written
 from tangy_tui.monitoring.fault import BORNE, OPEN, OVER, Fault, RecoveryEvent
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.monitoring.telling import RECOVERY_WORDS, mismatch_words, move_words
-from tangy_tui.ui.clean_output import clean
 
 Name = Callable[[str], str]
 """Gives a person's name for an id."""
@@ -21,7 +21,7 @@ Name = Callable[[str], str]
 CRITICAL_MARK, MARK = "!!", "! "
 """What stands before a critical fault, and before another one."""
 
-REMEDIES = {
+DOING_REMEDIES = {
     "spin": "turning to find its place",
     "restart": "starting it again",
     "replan": "taking another way",
@@ -30,6 +30,46 @@ REMEDIES = {
     "set aside": "leaving it at that",
 }
 """What Tangy does by itself, in words."""
+
+DONE_REMEDIES = {
+    "spin": "Tangy turned on the spot to find its place",
+    "restart": "it was started again",
+    "replan": "Tangy took another way",
+    "do without": "Tangy does without it",
+    "other requests": "Tangy listens for requests instead",
+    "set aside": "Tangy left it at that",
+}
+"""What Tangy has done by itself, in words."""
+
+MOVES: Mapping[str, str] = {
+    "kept": "kept for later: another fault comes first",
+    "asked": "asked for help",
+    "remedied": "Tangy did something about it by itself",
+    "teacher asked": "asked the teacher",
+    "halted": "halted",
+    "acknowledged": "was acknowledged",
+    "expert called": "staff were shown whom to call",
+    "still there": "it is still there: it must be mended before it can be cleared",
+    "escalated": "that did not help",
+    "went on": "went on",
+    "recovered": "recovered",
+    "taught": "the teacher said what to do",
+    "accepted": "the teacher said that this is all right",
+    "cleared": "was cleared",
+    "ended": "ended by itself",
+    "left": "Tangy left it at that",
+    "given up": "the game was given up",
+    "left open": "was left open at the end of the game",
+}
+"""What can be done about a fault, in words."""
+
+RECOVERY_WORDS = {
+    "expert": "halt, and ask an expert",
+    "user": "ask a user for help",
+    "teacher": "ask a teacher",
+    "continue": "go on",
+}
+"""The recoveries in words."""
 
 _STATES = {
     STALE: f"nothing comes from it ({STALE})",
@@ -72,11 +112,6 @@ def kind_words(fault: Fault) -> str:
     return "critical" if fault.critical else "non-critical"
 
 
-def clock_words(seconds: float) -> str:
-    """Write a time in a game as minutes and seconds."""
-    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
-
-
 def doing_words(fault: Fault, book: FaultBook) -> str:
     """Say what Tangy does about a fault at present."""
     move = _last(fault)
@@ -86,7 +121,7 @@ def doing_words(fault: Fault, book: FaultBook) -> str:
         case "asked":
             return f"asks{_tries(fault, move, book)}"
         case "remedied":
-            return f"{REMEDIES.get(move.remedy, move.remedy)}{_tries(fault, move, book)}"
+            return f"{DOING_REMEDIES.get(move.remedy, move.remedy)}{_tries(fault, move, book)}"
         case "went on":
             return "going on without"
         case "escalated":
@@ -97,7 +132,7 @@ def doing_words(fault: Fault, book: FaultBook) -> str:
 def said_words(fault: Fault) -> str:
     """Return what Tangy says about a fault at present: what it asks somebody for."""
     move = _last(fault)
-    return "" if move is None else clean(move.speech)
+    return "" if move is None else move.speech
 
 
 def _last(fault: Fault) -> RecoveryEvent | None:
@@ -113,11 +148,11 @@ def _tries(fault: Fault, move: RecoveryEvent, book: FaultBook) -> str:
 
 def banner_words(fault: Fault, doing: str) -> tuple[str, ...]:
     """Write the banner of a fault in forms that take less and less room: mark, name, doing."""
-    mark, name = mark_of(fault).strip(), clean(fault.name)
+    mark, name = mark_of(fault).strip(), fault.name
     return (
-        f"{mark} FAULT {kind_words(fault)}: {name} -> {clean(doing)}",
-        f"{mark} FAULT {name} -> {clean(doing)}",
-        f"{mark} {name}: {clean(doing)}",
+        f"{mark} FAULT {kind_words(fault)}: {name} -> {doing}",
+        f"{mark} FAULT {name} -> {doing}",
+        f"{mark} {name}: {doing}",
     )
 
 
@@ -242,25 +277,52 @@ def _otherwise(condition: Condition) -> str:
     value = condition.value
     match condition.test:
         case "above":
-            return f"at most {_written(value)}"
+            return f"at most {written(value)}"
         case "below":
-            return f"at least {_written(value)}"
+            return f"at least {written(value)}"
         case "at_least":
-            return f"less than {_written(value)}"
+            return f"less than {written(value)}"
         case "is" if isinstance(value, bool):
-            return _written(not value)
+            return written(not value)
         case "is":
-            return f"not {_written(value)}"
-    return _written(value)
+            return f"not {written(value)}"
+    return written(value)
 
 
 def _observed(fact: str, value: Fact) -> str:
     if fact != "state":
-        return _written(value)
+        return written(value)
     return _STATES.get(str(value), str(value))
 
 
-def _written(value: Fact) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:.2g}" if isinstance(value, float) else str(value)
+def move_words(move: RecoveryEvent) -> str:
+    """Say in a few words what was done."""
+    words = DONE_REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
+    if move.kind == "escalated":
+        tried = words if move.attempt else "nobody was there for that"
+        return f"{tried}: now {RECOVERY_WORDS[move.to]}"
+    if move.attempt > 1:
+        words = f"{words}, for the {_ordinal(move.attempt)} time"
+    if move.by:
+        words = f"{words}, by {move.by}"
+    return words
+
+
+def _ordinal(number: int) -> str:
+    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
+
+
+def whom_to_call(robot: Robot) -> str:
+    """Say whom staff call about what they cannot mend, or that nobody is named."""
+    expert = robot.expert
+    if expert is None:
+        return "No expert is named for this robot: ask your facility who looks after it."
+    number = f": {expert.telephone}" if expert.telephone else ""
+    return plain(f"Call the expert, {expert.name}{number}.")
+
+
+def recovery_words(rule: FaultRule) -> str:
+    """Say how a fault is recovered from, rung by rung."""
+    tries = f" (up to {rule.tries} times)" if rule.tries > 1 else ""
+    first, *rest = (RECOVERY_WORDS[word] for word in rule.recovery)
+    return "; else ".join([first + tries, *rest])

@@ -1,4 +1,4 @@
-"""Evidence and moves in words, for console, lines and reports."""
+"""Why something is diagnosed: what was measured, and what was expected and seen, in words."""
 
 from __future__ import annotations
 
@@ -6,10 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
 from tangy_profiles.health import STALE, Fact
-from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
-from tangy_tui.monitoring.fault import MOVES, RecoveryEvent
 
 _STATES = {
     "OK": "all is well",
@@ -41,7 +39,7 @@ def evidence_words(
         head, _, fact = key.partition(".")
         device = robot.devices.get(head)
         if device is None:
-            parts.append(f"{SYMPTOMS.get(key, key)}: {_number(value)}")
+            parts.append(f"{SYMPTOMS.get(key, key)}: {written(value)}")
         elif fact == "state":
             age = evidence.get(f"{head}.age")
             since = f" for {age:.2g} s" if value == STALE and isinstance(age, float) else ""
@@ -52,7 +50,7 @@ def evidence_words(
             limit = f" ({words})" if (words := limits.get(key, "")) else ""
             measure = device.facts.get(fact)
             measured = measure.says if measure is not None else fact.replace("_", " ")
-            parts.append(f"{device.label}: {measured}: {_number(value)}{limit}")
+            parts.append(f"{device.label}: {measured}: {written(value)}{limit}")
     return "; ".join([*parts, *map(mismatch_words, mismatches)])
 
 
@@ -67,18 +65,6 @@ def mismatch_words(mismatch: Mismatch) -> str:
         words = f"{mismatch.variable}: {mismatch.seen}"
     never = "" if mismatch.expected else " (no demonstration shows what to expect here)"
     return f"after {mismatch.behaviour!r}, {words}{never}"
-
-
-def move_words(move: RecoveryEvent) -> str:
-    """Say in a few words what was done."""
-    words = _REMEDIES.get(move.remedy, move.remedy) or MOVES.get(move.kind, move.kind)
-    if move.kind == "escalated":
-        return f"{words if move.attempt else 'nobody was there for that'}: now {_TO[move.to]}"
-    if move.attempt > 1:
-        words = f"{words}, for the {_ordinal(move.attempt)} time"
-    if move.by:
-        words = f"{words}, by {move.by}"
-    return words
 
 
 _PLACES = {"front": "at the front"}
@@ -101,38 +87,10 @@ _MISMATCHES = {
     ("others' requests", "fewer"): "somebody else who asked for help asks no more",
     ("others' requests", "kept"): "somebody else still asks for help, unexpectedly",
 }
-_REMEDIES = {
-    "spin": "Tangy turned on the spot to find its place",
-    "restart": "it was started again",
-    "replan": "Tangy took another way",
-    "do without": "Tangy does without it",
-    "other requests": "Tangy listens for requests instead",
-    "set aside": "Tangy left it at that",
-}
-RECOVERY_WORDS = {
-    "expert": "halt, and ask an expert",
-    "user": "ask a user for help",
-    "teacher": "ask a teacher",
-    "continue": "go on",
-}
-"""The recoveries in words."""
-_TO = RECOVERY_WORDS
 
 
-def whom_to_call(robot: Robot) -> str:
-    """Say whom staff call about what they cannot mend, or that nobody is named."""
-    expert = robot.expert
-    if expert is None:
-        return "No expert is named for this robot: ask your facility who looks after it."
-    number = f": {expert.telephone}" if expert.telephone else ""
-    return plain(f"Call the expert, {expert.name}{number}.")
-
-
-def _number(value: Fact) -> str:
+def written(value: Fact) -> str:
+    """Write what a device measured, with two digits that count."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.2g}" if isinstance(value, float) else str(value)
-
-
-def _ordinal(number: int) -> str:
-    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
