@@ -30,6 +30,7 @@ def document(done: CompletedProcess[str]) -> Any:
 # --------------------------------------------------------------------------------- the story
 
 
+@pytest.mark.slow
 def test_the_story_taught_learnt_and_played_for_300_games(tangy: Tangy, tmp_path: Path) -> None:
     data = ("--data", tmp_path / "mine")
     assert tangy("teach", "--teacher", "scripted", "--games", 3, *data).returncode == 0

@@ -68,6 +68,7 @@ def test_without_a_terminal_the_program_says_what_it_can_do(tmp_path: Path) -> N
     assert done.stdout.startswith(b"No screens here")
 
 
+@pytest.mark.slow
 def test_the_demonstration_of_everything_is_one_json_document(tmp_path: Path) -> None:
     done = tangy("demo", "--json", home=tmp_path, TERM="dumb", LANG="C")
     assert (done.returncode, done.stderr) == (0, b"")

@@ -17,6 +17,8 @@ import pytest
 from tangy_profiles.activity import shipped_activities
 from tangy_profiles.robot import load_robot
 
+pytestmark = pytest.mark.slow
+
 RADIO = '''
 """A voice that keeps what it is to say in a file."""
 

@@ -91,7 +91,10 @@ def signalled(number: int, when: Callable[[], object]) -> Iterator[None]:
         sender.join()
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGHUP, 129), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "status"),
+    [(signal.SIGHUP, 129), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow)],
+)
 def test_a_signal_calls_it_off_without_a_screen(number: int, status: int) -> None:
     robot = Robot()
     before = signal.getsignal(number)
@@ -117,6 +120,7 @@ def test_ctrl_c_calls_it_off_without_a_screen() -> None:
     assert robot.did == ["begins", "is off"]
 
 
+@pytest.mark.slow
 def test_a_signal_in_a_game_switches_the_robot_off() -> None:
     robot = Robot()
     robot.answers.set()

@@ -38,6 +38,7 @@ def say(text: str, file: Path) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_a_folder_of_voices_is_counted(tangy: str, tmp_path: Path) -> None:
     folder = tmp_path / "set"
     say("call the next number", folder / "call number" / "slt-001.wav")
@@ -77,6 +78,7 @@ def minute(activity: Activity, people: tuple[Person, ...], tmp_path: Path) -> Pa
     return file
 
 
+@pytest.mark.slow
 def test_a_recorded_check_is_stored_and_can_be_used(
     tangy: str, tmp_path: Path, minute: Path
 ) -> None:

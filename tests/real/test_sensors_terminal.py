@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.real.camera_server import CameraServer
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ def alive(pid: int) -> bool:
     return Path(f"/proc/{pid}").exists()
 
 
+@pytest.mark.slow
 def test_a_camera_is_seen_to_fail_and_to_recover_and_ends_with_the_program(
     open_terminal: OpenTerminal,
 ) -> None:

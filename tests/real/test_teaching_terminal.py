@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from tests.support.terminal import Tmux
 
 
-@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (160, 45)])
+@pytest.mark.parametrize(
+    ("columns", "lines"), [(80, 24), pytest.param(160, 45, marks=pytest.mark.slow)]
+)
 def test_a_step_is_typed_asked_about_confirmed_and_still_there_next_time(
     open_tmux: Callable[[int, int], Tmux], tangy: str, tmp_path: Path, columns: int, lines: int
 ) -> None:
@@ -86,6 +88,7 @@ def test_a_signal_ends_the_program_in_good_order(
     assert b"\x1b[?1049l" in terminal.raw  # the shell's own screen is back
 
 
+@pytest.mark.slow
 def test_a_closed_window_ends_the_program_and_loses_nothing(
     open_terminal: OpenTerminal,
 ) -> None:
@@ -102,6 +105,7 @@ def test_a_closed_window_ends_the_program_and_loses_nothing(
     again.until("-> greeting")
 
 
+@pytest.mark.slow
 def test_a_second_program_on_the_same_folder_is_told_who_has_it(
     open_terminal: OpenTerminal,
 ) -> None:
@@ -116,6 +120,7 @@ def test_a_second_program_on_the_same_folder_is_told_who_has_it(
     first.until("Did you say")
 
 
+@pytest.mark.slow
 def test_a_window_that_is_too_small_says_so_and_loses_nothing(
     open_terminal: OpenTerminal,
 ) -> None:
@@ -143,6 +148,7 @@ def test_a_dumb_terminal_gets_lines(open_terminal: OpenTerminal) -> None:
     assert b"\x1b" not in terminal.raw
 
 
+@pytest.mark.slow
 def test_a_terminal_without_utf8_gets_ascii(open_terminal: OpenTerminal) -> None:
     terminal = open_terminal(
         "teach", "--seed", "1", environment={"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0"}

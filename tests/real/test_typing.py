@@ -12,6 +12,7 @@ from tangy_tui.experiments.sweep import Where
 from tangy_tui.experiments.terminal import Terminal
 
 
+@pytest.mark.slow
 def test_some_steps_are_typed_asked_about_and_kept() -> None:
     begun = monotonic()
     done = typing.run("bingo", [3], Where(), steps=4)
