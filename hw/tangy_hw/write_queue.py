@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections import deque
+from concurrent.futures import Future
 from contextlib import suppress
 from typing import IO
 
@@ -19,24 +20,26 @@ class WriteQueue:
     def __init__(self, pipe: IO[bytes]) -> None:
         """Take the pipe, which is closed at the end."""
         self._pipe = pipe
-        self._lines: deque[str] = deque()
+        self._lines: deque[tuple[str, Future[None]]] = deque()
         self._changed = threading.Condition()
         self._writing = self._over = False
 
-    def put(self, line: str) -> bool:
-        """Have a line written after all that wait; return whether it may still be."""
+    def put(self, line: str) -> Future[None] | None:
+        """Have a line written after all that wait.
+
+        Returns:
+            What is done when it is written, or never will be; None where no more is written.
+        """
         with self._changed:
-            if not self._over:
-                self._lines.append(line)
-                self._changed.notify()
-            return not self._over
+            if self._over:
+                return None
+            return self._append(line)
 
     def beat(self, line: str) -> None:
         """Have a line written that is worth nothing later: it is left out where others wait."""
         with self._changed:
             if not (self._over or self._lines or self._writing):
-                self._lines.append(line)
-                self._changed.notify()
+                self._append(line)
 
     def close(self) -> None:
         """Write what waits, and no more."""
@@ -47,15 +50,32 @@ class WriteQueue:
     def run(self) -> None:
         """Write until there is an end."""
         with suppress(OSError, ValueError), self._pipe as pipe:
-            while (line := self._next()) is not None:
+            while (waits := self._next()) is not None:
+                line, written = waits
                 rest = memoryview(line.encode() + b"\n")
-                while rest:  # past its buffer, whose lock whoever ends the program would wait for
-                    rest = rest[os.write(pipe.fileno(), rest) :]
+                try:
+                    while rest:  # past its buffer, for whose lock the end of the program would wait
+                        rest = rest[os.write(pipe.fileno(), rest) :]
+                finally:
+                    _done(written)
         self.close()
+        for _, never in self._lines:
+            _done(never)
 
-    def _next(self) -> str | None:
+    def _append(self, line: str) -> Future[None]:
+        written: Future[None] = Future()
+        self._lines.append((line, written))
+        self._changed.notify()
+        return written
+
+    def _next(self) -> tuple[str, Future[None]] | None:
         with self._changed:
             self._writing = False
             self._changed.wait_for(lambda: self._lines or self._over)
             self._writing = bool(self._lines)
             return self._lines.popleft() if self._lines else None
+
+
+def _done(written: Future[None]) -> None:
+    if written.set_running_or_notify_cancel():
+        written.set_result(None)

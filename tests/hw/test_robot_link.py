@@ -111,7 +111,7 @@ class TestHungProcess:
             began = time.monotonic()
             link.stop("enough")
             assert time.monotonic() - began < AT_ONCE
-            assert [json.loads(line)["do"] for line in outbox._lines] == ["stop"]
+            assert [json.loads(line)["do"] for line, _ in outbox._lines] == ["stop"]
             time.sleep(0.1)
             assert len(beaten) <= 1  # which may have been on its way
         finally:

@@ -6,7 +6,6 @@ import asyncio
 import os
 import signal
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -273,12 +272,6 @@ class TestProcess:
                 await camera.frame(wait=PATIENCE)
         assert (tmp_path / "camera.log").stat().st_size > 0
         assert capfd.readouterr() == ("", "")
-
-    async def test_a_log_that_cannot_be_written_is_no_matter(self, tmp_path: Path) -> None:
-        cv2.imwrite(str(tmp_path / "a.png"), PICTURES[0])
-        source = replace(find_camera(str(tmp_path / "a.png")), each=True)
-        async with Camera(source, log=tmp_path / "no" / "camera.log") as camera:
-            assert await camera.frame() is not None
 
     async def test_a_wait_that_is_over_gives_nothing(self) -> None:
         async with Camera(find_camera("/dev/video93")) as camera:

@@ -36,7 +36,7 @@ class Family:
                         command = (folder / "cmdline").read_bytes()
                         found[int(folder.name)] = command.replace(b"\0", b" ").decode().strip()
         self.seen |= found
-        return {pid: command for pid, command in found.items() if _runs(pid)}
+        return {pid: command for pid, command in found.items() if runs(pid)}
 
     def seconds_until(
         self, holds: Callable[[dict[int, str]], bool], most: float, meanwhile: Callable[[], object]
@@ -57,7 +57,7 @@ class Family:
         return time.monotonic() - began
 
 
-def _runs(pid: int) -> bool:
+def runs(pid: int) -> bool:
     """Say whether a process runs; one that has ended may lie about until somebody looks."""
     try:
         os.kill(pid, 0)

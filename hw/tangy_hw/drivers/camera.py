@@ -7,22 +7,18 @@ here that is started, asked, watched, and ended and started again when it hangs 
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import json
-import os
-import signal
 import sys
 import time
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from tangy_hw.drivers.camera_look import Look
 from tangy_hw.drivers.camera_source import CameraError, CameraSource
 from tangy_hw.drivers.camera_state import USUAL, CameraLimits, CameraWatch, Sight, State
+from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.health import Reading
-from tangy_profiles.worker_log import open_log
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
@@ -34,8 +30,6 @@ READ_SECONDS = 2.5  # for one picture, which a stream gives up by itself before
 OPEN_SECONDS = 10.0  # some cameras take 4 s to begin
 AGAIN_SECONDS = 0.2  # until a process that ended is started again
 TICK_SECONDS = 0.1  # between two looks at what state it is in
-END_SECONDS = 1.0
-LARGEST_LINE = 1 << 22
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +87,8 @@ class Camera:
         self._limits = limits
         self._watch = self._new_watch()
         self._shown: State = "OPENING"
-        self._process: asyncio.subprocess.Process | None = None
+        self._worker: WorkerProcess | None = None
+        self._began = 0.0  # when that was started
         self._tasks: list[asyncio.Task[None]] = []
         self._asked: dict[int, tuple[dict[str, Any], asyncio.Future[Frame | None]]] = {}
         self._requests = 0
@@ -117,8 +112,7 @@ class Camera:
     @property
     def pid(self) -> int | None:
         """The process that reads it, if one runs."""
-        alive = self._process is not None and self._process.returncode is None
-        return self._process.pid if alive and self._process else None
+        return None if self._worker is None else self._worker.pid
 
     @property
     def sight(self) -> Sight:
@@ -147,7 +141,6 @@ class Camera:
             task.cancel()
         if self._tasks:
             await asyncio.wait(self._tasks)
-        await self._end()
         self._answer_all()
 
     async def frame(
@@ -208,8 +201,18 @@ class Camera:
     async def _tick(self) -> None:
         """Tell of every change of state, also of those that come of nothing happening."""
         while True:
+            self._look_after()
             self._tell()
             await asyncio.sleep(TICK_SECONDS)
+
+    def _look_after(self) -> None:
+        """End a process that hangs as a whole."""
+        worker = self._worker
+        if worker is None or worker.how:
+            return
+        patience = SILENT_SECONDS if worker.heard else START_SECONDS
+        if time.monotonic() - (worker.heard or self._began) > patience:
+            self._lose("its process does not answer")
 
     def _tell(self) -> None:
         sight = self.sight
@@ -221,73 +224,52 @@ class Camera:
         """Keep a process that reads, until there is nothing left to read."""
         while not self.over:
             try:
-                await self._begin()
-                await self._listen()
-            except OSError as error:
-                self._watch.lost(f"its process cannot be started ({error.strerror})")
-            finally:
-                await self._end()
+                worker = self._begin()
+            except WorkerError as error:
+                self._watch.lost(f"its process cannot be started ({error})")
+            else:
+                try:
+                    await asyncio.wait({asyncio.wrap_future(worker.over)})
+                finally:
+                    self._drop()
+                    await worker.stopped(0)
             if not self.over:
                 await asyncio.sleep(AGAIN_SECONDS)
         self._answer_all()
         self._tell()
 
-    async def _begin(self) -> None:
-        with self._log_file() as log:
-            self._process = await asyncio.create_subprocess_exec(
-                *CHILD,
-                stdin=asyncio.subprocess.PIPE,
-                stdout=asyncio.subprocess.PIPE,
-                stderr=log,
-                limit=LARGEST_LINE,
-                start_new_session=True,
-            )
-        self._send({"source": self.source.to_json(), "first": self._next})
+    def _begin(self) -> WorkerProcess:
+        worker = self._worker = WorkerProcess(
+            CHILD,
+            hear=self._take,
+            ended=lambda how: self._lose(f"its process ended ({how})"),
+            log=self._log,
+            loop=asyncio.get_running_loop(),
+        )
+        self._began = time.monotonic()
+        worker.tell({"source": self.source.to_json(), "first": self._next})
         for request, _ in self._asked.values():
-            self._send(request)
+            worker.tell(request)
+        return worker
 
-    @contextlib.contextmanager
-    def _log_file(self) -> Any:
-        if self._log is None:
-            yield asyncio.subprocess.DEVNULL
-            return
-        file: IO[bytes] | None = None
-        with contextlib.suppress(OSError):
-            file = open_log(self._log)
-        try:
-            yield file if file is not None else asyncio.subprocess.DEVNULL
-        finally:
-            if file is not None:
-                file.close()
+    def _lose(self, why: str) -> None:
+        """Be done with the process that reads; another is begun."""
+        if self._drop():  # else it was known
+            self._watch.lost(why)
 
-    async def _listen(self) -> None:
-        """Take what the process says, until it ends, or hangs."""
-        assert self._process is not None and self._process.stdout is not None  # noqa: S101
-        answers = self._process.stdout
-        patience = START_SECONDS
-        while True:
-            try:
-                async with asyncio.timeout(patience):
-                    line = await answers.readline()
-                    if not line.endswith(b"\n"):
-                        self._watch.lost("its process ended")
-                        return
-                    said = json.loads(line)
-                    pixels = await answers.readexactly(said["bytes"]) if "bytes" in said else b""
-            except (TimeoutError, ValueError, asyncio.IncompleteReadError):
-                self._watch.lost("its process does not answer")
-                return
-            patience = SILENT_SECONDS
-            if not self._take(said, pixels):
-                return
+    def _drop(self) -> bool:
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.kill()
+        return worker is not None
 
-    def _take(self, said: dict[str, Any], pixels: bytes) -> bool:
-        """Take what the process said; return whether to go on with it."""
+    def _take(self, said: dict[str, Any], pixels: bytes) -> None:
+        if self._worker is None:
+            return  # it was given up
         match said:
             case {"alive": _, "busy": busy, "for": seconds}:
                 if seconds > {"read": READ_SECONDS, "open": OPEN_SECONDS}.get(busy, seconds):
-                    self._watch.lost("it hangs")
-                    return False
+                    self._lose("it hangs")
             case {"look": look}:
                 seen = Look(*look)
                 self._next = max(self._next, seen.seq + 1)
@@ -303,30 +285,13 @@ class Camera:
             case {"over": str(why)}:
                 self._error = f"{self.name}: {why}." if why else ""
                 self._watch.ended(self._error or "That was the last picture.")
-                return False
-        return True
+                self._drop()
 
     def _send(self, request: dict[str, Any]) -> None:
-        process = self._process
-        if process is None or process.stdin is None or process.stdin.is_closing():
-            return  # it is asked again when it runs
-        with contextlib.suppress(OSError):
-            process.stdin.write(json.dumps(request).encode() + b"\n")
+        if self._worker is not None:  # else it is asked again when it runs
+            self._worker.tell(request)
 
     def _answer_all(self) -> None:
         for _, asked in self._asked.values():
             if not asked.done():
                 asked.set_result(None)
-
-    async def _end(self) -> None:
-        """End the process, with anything it may have started."""
-        process = self._process
-        if process is None:
-            return
-        if process.stdin is not None:
-            process.stdin.close()
-        with contextlib.suppress(ProcessLookupError):
-            if process.returncode is None:
-                os.killpg(process.pid, signal.SIGKILL)
-        await process.communicate()  # wait() alone would wait for what nobody reads any more
-        self._process = None

@@ -13,25 +13,26 @@ Run as `python -m tangy_hw.drivers.camera_child`, spoken to by JSON, one object 
     {"frame": 4, "after": 16, "fit": [80, 45]}   as large as fits into so many columns and rows
     {"frame": 3, "seq": 18, "stamp": 9.1, "width": 1280, "height": 720, "bytes": 2764800}
                                                  is followed by that many bytes, BGR
+    {"failed": "That line is no JSON object."}   instead of any answer
 
 It ends when its input closes; what C libraries print goes to standard error.
 """
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from threading import Condition, Lock, Thread
-from typing import TYPE_CHECKING, Any, BinaryIO
+from threading import Condition, Thread
+from typing import TYPE_CHECKING, Any
 
 from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_profiles.process_log import log_to_stderr
+from tangy_profiles.worker_lines import Answers, requests
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
@@ -47,9 +48,9 @@ PIPE_BYTES = 1 << 20
 class Child:
     """Reads pictures on one thread, is asked for them on another, and beats on a third."""
 
-    def __init__(self, answers: BinaryIO) -> None:
+    def __init__(self, answers: Answers) -> None:
         self._answers = answers
-        self._writing = Lock()
+        self._begun = False
         self._changed = Condition()
         self._newest: tuple[int, float, Image] | None = None
         # request -> the number above which it asks, and into what the picture is to fit
@@ -60,15 +61,10 @@ class Child:
 
     def write(self, answer: dict[str, Any], image: Image | None = None) -> None:
         """Send one answer, and the picture (BGR) that belongs to it."""
-        line = json.dumps(answer).encode() + b"\n"
-        with self._writing:
-            try:
-                self._answers.write(line)
-                if image is not None:
-                    self._answers.write(image.data if image.flags.c_contiguous else image.tobytes())
-                self._answers.flush()
-            except (BrokenPipeError, ValueError):
-                os._exit(0)  # nobody looks any more
+        if image is None:
+            self._answers.write(answer)
+        else:
+            self._answers.write(answer, image.data if image.flags.c_contiguous else image.tobytes())
 
     def beat(self) -> None:
         """Say for ever that this process is alive, and what it is busy with."""
@@ -78,13 +74,23 @@ class Child:
             self.write({"alive": round(now, 3), "busy": busy, "for": round(now - since, 3)})
             time.sleep(ALIVE_SECONDS)
 
-    def ask(self, request: Any) -> None:
-        """Take a request for a picture."""
+    def take(self, request: Any) -> None:
+        """Take the source, or a request for a picture."""
         match request:
-            case {"frame": int(id), "after": int(after)}:
+            case {"source": dict(source), "first": int(first)} if not self._begun:
+                try:
+                    reads = CameraSource.from_json(source)
+                except (KeyError, TypeError, ValueError) as error:
+                    self._answers.refuse(f"That is no source ({error!r:.100}).")
+                    return
+                self._begun = True
+                Thread(target=self._reads, args=(reads, first), daemon=True).start()
+            case {"frame": int(id), "after": int(after)} if _is_size(request.get("fit")):
                 with self._changed:
                     self._asked[id] = after, request.get("fit")
                 self._answer()
+            case _:
+                self._answers.refuse("A line must hold source and first, once, or frame and after.")
 
     def _answer(self) -> None:
         """Give the newest picture to all who have asked for it."""
@@ -108,6 +114,17 @@ class Child:
             with self._changed:
                 self._taken = True
                 self._changed.notify_all()
+
+    def _reads(self, source: CameraSource, first: int) -> None:
+        _LOG.info("opens a camera")
+        try:
+            self.grab(source, first)
+        except BaseException:
+            import traceback
+
+            traceback.print_exc()
+            sys.stderr.flush()
+            os._exit(1)  # a new process begins anew
 
     def grab(self, source: CameraSource, first: int) -> None:
         """Read pictures until there are no more."""
@@ -173,6 +190,16 @@ class Child:
         self._busy = (what, time.monotonic())
 
 
+def _is_size(fit: Any) -> bool:
+    """Say whether a picture can be made to fit into this; None leaves it as it is."""
+    match fit:
+        case None:
+            return True
+        case [int(columns), int(rows)]:
+            return columns > 0 and rows > 0
+    return False
+
+
 def fitted(image: Image, columns: int, rows: int) -> Image:
     """Return a picture (BGR) as large as fits, in its own proportions."""
     import cv2
@@ -186,38 +213,17 @@ def fitted(image: Image, columns: int, rows: int) -> Image:
 
 
 def main() -> None:
-    """Read what the first line of standard input names, until standard input closes."""
+    """Read what standard input names, until that closes."""
     log_to_stderr()
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # C libraries print on standard output; the protocol has its own copy of it
+    answers = Answers()
     with suppress(ImportError, AttributeError, OSError):
         import fcntl
 
         fcntl.fcntl(answers, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
     child = Child(answers)
-    order = json.loads(sys.stdin.buffer.readline() or b"null")
-    if order is None:
-        return
-    source, first = CameraSource.from_json(order["source"]), int(order["first"])
-    _LOG.info("opens a camera")
-    Thread(target=_reads, args=(child, source, first), daemon=True).start()
-    for line in sys.stdin.buffer:
-        try:
-            child.ask(json.loads(line))
-        except ValueError:
-            continue
+    for request in requests(answers.refuse):
+        child.take(request)
     os._exit(0)  # a thread that hangs in a driver must not keep this process
-
-
-def _reads(child: Child, source: CameraSource, first: int) -> None:
-    try:
-        child.grab(source, first)
-    except BaseException:
-        import traceback
-
-        traceback.print_exc()
-        sys.stderr.flush()
-        os._exit(1)  # a new process begins anew
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ served by a process of its own (`chest_child`): strangers can keep that busy, an
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import math
 import socket
@@ -21,6 +20,7 @@ from typing import Any
 from tangy_hw.device_protocols import DeviceError, Picture
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.rate_estimator import RateEstimator
+from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Reading
 from tangy_profiles.reading import plain
 
@@ -80,7 +80,7 @@ class WebChestScreen:
         self._clock = clock
         self._stale_after = stale_after
         self._task: asyncio.Task[None] | None = None
-        self._process: asyncio.subprocess.Process | None = None
+        self._worker: WorkerProcess | None = None
         self._begun = asyncio.Event()
         self._pages: dict[str, _Page] = {}
         self._number = 0
@@ -99,6 +99,11 @@ class WebChestScreen:
     def code(self) -> str:
         """The code that is entered there once, as people read it."""
         return self.pairing.shown
+
+    @property
+    def pid(self) -> int | None:
+        """The process that serves the page, if one runs."""
+        return None if self._worker is None else self._worker.pid
 
     @property
     def pages(self) -> int:
@@ -172,38 +177,31 @@ class WebChestScreen:
         """Keep a process that serves the page."""
         while True:
             try:
-                await self._begin()
-                await self._listen()
-                self._error = f"{self.name}: the process of its page has ended."
-            except OSError as error:
-                self._error = plain(f"{self.name}: its page cannot be served ({error.strerror}).")
-            finally:
-                await self._end()
+                worker = self._begin()
+            except WorkerError as error:
+                self._error = plain(f"{self.name}: its page cannot be served ({error}).")
+            else:
+                try:
+                    await asyncio.wait({asyncio.wrap_future(worker.over)})
+                    self._error = f"{self.name}: the process of its page has ended ({worker.how})."
+                finally:
+                    self._worker = None
+                    self._pages.clear()
+                    await worker.stopped(END_SECONDS)
             self._begun.set()
             await asyncio.sleep(AGAIN_SECONDS)
 
-    async def _begin(self) -> None:
-        self._process = await asyncio.create_subprocess_exec(
-            *CHILD,
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            start_new_session=True,
+    def _begin(self) -> WorkerProcess:
+        worker = self._worker = WorkerProcess(
+            CHILD, hear=self._take, stderr=None, loop=asyncio.get_running_loop()
         )
         pairing = self.pairing.to_json()
         place = {"host": self.host, "port": self.port, "names": self._names}
-        self._send({**place, "pairing": pairing})
+        worker.tell({**place, "pairing": pairing})
         self._send_picture()
+        return worker
 
-    async def _listen(self) -> None:
-        """Take what the process says, until it ends."""
-        assert self._process is not None and self._process.stdout is not None  # noqa: S101
-        while line := await self._process.stdout.readline():
-            try:
-                self._take(json.loads(line))
-            except ValueError:
-                return
-
-    def _take(self, said: dict[str, Any]) -> None:
+    def _take(self, said: dict[str, Any], _: bytes) -> None:
         match said:
             case {"port": int(port)}:
                 self.port, self._error = port, ""
@@ -222,27 +220,8 @@ class WebChestScreen:
                 self._pages.pop(name, None)
 
     def _send_picture(self) -> None:
-        self._send({"show": self._number, "picture": self._picture._asdict()})
-
-    def _send(self, told: dict[str, Any]) -> None:
-        process = self._process
-        if process is None or process.stdin is None or process.stdin.is_closing():
-            return  # it is told when it runs
-        process.stdin.write(json.dumps(told).encode() + b"\n")
-
-    async def _end(self) -> None:
-        process, self._process = self._process, None
-        self._pages.clear()
-        if process is None:
-            return
-        if process.stdin is not None:
-            process.stdin.close()
-        try:
-            await asyncio.wait_for(process.wait(), END_SECONDS)
-        except (TimeoutError, asyncio.CancelledError):
-            with suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
+        if self._worker is not None:  # else it is told when it runs
+            self._worker.tell({"show": self._number, "picture": self._picture._asdict()})
 
 
 def _reached_at(host: str) -> str:

@@ -8,6 +8,7 @@ Run as `python -m tangy_hw.drivers.chest_child`, spoken to by JSON, one object a
     {"error": "Address already in use"}        it cannot; it tries again every second
     {"page": "17", "seen": 7}                  a page of a paired tablet has drawn it
     {"gone": "17"}                             that page is not connected any more
+    {"failed": "That line is too long."}       a line cannot be heeded, and nothing comes of it
 
 The first comes once, the second any number of times; the others are what it says. It ends when its
 input closes.
@@ -16,15 +17,15 @@ input closes.
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import os
-import sys
+from collections.abc import Callable
 from contextlib import suppress
 
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.drivers.chest_server import ChestServer, Said
 from tangy_profiles.process_log import log_to_stderr
+from tangy_profiles.worker_lines import Answers, Asked, LineError, coming, open_lines
 
 _LOG = logging.getLogger(__name__)
 
@@ -32,45 +33,68 @@ AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
 NICER = 5  # than what drives the robot
 
 
-def say(said: Said) -> None:
-    """Write a line; who does not read it any more has ended."""
-    try:
-        os.write(1, json.dumps(said).encode() + b"\n")
-    except OSError:
-        os._exit(0)
+class Child:
+    """Serves the page as it is told to, and says what comes of it."""
 
+    def __init__(self, say: Callable[[Said], None]) -> None:
+        self._say = say
+        self._server: ChestServer | None = None
+        self._listening: asyncio.Task[None] | None = None
 
-async def listen(server: ChestServer) -> None:
-    """Begin to listen, as soon as that can be."""
-    while True:
-        try:
-            await server.start()
-        except (OSError, OverflowError, UnicodeError) as error:  # or there is no such host or port
-            say({"error": str(getattr(error, "strerror", None) or error)})
-            await asyncio.sleep(AGAIN_SECONDS)
-        else:
-            say({"port": server.port})
-            return
+    def take(self, told: Asked) -> None:
+        """Take the setup, or what pages show from now on.
+
+        Raises:
+            LineError: it is neither.
+        """
+        match told:
+            case {
+                "host": str(host),
+                "port": int(port),
+                "names": list(names),
+                "pairing": dict(known),
+            }:
+                if self._server is None:
+                    pairing = Pairing.from_json(known)
+                    self._server = ChestServer(host, port, pairing, self._say, names)
+            case {"show": int(number), "picture": dict(picture)} if self._server is not None:
+                self._server.show(number, picture)
+                if self._listening is None:  # there is something to show from the first page on
+                    self._listening = asyncio.create_task(self._listen(self._server))
+            case _:
+                raise LineError("A line must hold the setup, once, or then show and picture.")
+
+    async def _listen(self, server: ChestServer) -> None:
+        """Begin to listen, as soon as that can be."""
+        while True:
+            try:
+                await server.start()
+            except (OSError, OverflowError, UnicodeError) as error:  # or no such host or port
+                self._say({"error": str(getattr(error, "strerror", None) or error)})
+                await asyncio.sleep(AGAIN_SECONDS)
+            else:
+                self._say({"port": server.port})
+                return
+
+    async def close(self) -> None:
+        """Serve no more."""
+        if self._listening is not None:
+            self._listening.cancel()
+        if self._server is not None:
+            await self._server.close()
 
 
 async def run() -> None:
     """Serve the page until there is nothing more to hear."""
-    lines = asyncio.StreamReader()
-    await asyncio.get_running_loop().connect_read_pipe(
-        lambda: asyncio.StreamReaderProtocol(lines), sys.stdin
-    )
-    setup = json.loads(await lines.readline())
-    pairing = Pairing.from_json(setup["pairing"])
-    server = ChestServer(setup["host"], setup["port"], pairing, say, setup["names"])
-    listening: asyncio.Task[None] | None = None
-    while line := await lines.readline():
-        told = json.loads(line)
-        server.show(int(told["show"]), told["picture"])
-        if listening is None:  # there is something to show from the first page on
-            listening = asyncio.create_task(listen(server))
-    if listening is not None:
-        listening.cancel()
-    await server.close()
+    answers = Answers()
+    lines, _ = await open_lines()
+    child = Child(answers.write)
+    async for told in coming(answers.refuse, lines):
+        try:
+            child.take(told)
+        except (LineError, ValueError) as error:
+            answers.refuse(str(error))
+    await child.close()
 
 
 def main() -> None:

@@ -326,7 +326,7 @@ class RobotLink:
     def _write(self, line: str) -> bool:
         """Have a line written, without waiting for it; return whether it may be."""
         outbox = self._outbox
-        return outbox is not None and outbox.put(line)
+        return outbox is not None and outbox.put(line) is not None
 
     def _beat(self, process: subprocess.Popen[bytes], outbox: WriteQueue) -> None:
         number = 0
