@@ -7,7 +7,6 @@ from typing import Any
 
 from tangy_tui.app.scripted_staff import scripted_controller
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import learn_effects
 from tangy_tui.learning.library import read_library
@@ -15,6 +14,7 @@ from tangy_tui.learning.policies import keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Next
+from tangy_tui.text.games import belief_lines, game_lines
 
 DEMONSTRATIONS = 3
 """What the paper found to be enough when situations come about by chance."""

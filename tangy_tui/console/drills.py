@@ -1,203 +1,31 @@
-"""Drills in words, for the screen and for lines: rounds, what was right, and score sheets."""
+"""Drills line by line."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.app.command_grammar import ANSWERS, Leave, read_teaching
 from tangy_tui.language.words import words_of
 from tangy_tui.learning.verification import StopCommand
-from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
-from tangy_tui.monitoring.drill_rounds import Round, Tabletop
-from tangy_tui.monitoring.drill_sheet import AnsweredRound, Sheet
-from tangy_tui.text.situations import counted, state_words
+from tangy_tui.monitoring.drill import Drill, Question
+from tangy_tui.monitoring.drill_rounds import Round
+from tangy_tui.monitoring.drill_sheet import Sheet
+from tangy_tui.text.drills import (
+    HELP,
+    NOTHING_MOVES,
+    WELCOME,
+    left_words,
+    question_words,
+    round_parts,
+    sheet_lines,
+    told_lines,
+)
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
 Write = Callable[[str], None]
-
-Told = tuple[str, str]
-"""How a line is written (by an ink of the screens: text, dim, strong, ...), and the line."""
-
-CLASS_WORDS: Mapping[str, str] = MappingProxyType(
-    {
-        "expert": "critical, the expert",
-        "user": "help at the table",
-        "teacher": "say what to do",
-        "continue": "Tangy goes on",
-        "none": "nothing wrong",
-    }
-)
-"""The classes of faults, as the sheet has them."""
-
-RELEASE = "The expert was here and says: try it now. Seen: {seen}."
-WELCOME = (
-    "Each round shows what staff see at one moment of a game. Say what it is, and what you do. "
-    "Nothing of it is real, and nothing of it is kept but your score."
-)
-KEPT = "What was answered before is kept as an unfinished sheet."
-NOTHING_KEPT = "Nothing was kept: the first round was not answered to its end."
-NOTHING_MOVES = "Nothing is moving: this is a rehearsal, without the robot."
-HELP = "Type the number or letter of an answer, or quit."
-
-_STATES = {STALE: "nothing comes from it", ERROR: "it reports an error", "WARN": "it warns"}
-_QUIET = {
-    "refused": "People may refuse. Tangy asks again, and after a while leaves it at that.",
-    "late": "It was done. Late counts as no for how Tangy asks next time, and is no fault.",
-    "asks": "Whoever asks waits for their turn; Tangy comes by itself.",
-    "reading": "That is how it should be.",
-}
-_LABEL = 9
-
-
-def round_parts(table: Tabletop, shown: Round) -> list[tuple[str, str]]:
-    """Say what staff can see in a round: pairs of a label and a sentence."""
-    activity, acted = table.activity, shown.acted
-    just = "The game has only begun."
-    if acted is not None:
-        target = f" ({table.name(acted.action.target)})" if acted.action.target else ""
-        just = f"{acted.action.behaviour.name}{target}. It said: {acted.speech}"
-    where = state_words(activity, shown.state, shown.scene, table.name)
-    parts = [
-        ("Now", f"{activity.in_words(shown.state.situation)}. {where}"),
-        ("Just done", just),
-        ("Noticed", f"{shown.noticed}."),
-        ("Devices", device_words(shown.devices)),
-    ]
-    return [(label, plain(text)) for label, text in parts]
-
-
-def device_words(devices: Sequence[tuple[str, str]]) -> str:
-    """Say of all devices how they are, the ill ones by name."""
-    by_state: dict[str, list[str]] = {}
-    for label, state in devices:
-        by_state.setdefault(state, []).append(label)
-    well = by_state.pop(OK, [])
-    if not by_state:
-        return "None reports an error."
-    parts = [
-        f"{', '.join(labels)}: {_STATES.get(state, state)}"
-        if well or len(by_state) > 1
-        else f"all {len(labels)}: {_STATES.get(state, state)}"
-        for state, labels in by_state.items()
-    ]
-    if well:
-        parts.append(f"no error from the other {len(well)}")
-    return "; ".join(parts) + "."
-
-
-def question_words(question: Question, shown: Round) -> str:
-    """Return the question, with what is seen then where it is about clearing."""
-    if question.kind == "clear" and shown.release is not None:
-        return f"{RELEASE.format(seen=shown.release.seen)} {question.text}"
-    return question.text
-
-
-def told_lines(table: Tabletop, shown: Round, answered: AnsweredRound) -> list[Told]:
-    """Tell what was right in a round, why, and what to do then."""
-    fault = shown.fault
-    what = "nothing was wrong" if fault is None else fault.name
-    lines = [_verdict(answered.named_right, what, _named(table, answered.named))]
-    lines.append(
-        _verdict(answered.acted_right, _action(answered.recovery), _action(answered.acted))
-    )
-    if answered.may_clear is not None:
-        yes = "it is mended, so Tangy may be cleared"
-        no = "it is still there, so Tangy must not be cleared"
-        said = "yes" if answered.cleared else "no"
-        lines.append(
-            _verdict(answered.cleared_right is True, yes if answered.may_clear else no, said)
-        )
-    if fault is None:
-        lines.append(("text", f"Why: {shown.noticed}. {_QUIET.get(shown.quiet, '')}"))
-    else:
-        lines.append(("text", f"Why: {fault.why}. {fault.console}"))
-        lines.append(("strong", "What should I do?"))
-        lines += [("text", f"{number}. {step}") for number, step in enumerate(fault.advice, 1)]
-    points = f"{answered.points} of {counted(answered.most, 'point')}, {answered.seconds:.0f} s."
-    lines.append(("dim", points))
-    return [(ink, plain(text)) for ink, text in lines]
-
-
-def _verdict(right: bool, was: str, said: str) -> Told:
-    if right:
-        return "good", f"Right: {was}."
-    return "bad", f"Not quite. Right would be: {was}. You said: {said}."
-
-
-def _named(table: Tabletop, code: str) -> str:
-    return table.rule_name(code) if code else "nothing is wrong"
-
-
-def _action(recovery: str) -> str:
-    words = ACTIONS[recovery]
-    return words[0].lower() + words[1:]
-
-
-def sheet_lines(sheet: Sheet, width: int = 80, before: Sheet | None = None) -> list[Told]:
-    """Write a score sheet for so many columns: a table, totals, and what to rehearse again.
-
-    `before` is what the same person had the last time.
-    """
-    state = "" if sheet.finished else f", left after {len(sheet.answered)} of {sheet.rounds}"
-    took = "" if sheet.median is None else f" Median time {sheet.median:.0f} s."
-    lines: list[Told] = [
-        ("strong", f"{sheet.who}: {sheet.points} of {counted(sheet.most, 'point')}{state}.{took}")
-    ]
-    if before is not None:
-        lines.append(("dim", f"The last time: {before.points} of {counted(before.most, 'point')}."))
-    name_width = max(12, min(44, width - 32))
-    lines.append(("dim", f" #  {'What it was':{name_width}}  Named  Done  Clear    s"))
-    for one in sheet.answered:
-        marks = f"{_mark(one.named_right):5}  {_mark(one.acted_right):4}  "
-        marks += f"{_mark(one.cleared_right):5}  {one.seconds:3.0f}"
-        ink = "text" if one.points == one.most else "warn"
-        lines.append((ink, f"{one.number:2}  {_cut(one.name, name_width)}  {marks}"))
-    for kind, (points, most) in sheet.by_class.items():
-        lines.append(("text", f"{CLASS_WORDS[kind]:>{name_width + 4}}  {points} of {most}"))
-    if not sheet.again:
-        lines.append(("good", "Nothing to rehearse again: all of it was right."))
-        return [(ink, plain(text)) for ink, text in lines]
-    lines += [("text", ""), ("strong", "To rehearse again:")]
-    for one in sheet.again:
-        lines.append(("text", f"{one.name}: {_action(one.recovery)}."))
-        lines += [("dim", f"  {number}. {step}") for number, step in enumerate(one.advice, 1)]
-    return [(ink, plain(text)) for ink, text in lines]
-
-
-def _mark(right: bool | None) -> str:
-    return "-" if right is None else "yes" if right else "NO"
-
-
-def _cut(text: str, width: int) -> str:
-    return text.ljust(width) if len(text) <= width else f"{text[: width - 1]}…"
-
-
-def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str = "") -> list[str]:
-    """List earlier sheets (of one person), the oldest first; `when` writes a time of the log."""
-    if not sheets:
-        return ["No drill yet: tangy drill begins one."]
-    if who:
-        names = sorted({sheet.who for sheet in sheets})
-        sheets = [sheet for sheet in sheets if sheet.by(who)]
-        if not sheets:
-            return [plain(f"No drill of {who} yet; there are sheets of {', '.join(names)}.")]
-    wide = max(len("Who"), *(len(sheet.who) for sheet in sheets))
-    lines = [f"{'When':16}  {'Who':{wide}}  Rounds   Points  Median s  To rehearse again"]
-    for sheet in sheets:
-        rounds = f"{len(sheet.answered)} of {sheet.rounds}"
-        points = f"{sheet.points} of {sheet.most}"
-        took = "-" if sheet.median is None else f"{sheet.median:.0f}"
-        again = ", ".join(one.name for one in sheet.again) or "nothing"
-        line = (
-            f"{when(sheet.at):16}  {sheet.who:{wide}}  {rounds:>8} {points:>8}  {took:>8}  {again}"
-        )
-        lines.append(plain(line))
-    return lines
 
 
 def drill_by_lines(drill: Drill, write: Write, read: Read, *, strict: bool = False) -> Sheet | None:
@@ -233,7 +61,7 @@ def _go_through(drill: Drill, write: Write, read: Read, strict: bool) -> None:
         write("")
         write(f"Round {shown.number} of {drill.rounds}")
         for label, text in round_parts(drill.tabletop, shown):
-            write(f"  {label:{_LABEL}}  {text}")
+            write(f"  {label:9}  {text}")
         if not _answer_round(drill, shown, write, read, strict):
             drill.leave()
             return
@@ -249,11 +77,6 @@ def _tell(drill: Drill, write: Write) -> Sheet | None:
     if not drill.over:
         write(left_words(drill))
     return sheet
-
-
-def left_words(drill: Drill) -> str:
-    """Say what is kept of a drill that was left."""
-    return KEPT if drill.sheet.answered else NOTHING_KEPT
 
 
 def _answer_round(drill: Drill, shown: Round, write: Write, read: Read, strict: bool) -> bool:

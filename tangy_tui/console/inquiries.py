@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
-from tangy_tui.console.faults import advice_lines, list_lines
-from tangy_tui.console.games import Demonstrations, why_lines
 from tangy_tui.learning.verification import NO_QUESTION, answer_help
+from tangy_tui.text.faults import advice_lines, list_lines
+from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.situations import Name, state_words
 
 HELP = "You can type, at any time:"

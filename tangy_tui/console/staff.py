@@ -36,8 +36,6 @@ from tangy_tui.app.game_commands import (
 from tangy_tui.app.game_controller import GameController, Told
 from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.scripted_staff import go_on_by_script
-from tangy_tui.console.faults import HALTED, expert_line
-from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.console.inquiries import ANSWER_IN_WORDS, Inquiries
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
 from tangy_tui.learning.verification import (
@@ -53,6 +51,8 @@ from tangy_tui.learning.verification import (
 )
 from tangy_tui.monitoring.supervision import Event
 from tangy_tui.text.control import noted_words, proposal_words
+from tangy_tui.text.faults import HALTED, expert_line
+from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.situations import Name, verification_lines
 
 LOOK_SECONDS = 0.1  # between two looks at the devices, and for the next line

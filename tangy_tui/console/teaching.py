@@ -30,18 +30,15 @@ from tangy_tui.learning.verification import (
     ANSWER_HELP,
     NO_QUESTION,
     WHICH,
-    Asked,
-    NotUnderstood,
     Offered,
-    Refused,
-    Rejected,
     Reply,
     Say,
     StopCommand,
     answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
-from tangy_tui.text.situations import counted, state_words, step_words, verification_lines
+from tangy_tui.text.situations import counted, state_words
+from tangy_tui.text.teaching import teaching_lines
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
@@ -296,26 +293,3 @@ def _is_command(spoken: asyncio.Future[Heard | None]) -> bool:
     if not spoken.done() or spoken.cancelled() or spoken.exception() is not None:
         return False
     return isinstance(spoken.result(), Say)
-
-
-def teaching_lines(event: TeachingEvent, teaching: TeachingSession) -> list[str]:
-    """Put one event of a teaching session into lines."""
-    match event:
-        case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
-            return verification_lines(event)
-        case Executed(number, step, _, _, speech, _):
-            return [
-                f"{number}. {step_words(teaching.activity, step, teaching.name)}",
-                f"   Tangy says: {speech}",
-            ]
-        case StepUndone(number, step):
-            return [f"Step {number} is undone: {step.behaviour}."]
-        case Begun(demonstration, resumed):
-            if resumed:
-                return [
-                    f"Going on with {teaching.teacher}'s demonstration of "
-                    f"{len(demonstration.steps)} steps (game {demonstration.seed})."
-                ]
-            return [f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."]
-        case Finished(demonstration):
-            return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]

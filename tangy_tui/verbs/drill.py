@@ -43,8 +43,8 @@ def drill(
     name = teacher_name() if who is None else read_name(who, "--who: a name")
     with open_workspace(data, activity, users, write=not scores) as workspace:
         if scores:
-            from tangy_tui.console.drills import sheets_lines
             from tangy_tui.monitoring.drill_sheet import read_sheets
+            from tangy_tui.text.drills import sheets_lines
             from tangy_tui.ui.local_time import local_time
 
             only = "" if who is None else name
@@ -61,9 +61,10 @@ def drill(
             raise typer.Exit(
                 run_drill(workspace, rounds=rounds, seed=seed, who=name, ascii_only=ascii_only)
             )
-        from tangy_tui.console.drills import drill_by_lines, left_words
+        from tangy_tui.console.drills import drill_by_lines
         from tangy_tui.console.inputs import line_reader
         from tangy_tui.monitoring.drill import Drill
+        from tangy_tui.text.drills import left_words
 
         if not as_json:
             print_line("Tangy is preparing the drill ...")

@@ -16,14 +16,7 @@ from tangy_profiles.faults import RECOVERIES
 from tangy_profiles.person import Person
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
-from tangy_tui.console.drills import (
-    device_words,
-    drill_by_lines,
-    round_parts,
-    sheet_lines,
-    sheets_lines,
-    told_lines,
-)
+from tangy_tui.console.drills import drill_by_lines
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.monitoring import drill_policy, drill_rounds
 from tangy_tui.monitoring.drill import NOTHING, Drill
@@ -47,6 +40,7 @@ from tangy_tui.monitoring.drill_sheet import (
     read_sheets,
 )
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.text.drills import device_words, round_parts, sheet_lines, sheets_lines, told_lines
 
 BOOK = load_faults(load_robot())
 KINDS = round_kinds(BOOK)

@@ -11,7 +11,7 @@ import pytest
 
 from tangy_profiles.store import Store
 from tangy_tui.console import inputs
-from tangy_tui.console.drills import KEPT, NOTHING_KEPT
+from tangy_tui.text.drills import KEPT, NOTHING_KEPT
 
 Tangy = Callable[..., CompletedProcess[str]]
 

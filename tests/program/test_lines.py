@@ -19,12 +19,12 @@ from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.games import belief_lines, game_lines
 from tangy_tui.console.teaching import TeachingLines, command_line
 from tangy_tui.interaction.game_events import BeliefUpdated
 from tangy_tui.learning.policy import ForestSettings, learn_policy
 from tangy_tui.learning.teaching_events import Again
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.text.games import belief_lines, game_lines
 from tests.support.staff_lines import play_by_turns
 
 Cover = Callable[[str, int, int], tuple[Demonstration, ...]]

@@ -11,7 +11,9 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_tui.console.drills import (
+from tangy_tui.monitoring.drill import Drill
+from tangy_tui.monitoring.drill_rounds import Round
+from tangy_tui.text.drills import (
     WELCOME,
     Told,
     question_words,
@@ -19,8 +21,6 @@ from tangy_tui.console.drills import (
     sheet_lines,
     told_lines,
 )
-from tangy_tui.monitoring.drill import Drill
-from tangy_tui.monitoring.drill_rounds import Round
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close

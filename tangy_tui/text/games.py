@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.beliefs import probability_best
 from tangy_profiles.demonstration import Demonstration
-from tangy_tui.console.faults import fault_lines
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -19,6 +18,7 @@ from tangy_tui.interaction.game_events import (
 from tangy_tui.learning.explanation import explain, why_words
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.situations import Name, once_words
 
 Demonstrations = Callable[[], Sequence[Demonstration]]
