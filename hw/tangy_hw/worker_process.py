@@ -196,7 +196,7 @@ class WorkerProcess:
                 thread.join(LAST_SECONDS)
 
     async def stopped(self, patience: float) -> None:
-        """Do as `stop` does, in a loop that goes on meanwhile; cancelled, it kills at once."""
+        """Do as `stop` does after so many s, in a loop; called off, it kills at once."""
         self.close()
         over = asyncio.wrap_future(self.over)
         try:

@@ -107,7 +107,7 @@ async def coming(
             yield asked
 
 
-class Answers:
+class AnswerWriter:
     """What a child says, from whichever thread; it ends with whoever reads it."""
 
     def __init__(self) -> None:

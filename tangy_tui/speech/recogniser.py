@@ -8,18 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import contextlib
-import json
-import os
-import signal
 import sys
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
+from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.errors import TangyError
-from tangy_profiles.worker_log import open_log
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
 WORKER = (sys.executable, "-P", "-m", "tangy_tui.speech.worker")
@@ -37,6 +33,9 @@ class SpeechUnavailable(TangyError):
 
 class _WorkerDied(Exception):
     """The worker ended before it answered; its text says how, in a few words."""
+
+    def __init__(self, how: str) -> None:
+        super().__init__(f"unasked ({how})")
 
 
 class Recogniser:
@@ -63,11 +62,9 @@ class Recogniser:
         self._log = log
         self._notify = notify
         self._wanted: Wanted | None = None
-        self._process: asyncio.subprocess.Process | None = None
-        self._reader: asyncio.Task[None] | None = None
-        self._waiting: dict[int, asyncio.Future[dict[str, Any]]] = {}
+        self._worker: WorkerProcess | None = None
+        self._hearing = 0  # the id of the utterance that is heard
         self._turn = asyncio.Lock()
-        self._asked = 0
         self._closing = False
         self.said = b""
         """The sound of the last utterance that was heard."""
@@ -77,8 +74,7 @@ class Recogniser:
     @property
     def pid(self) -> int | None:
         """The process that decodes, if one runs."""
-        alive = self._process is not None and self._process.returncode is None
-        return self._process.pid if alive and self._process else None
+        return None if self._worker is None else self._worker.pid
 
     async def start(self, wanted: Wanted) -> None:
         """Start the worker, or have it listen for something else.
@@ -148,7 +144,8 @@ class Recogniser:
         async with self._turn:
             try:
                 await self._ready()
-                answer = await self._ask({"pieces": base64.b64encode(pcm).decode()}, DECODE_SECONDS)
+                whole = {"pieces": base64.b64encode(pcm).decode()}
+                answer = await self._ask(whole, DECODE_SECONDS)
             except _WorkerDied as how:
                 raise SpeechUnavailable(f"The speech worker ended {how}.") from None
         return [
@@ -158,8 +155,8 @@ class Recogniser:
     async def close(self) -> None:
         """End the worker, whatever it is doing."""
         self._closing, self._wanted = True, None
-        if self._turn.locked() and self._process is not None:
-            _kill(self._process)
+        if self._turn.locked() and self._worker is not None:
+            self._worker.kill()
         async with self._turn:
             await self._end()
 
@@ -169,6 +166,7 @@ class Recogniser:
         """Let the worker hear what was said so far, and what comes."""
         await self._ready()
         id, answer = self._expect()
+        self._hearing = id
         try:
             await self._send({"id": id, "begin": expecting, "endpoint": endpoint})
             for before in said:
@@ -190,7 +188,7 @@ class Recogniser:
                     await self._send({"pcm": base64.b64encode(chunk).decode()})
             if not answer.done():
                 await self._send({"id": id, "end": True})
-            got = await self._answer(answer, DECODE_SECONDS)
+            got = await self._wait(answer, DECODE_SECONDS)
             evidence = AcousticEvidence(
                 **{field.name: got["heard"][field.name] for field in fields(AcousticEvidence)}
             )
@@ -202,7 +200,8 @@ class Recogniser:
                 self.said = self.said[max(0, end - 2 * round(evidence.seconds * RATE)) :]
             return evidence
         finally:
-            self._waiting.pop(id, None)
+            self._hearing = 0
+            answer.cancel()
 
     async def _next(
         self, sound: asyncio.Queue[bytes], answer: asyncio.Future[dict[str, Any]]
@@ -219,8 +218,8 @@ class Recogniser:
 
     async def _ready(self) -> None:
         if self.pid is None:
-            if self._reader is not None:
-                await asyncio.wait({self._reader})  # which says how it ended
+            if self._worker is not None:
+                await self._worker.stopped(END_SECONDS)  # then it was told how it ended
             await self._begin()
 
     async def _begin(self) -> None:
@@ -228,26 +227,19 @@ class Recogniser:
         await self._end()
         if self._wanted is None:
             raise SpeechUnavailable("Speech was not started yet.")
-        log: int | IO[bytes] = asyncio.subprocess.DEVNULL
         try:
-            if self._log is not None:
-                log = open_log(self._log)
-            self._process = await asyncio.create_subprocess_exec(
-                *WORKER,
-                stdin=asyncio.subprocess.PIPE,
-                stdout=asyncio.subprocess.PIPE,
-                stderr=log,
-                start_new_session=True,  # ctrl+c in the terminal is not meant for it
-                limit=LONGEST_ANSWER,
+            self._worker = WorkerProcess(
+                WORKER,
+                hear=self._hear_of,
+                ended=self._tell_end,
+                read=_answer,
+                lost=_WorkerDied,
+                log=self._log,
+                longest=LONGEST_ANSWER,
+                loop=asyncio.get_running_loop(),
             )
-        except OSError as error:
-            raise SpeechUnavailable(
-                f"The speech worker cannot be started ({error.strerror})."
-            ) from None
-        finally:
-            if not isinstance(log, int):
-                log.close()
-        self._reader = asyncio.create_task(self._read(self._process))
+        except WorkerError as error:
+            raise SpeechUnavailable(f"The speech worker cannot be started ({error}).") from None
         try:
             await self._tell_what()
         except SpeechUnavailable:
@@ -264,119 +256,69 @@ class Recogniser:
         id, answer = self._expect()
         try:
             await self._send({"id": id, **request})
-            return await self._answer(answer, seconds)
+            return await self._wait(answer, seconds)
         finally:
-            self._waiting.pop(id, None)
+            answer.cancel()
 
     def _expect(self) -> tuple[int, asyncio.Future[dict[str, Any]]]:
-        self._asked += 1
-        answer: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
-        self._waiting[self._asked] = answer
-        return self._asked, answer
+        if self._worker is None:
+            raise _WorkerDied("closed")
+        id, answer = self._worker.expect()
+        return id, asyncio.wrap_future(answer)
 
     async def _send(self, request: dict[str, Any]) -> None:
-        process = self._process
-        if process is None or process.stdin is None:
-            raise _WorkerDied("unasked")
-        try:
-            process.stdin.write(json.dumps(request).encode() + b"\n")
-            await asyncio.wait_for(process.stdin.drain(), DECODE_SECONDS)
-        except TimeoutError:
-            _kill(process)  # it hangs
-        except OSError:
-            pass  # its reader says how it ended
+        worker = self._worker
+        if worker is None:
+            raise _WorkerDied("closed")
+        written = worker.tell(request)
+        if written is not None:
+            _, late = await asyncio.wait({asyncio.wrap_future(written)}, timeout=DECODE_SECONDS)
+            if late:
+                worker.kill()  # it hangs
 
-    async def _answer(
-        self, coming: asyncio.Future[dict[str, Any]], seconds: float
-    ) -> dict[str, Any]:
+    async def _wait(self, coming: asyncio.Future[dict[str, Any]], seconds: float) -> dict[str, Any]:
         try:
-            answer = await asyncio.wait_for(coming, seconds)
+            return await asyncio.wait_for(coming, seconds)
         except TimeoutError:
-            await self._end(kill=True)
+            await self._end(0)
             raise SpeechUnavailable(
                 f"The speech worker did not answer in {seconds:g} s and was ended; "
                 "it is started again at the next use."
             ) from None
-        if "error" in answer:
-            raise SpeechUnavailable(str(answer["error"]))
-        return answer
 
-    async def _read(self, process: asyncio.subprocess.Process) -> None:
-        """Give each answer to whoever waits for it, until the worker ends."""
-        stdout = process.stdout or asyncio.StreamReader()
-        try:
-            while line := await stdout.readline():
-                self._took(json.loads(line))
-        except (OSError, ValueError, TypeError):  # that is no answer: it cannot be relied on
-            _kill(process)
-            with contextlib.suppress(OSError):
-                while await stdout.read(1 << 16):  # a full pipe would keep it from ending
-                    pass
-        await _let_end(process)
-        if self._process is process:
-            how = _epitaph(process)
-            for waiting in self._waiting.values():
-                if not waiting.done():
-                    waiting.set_exception(_WorkerDied(how))
-            if self._notify is not None and not self._closing:
-                self._notify(f"The speech worker ended {how}; it is started again.")
-
-    def _took(self, answer: Any) -> None:
-        if not isinstance(answer, dict):
-            raise TypeError("An answer is an object.")
-        waiting = self._waiting.get(answer.get("id", 0))
-        if waiting is None or waiting.done():
-            return
-        try:
-            if "partial" in answer:
-                self.partial(str(answer["partial"]))
-            elif "speaking" in answer:
-                self.speaking()
+    def _hear_of(self, said: dict[str, Any], _: bytes) -> bool:
+        """Show what is heard meanwhile; return whether that was no answer."""
+        if "partial" not in said and "speaking" not in said:
+            return False
+        if said.get("id") == self._hearing:  # else nobody waits for that utterance any more
+            if "partial" in said:
+                self.partial(str(said["partial"]))
             else:
-                waiting.set_result(answer)
-        except Exception as error:  # whoever was told could not take it
-            waiting.set_exception(error)
+                self.speaking()
+        return True
 
-    async def _end(self, *, kill: bool = False) -> None:
-        process, self._process = self._process, None
-        reader, self._reader = self._reader, None
-        if process is not None and process.returncode is None:
-            if kill:
-                _kill(process)
-            elif process.stdin is not None:
-                process.stdin.close()
-            await _let_end(process)
-        if reader is not None:
-            await asyncio.wait({reader})
+    def _tell_end(self, how: str) -> None:
+        if self._worker is not None and self._notify is not None and not self._closing:
+            self._notify(f"The speech worker ended {_WorkerDied(how)}; it is started again.")
+
+    async def _end(self, patience: float | None = None) -> None:
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            await worker.stopped(END_SECONDS if patience is None else patience)
+
+
+def _answer(said: dict[str, Any]) -> dict[str, Any]:
+    """Return an answer.
+
+    Raises:
+        SpeechUnavailable: it is an error.
+    """
+    if "error" in said:
+        raise SpeechUnavailable(str(said["error"]))
+    return said
 
 
 def _forget(said: list[bytes]) -> None:
     """Keep no more of a stream than an utterance can be long, and the worker can be behind."""
     while sum(map(len, said)) > 2 * RATE * (LONGEST + BEHIND):
         said.pop(0)
-
-
-async def _let_end(process: asyncio.subprocess.Process) -> None:
-    """Wait for a process that is about to end; kill it if it does not.
-
-    Not before: killing a process that has just ended takes its status away from asyncio, which
-    then complains about it on the terminal.
-    """
-    try:
-        await asyncio.wait_for(process.wait(), END_SECONDS)
-    except TimeoutError:
-        _kill(process)
-        await process.wait()
-
-
-def _kill(process: asyncio.subprocess.Process) -> None:
-    """Kill a process, and leave its status to asyncio (`process.kill()` may take it away)."""
-    if process.returncode is None:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(process.pid, signal.SIGKILL)
-
-
-def _epitaph(process: asyncio.subprocess.Process) -> str:
-    code = process.returncode or 0
-    how = f"signal {-code}" if code < 0 else f"status {code}"
-    return f"unasked ({how})"

@@ -24,15 +24,13 @@ from __future__ import annotations
 
 import base64
 import binascii
-import json
 import logging
-import os
-import sys
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any, get_args
 
 from tangy_profiles.process_log import log_to_stderr
+from tangy_profiles.worker_lines import AnswerWriter, requests
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
@@ -237,21 +235,9 @@ def main() -> None:
     """Answer requests until standard input closes."""
     log_to_stderr()
     _LOG.info("the speech worker begins")
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # the C library prints on standard output; the protocol has its own copy of it
-
-    def write(answer: dict[str, Any]) -> None:
-        try:
-            print(json.dumps(answer), file=answers, flush=True)
-        except BrokenPipeError:
-            os._exit(0)  # nobody listens any more
-
-    worker = Worker(write)
-    for line in sys.stdin.buffer:
-        try:
-            request = json.loads(line)
-        except (ValueError, RecursionError):
-            request = None
+    answers = AnswerWriter()
+    worker = Worker(answers.write)
+    for request in requests(lambda why: answers.write({"id": None, "error": why})):
         worker.take(request)
 
 

@@ -167,7 +167,7 @@ class TestDeath:
     async def test_a_worker_that_dies_in_mid_utterance_loses_nothing(
         self, begin: Begin, how: str, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(room, "END_SECONDS", 0.2)
+        monkeypatch.setattr("tangy_hw.worker_process.LINGERS_SECONDS", 0.2)
         heard = begin({"chunk 4": how}, {})
         await heard.recogniser.start(WANTED)
         first = heard.recogniser.pid
@@ -326,15 +326,6 @@ class TestClosing:
             with pytest.raises(SpeechUnavailable):
                 await starting
             assert heard.told == []
-
-    async def test_closing_before_there_is_a_process(self, begin: Begin) -> None:
-        heard = begin({"wanted": "hang"})
-        starting = asyncio.create_task(heard.recogniser.start(WANTED))
-        await asyncio.sleep(0)
-        assert heard.recogniser.pid is None
-        await asyncio.wait_for(heard.recogniser.close(), PATIENCE)
-        with pytest.raises(SpeechUnavailable):
-            await starting
 
     async def test_a_closed_recogniser_can_be_started_again(self, begin: Begin) -> None:
         heard = begin()

@@ -22,8 +22,8 @@ import pytest
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.robot_client.client import CHILD, RobotLink
 from tangy_hw.robot_process.controller import HAZARD_SECONDS
-from tangy_hw.robot_process.program_pipe import LONGEST_LINE
 from tangy_hw.robot_process.stop_latch import Preempted
+from tangy_profiles.worker_lines import LONGEST_LINE
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.bench_setup import setup_on
 

@@ -33,7 +33,7 @@ from tangy_tui.speech.understanding import understand, wanted
 from tangy_tui.speech.worker import Worker
 from tests.hw.sounds import wav
 from tests.real.voices import FESTIVAL, NOISES, Voices
-from tests.support.terminal import PATIENCE, ended
+from tests.support.terminal import PATIENCE
 
 pytestmark = [
     pytest.mark.skipif(shutil.which("flite") is None, reason="flite is not installed"),
@@ -451,27 +451,6 @@ class TestWorker:
         assert answers[7]["heard"]["words"] == ""
         assert "(" in answers[8]["left_out"]
         assert answers[10]["found"] == []
-
-    def test_it_ends_when_the_program_is_killed(self) -> None:
-        code = (
-            "import asyncio\n"
-            "from tangy_tui.speech.evidence import Wanted\n"
-            "from tangy_tui.speech.recogniser import Recogniser\n"
-            "async def run():\n"
-            "    recogniser = Recogniser()\n"
-            "    starting = asyncio.create_task(recogniser.start(Wanted(('call number',))))\n"
-            "    while recogniser.pid is None:\n"
-            "        await asyncio.sleep(0)\n"
-            "    print(recogniser.pid, flush=True)\n"
-            "    await starting\n"
-            "    await asyncio.Event().wait()\n"
-            "asyncio.run(run())\n"
-        )
-        with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as program:  # noqa: S603
-            assert program.stdout is not None
-            pid = int(program.stdout.readline())
-            program.kill()
-        assert ended(pid)
 
     def test_nothing_is_written_to_the_terminal(self, voices: Voices, tmp_path: Path) -> None:
         code = (

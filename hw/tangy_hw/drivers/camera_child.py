@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any
 from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
 from tangy_profiles.process_log import log_to_stderr
-from tangy_profiles.worker_lines import Answers, requests
+from tangy_profiles.worker_lines import AnswerWriter, requests
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
@@ -48,7 +48,7 @@ PIPE_BYTES = 1 << 20
 class Child:
     """Reads pictures on one thread, is asked for them on another, and beats on a third."""
 
-    def __init__(self, answers: Answers) -> None:
+    def __init__(self, answers: AnswerWriter) -> None:
         self._answers = answers
         self._begun = False
         self._changed = Condition()
@@ -215,7 +215,7 @@ def fitted(image: Image, columns: int, rows: int) -> Image:
 def main() -> None:
     """Read what standard input names, until that closes."""
     log_to_stderr()
-    answers = Answers()
+    answers = AnswerWriter()
     with suppress(ImportError, AttributeError, OSError):
         import fcntl
 

@@ -25,7 +25,7 @@ from contextlib import suppress
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.drivers.chest_server import ChestServer, Said
 from tangy_profiles.process_log import log_to_stderr
-from tangy_profiles.worker_lines import Answers, Asked, LineError, coming, open_lines
+from tangy_profiles.worker_lines import AnswerWriter, Asked, LineError, coming, open_lines
 
 _LOG = logging.getLogger(__name__)
 
@@ -33,7 +33,7 @@ AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
 NICER = 5  # than what drives the robot
 
 
-class Child:
+class PageChild:
     """Serves the page as it is told to, and says what comes of it."""
 
     def __init__(self, say: Callable[[Said], None]) -> None:
@@ -86,9 +86,9 @@ class Child:
 
 async def run() -> None:
     """Serve the page until there is nothing more to hear."""
-    answers = Answers()
+    answers = AnswerWriter()
     lines, _ = await open_lines()
-    child = Child(answers.write)
+    child = PageChild(answers.write)
     async for told in coming(answers.refuse, lines):
         try:
             child.take(told)

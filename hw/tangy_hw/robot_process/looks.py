@@ -15,7 +15,8 @@ from tangy_hw.perception.card_and_face_perception import (
 )
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import aged
-from tangy_hw.robot_process.protocol import Asked, number_of
+from tangy_hw.robot_process.protocol import number_of
+from tangy_profiles.worker_lines import Asked
 
 LARGEST_PICTURE = 400  # columns or rows: more is not seen on a terminal, and beats come behind it
 

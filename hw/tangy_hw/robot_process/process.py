@@ -27,16 +27,13 @@ from tangy_hw.robot_process.assembly import RobotRuntime, assemble
 from tangy_hw.robot_process.controller import LiveRobot
 from tangy_hw.robot_process.heartbeat import beat_of
 from tangy_hw.robot_process.looks import Looks
-from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with, open_lines
+from tangy_hw.robot_process.program_pipe import AnswerPipe, end_with
 from tangy_hw.robot_process.protocol import (
-    Asked,
-    LineError,
     id_of,
     level_of,
     number_of,
     picture_of,
     pose_of,
-    read_line,
     text_of,
 )
 from tangy_hw.robot_process.requests import Deed, at_once_of, deed_of
@@ -46,6 +43,7 @@ from tangy_hw.robot_setup import RobotSetup
 from tangy_profiles.errors import TangyError
 from tangy_profiles.health import device_state
 from tangy_profiles.process_log import NO_COMMAND, log_to_stderr, serving
+from tangy_profiles.worker_lines import Asked, LineError, next_line, open_lines, read_line
 
 _LOG = logging.getLogger(__name__)
 
@@ -96,9 +94,9 @@ class RobotProcess:
     async def _take_next(self, lines: asyncio.StreamReader) -> bool:
         """Take the next line; return whether there was one."""
         try:
-            line = await lines.readline()
-        except ValueError:
-            self.refuse("That line is too long.")
+            line = await next_line(lines)
+        except LineError as error:
+            self.refuse(str(error))
             return True
         if line:
             await self.take(line)

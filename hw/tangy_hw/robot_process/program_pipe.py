@@ -1,26 +1,15 @@
-"""The robot process's end of its pipes to the program: lines come in, and answers go out."""
+"""The robot process's end of its pipe to the program, and its end where the program has ended."""
 
 from __future__ import annotations
 
 import asyncio
 import json
 import os
-import sys
 from typing import Any
 
-LONGEST_LINE = 1 << 22
 MOST_UNREAD = 1 << 16  # bytes; a program that stands still reads none
 LOOK_SECONDS = 0.5  # between two looks at whether the program is still there
 END_SECONDS = 4.0  # after the program's end: devices that do not answer are not waited for
-
-
-async def open_lines() -> tuple[asyncio.StreamReader, asyncio.ReadTransport]:
-    """Return what the program says, and the pipe it comes by."""
-    reader = asyncio.StreamReader(limit=LONGEST_LINE)
-    pipe, _ = await asyncio.get_running_loop().connect_read_pipe(
-        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
-    )
-    return reader, pipe
 
 
 async def end_with(program: int, lines: asyncio.StreamReader) -> None:

@@ -6,43 +6,21 @@ number is finite, a pose has three of them, and an id can be answered to.
 
 from __future__ import annotations
 
-import json
 import logging
 import math
 from collections.abc import Mapping
 from typing import Any
 
 from tangy_hw.device_protocols import Picture, Pose
-from tangy_profiles.errors import TangyError
-
-Asked = dict[str, Any]
+from tangy_profiles.worker_lines import Asked, LineError
 
 OFTEN = frozenset(("drive", "picture", "settle", "sights", "wait"))
 """What is asked for so often that it is only logged where everything is wanted."""
 
 
-class LineError(TangyError):
-    """A line that cannot be heeded; one sentence."""
-
-
 def level_of(do: object) -> int:
     """Return the level at which it is logged that something is asked for, or was done."""
     return logging.DEBUG if do in OFTEN else logging.INFO
-
-
-def read_line(line: bytes) -> Asked:
-    """Read a line as a JSON object.
-
-    Raises:
-        LineError: it is none, or nested too deeply.
-    """
-    try:
-        asked = json.loads(line)
-    except (ValueError, RecursionError):
-        asked = None
-    if not isinstance(asked, dict):
-        raise LineError("That line is no JSON object.")
-    return asked
 
 
 def id_of(asked: Asked) -> int | str | None:

@@ -11,6 +11,7 @@ from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 
 from tangy_hw.robot_process.assembly import RobotRuntime
+from tangy_profiles.worker_lines import LineError, next_line
 
 GIVE_UP_SECONDS = 1.0
 """In which a robot that was not switched on yet is let go of; then the process ends anyway."""
@@ -52,8 +53,8 @@ async def _until_the_end(lines: asyncio.StreamReader, said: list[bytes]) -> None
     """Take what the program says, until it says no more."""
     line = b"\n"
     while line:
-        with suppress(ValueError):  # of a line that is too long
-            line = await lines.readline()
+        with suppress(LineError):  # it is too long
+            line = await next_line(lines)
             if line and not line.startswith(BEAT):
                 said.append(line)
 
