@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -12,6 +12,7 @@ from websockets.asyncio.server import ServerConnection, serve
 
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
+from tests.support.waiting import until
 
 SOON = 5  # s within which what must happen at once has happened on any machine
 
@@ -44,16 +45,6 @@ async def linked(**settings: Any) -> AsyncIterator[tuple[RosbridgeServer, Rosbri
 async def soon(thing: Awaitable[Any]) -> Any:
     """Wait for what must happen at once."""
     return await asyncio.wait_for(thing, SOON)
-
-
-async def until(holds: Callable[[], object]) -> None:
-    """Wait until something holds, which must happen at once."""
-
-    async def looking() -> None:
-        while not holds():  # noqa: ASYNC110 (whatever holds, there is no event of it)
-            await asyncio.sleep(0.002)
-
-    await soon(looking())
 
 
 async def done(_: Any) -> dict[str, Any]:

@@ -19,8 +19,9 @@ from tangy_hw.drivers.dynamixel import DynamixelArms, Servo, servos_of
 from tangy_hw.drivers.dynamixel_bus import Bus, BusError, meaning, speed
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.robot import Limb
-from tests.hw.ros_links import Now, soon, until
+from tests.hw.ros_links import Now, soon
 from tests.hw.servo_bus import ServoBus
+from tests.support.waiting import until
 
 pytest.importorskip("dynamixel_sdk", reason="the extra `dynamixel` is not installed")
 

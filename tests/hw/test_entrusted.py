@@ -36,7 +36,8 @@ from tangy_profiles.robot import load_robot
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.live_bodies import ToldBody
 from tests.hw.move_base import MoveBase
-from tests.hw.ros_links import SOON, soon, until
+from tests.hw.ros_links import SOON, soon
+from tests.support.waiting import until
 
 GOAL = Pose(2.0, 1.0, 0.5)
 START = Pose(1.0, 1.0, 0.0)

@@ -22,7 +22,8 @@ from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
 from tests.hw.navigated import MAP
-from tests.hw.ros_links import soon, until
+from tests.hw.ros_links import soon
+from tests.support.waiting import until
 
 POSTURE = {"head": (0, 0, 0, 0, 5, 0)}
 

@@ -32,7 +32,7 @@ from tangy_profiles.process_log import PROGRAM_LOG, logging_to
 from tangy_profiles.robot import load_robot
 from tests.hw.live_bodies import HERE, ToldBody
 from tests.hw.navigated import MAP
-from tests.hw.ros_links import until
+from tests.support.waiting import until
 
 
 class Spoken:

@@ -12,7 +12,8 @@ import pytest
 from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
-from tests.hw.ros_links import Raw, done, linked, soon, until
+from tests.hw.ros_links import Raw, done, linked, soon
+from tests.support.waiting import until
 
 
 class TestTopics:

@@ -22,7 +22,8 @@ from tangy_hw.drivers.ros_voice import RosVoice
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
-from tests.hw.ros_links import Now, diagnoses, linked, soon, until
+from tests.hw.ros_links import Now, diagnoses, linked, soon
+from tests.support.waiting import until
 
 LIMBS = {
     "arm": Limb("arm", ("shoulder", "elbow"), (-90, 0), (90, 140)),

@@ -23,7 +23,8 @@ from tangy_hw.drivers.ros_laser import RosLaser
 from tangy_hw.drivers.ros_messages import pose_message, twist_message
 from tangy_hw.drivers.ros_status import RosDiagnostics, RosStopButton
 from tangy_profiles.health import OK, STALE, WARN
-from tests.hw.ros_links import diagnoses, linked, soon, until
+from tests.hw.ros_links import diagnoses, linked, soon
+from tests.support.waiting import until
 
 
 def odometry(x: float, y: float = 0.0, heading: float = 0.0) -> dict[str, Any]:

@@ -15,7 +15,8 @@ from tangy_hw.device_protocols import DeviceError
 from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_hw.drivers.rosbridge_parts import Fragments
 from tangy_profiles.health import OK, STALE
-from tests.hw.ros_links import SOON, Raw, done, linked, soon, until
+from tests.hw.ros_links import SOON, Raw, done, linked, soon
+from tests.support.waiting import until
 
 
 class TestLink:

@@ -19,7 +19,8 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import OK, STALE
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
 from tests.hw.move_base import MoveBase
-from tests.hw.ros_links import SOON, linked, soon, until
+from tests.hw.ros_links import SOON, linked, soon
+from tests.support.waiting import until
 
 ORIGIN = Pose(10.0, 20.0, math.pi / 2)
 GOAL = Pose(2.0, 1.0, 0.5)

@@ -7,8 +7,8 @@ import asyncio
 from tangy_hw.robot_process.stop_latch import FAULT, STAFF
 from tangy_hw.robot_process.tick_watchdog import LATE_SECONDS, TickWatch, time_awake_and_asleep
 from tangy_profiles.health import ERROR, OK
-from tests.hw.ros_links import until
 from tests.hw.test_robot_lines import Spoken, spoken
+from tests.support.waiting import until
 
 
 class Asleep:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Callable
-
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
@@ -17,6 +14,7 @@ from tangy_tui.ui.screens.question_panel import AskingPanel
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import LogView
 from tests.pilot.conftest import StillClock, TangyPilot
+from tests.support.waiting import until_shown
 
 TINY = (60, 18)
 MIDDLE = (120, 40)
@@ -49,20 +47,12 @@ def game_of(pilot: TangyPilot) -> tuple[PlayScreen, Supervision, FaultyWorld]:
     return screen, screen._supervision, world
 
 
-async def until(pilot: TangyPilot, so: Callable[[], object]) -> None:
-    """Wait until something is so; what never comes fails, and holds up no other test."""
-    async with asyncio.timeout(60):
-        while not so():
-            await pilot.pause(0.02)
-    await pilot.pause()
-
-
 async def halted(pilot: TangyPilot) -> CriticalDialog:
     """Wait until the dialog of a critical fault takes keys."""
-    await until(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
     dialog = pilot.app.screen
     assert isinstance(dialog, CriticalDialog)
-    await until(pilot, lambda: dialog._keys._from is not None)
+    await until_shown(pilot, lambda: dialog._keys._from is not None)
     return dialog
 
 
@@ -76,8 +66,8 @@ async def halting(pilot: TangyPilot, kind: str = "emergency-stop") -> CriticalDi
 async def asked(pilot: TangyPilot) -> AskingPanel:
     """Wait until Tangy asks and a command can be typed."""
     screen = game_of(pilot)[0]
-    await until(pilot, lambda: screen.query(AskingPanel))
-    await until(pilot, lambda: not screen.query_one(CommandBar).closed)
+    await until_shown(pilot, lambda: screen.query(AskingPanel))
+    await until_shown(pilot, lambda: not screen.query_one(CommandBar).closed)
     return screen.query_one(AskingPanel)
 
 

@@ -21,6 +21,7 @@ from tangy_tui.ui.terminal import TerminalKind
 from tests.hw.links import FakeLink
 from tests.pilot.conftest import StillClock
 from tests.pilot.ears import FakeEars
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import TangyPilot
@@ -118,12 +119,6 @@ def live(pilot: TangyPilot) -> LiveScreen:
     return next(s for s in pilot.app.screen_stack if isinstance(s, LiveScreen))
 
 
-async def until(pilot: TangyPilot, holds: Callable[[], bool]) -> None:
-    async with asyncio.timeout(20):
-        while not holds():
-            await pilot.pause(0.01)
-
-
 async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
     """Wait until what is drawn stays as it is for five looks."""
     looks: list[str] = []
@@ -135,6 +130,6 @@ async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
 
 async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
     """Let it do some steps, and pause."""
-    await until(pilot, lambda: live(pilot)._supervision.steps >= steps)
+    await until_shown(pilot, lambda: live(pilot)._supervision.steps >= steps)
     live(pilot).control.apply(Pause())
-    await until(pilot, lambda: not live(pilot).working)
+    await until_shown(pilot, lambda: not live(pilot).working)

@@ -19,7 +19,8 @@ from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
-from tests.pilot.live_games import HeldLink, live, live_world, until
+from tests.pilot.live_games import HeldLink, live, live_world
+from tests.support.waiting import until_shown
 
 
 @pytest.mark.parametrize("keys", ["tt", "gg", "ee", "ii", "tgiep", "dd", "de"])
@@ -74,27 +75,27 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
 
     monkeypatch.setattr(robot_opening, "open_bench", bench)
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
-        await until(pilot, lambda: "no robot is named" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "no robot is named" in screen_text(pilot.app))
         for answer in ("n", "y"):
             assert opened == []
             await pilot.press("v")
-            await until(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
+            await until_shown(pilot, lambda: "Play on the bench?" in screen_text(pilot.app))
             await pilot.press(answer)
-            await until(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
-        await until(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+            await until_shown(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
         assert opened == [True]
         await pilot.press("escape")
-        await until(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
         await pilot.press("y")
-        await until(pilot, lambda: opened == [True, False])
+        await until_shown(pilot, lambda: opened == [True, False])
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
 async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace) -> None:
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("v")
-        await until(pilot, lambda: "has not learnt" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "has not learnt" in screen_text(pilot.app))
 
 
 async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Workspace) -> None:
@@ -107,7 +108,7 @@ async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Worksp
     program = Program(workspace, clock=StillClock())
     async with run(app=program) as pilot:
         shown = program._notifications
-        await until(pilot, lambda: len(shown) == 2)
+        await until_shown(pilot, lambda: len(shown) == 2)
         first, second = (note.message for note in shown)
         assert "events 5 to 9 had been kept and are gone" in first
         assert "(policy learnt) is damaged and left out: its body is not JSON." in second

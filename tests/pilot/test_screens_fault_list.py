@@ -27,8 +27,8 @@ from tests.pilot.faults import (
     playing,
     seen,
     sentences,
-    until,
 )
+from tests.support.waiting import until_shown
 
 
 async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
@@ -39,7 +39,7 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
         banner = screen.query_one(FaultBanner)
         assert not banner.display
         world.inject("arm-failed")
-        await until(pilot, lambda: game.faults and game.faults[0].status == BORNE)
+        await until_shown(pilot, lambda: game.faults and game.faults[0].status == BORNE)
         await pilot.press("p")
         await pilot.pause()
         line = pilot.lines()[1]
@@ -82,7 +82,8 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         room = screen.query_one(RoomView)
         height = room.size.height
         world.inject("camera-occluded")
-        await until(pilot, lambda: screen.query_one(FaultBanner).said)  # no key ends a step's time
+        # no key ends a step's time
+        await until_shown(pilot, lambda: screen.query_one(FaultBanner).said)
         text = seen(pilot)
         assert "Head camera covered" in pilot.lines()[1]
         assert "asks (1 of 2)" in pilot.lines()[1]
@@ -95,7 +96,7 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         assert not screen.query_one(FaultBanner).display
         assert "No fault that nobody has seen." not in sentences(screen)
         await pilot.press("e")
-        await until(pilot, lambda: game.over)
+        await until_shown(pilot, lambda: game.over)
         assert any("camera covered: recovered" in said for said in sentences(screen))
 
 
@@ -107,7 +108,7 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         screen, game, world = game_of(pilot)
         for kind in ("arm-failed", "requests-silent"):
             world.inject(kind)
-        await until(pilot, lambda: [f.status for f in game.faults] == [BORNE, BORNE])
+        await until_shown(pilot, lambda: [f.status for f in game.faults] == [BORNE, BORNE])
         await pilot.press("p", "6")
         await pilot.pause()
         faults = screen.query_one(FaultList)
@@ -121,7 +122,7 @@ async def test_the_list_is_filtered_by_words_and_tells_of_a_fault(
         await pilot.pause()
         assert [f.id for f in game.faults if f.code == "requests-silent"] == faults._keys
         await pilot.press("enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
         assert "Tangy cannot see who asks" in seen(pilot)
         await pilot.press("escape")
         await pilot.pause()
@@ -135,7 +136,7 @@ async def test_the_list_can_fill_the_screen(run: Run, workspace: Workspace, poli
     async with run(app=playing(workspace, policy, speed=1000)) as pilot:
         screen, game, world = game_of(pilot)
         world.inject("arm-failed")
-        await until(pilot, lambda: game.faults and game.faults[0].status == BORNE)
+        await until_shown(pilot, lambda: game.faults and game.faults[0].status == BORNE)
         await pilot.press("p", "6", "plus")
         await pilot.pause()
         assert screen.query_one(FaultList).size.height > SMALL[1] - 7
@@ -157,9 +158,9 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
     async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         await halting(pilot)
         await pilot.press("e", "c")
-        await until(pilot, lambda: not isinstance(pilot.app.screen, CriticalDialog))
+        await until_shown(pilot, lambda: not isinstance(pilot.app.screen, CriticalDialog))
         await pilot.press("6", "enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
         text = seen(pilot)
         for words in (
             "0:31 noticed",
@@ -187,24 +188,24 @@ async def test_a_fault_is_brought_about_by_keys_and_lifted_again(
     async with run(app=playing(workspace, policy), size=size) as pilot:
         screen, game, world = game_of(pilot)
         await pilot.press("p", "f")
-        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         pilot.type(*"servo")
         await pilot.pause()
         assert "arm-failed" in pilot.text()
         assert "voice-dead" not in pilot.text()
         await pilot.press("enter")
-        await until(pilot, lambda: game.faults)
+        await until_shown(pilot, lambda: game.faults)
         assert list(world.present) == ["arm-failed"]
         await pilot.press("f")
-        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         assert "there: enter lifts it" in pilot.text()
         await pilot.press("1")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert not world.present
         await pilot.press("f")
-        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         await pilot.press("escape")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert not world.present
 
 
@@ -214,15 +215,15 @@ async def test_what_is_still_to_come_can_be_lifted(
     async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)
         await pilot.press("p", "f")
-        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         pilot.type(*"never-complies", "enter")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert "comes as soon as it can show" in sentences(screen)[-1]
         await pilot.press("f")
-        await until(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, InjectDialog))
         assert "to come: enter lifts it" in pilot.text()
         await pilot.press("enter")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert not world.still_to_come
 
 
@@ -233,7 +234,7 @@ async def test_all_kinds_can_be_chosen(run: Run) -> None:
         await pilot.pause()
         assert [kind.name for kind in dialog._kinds] == list(KINDS)
         pilot.type(*"covered")  # what the console calls the fault, which the kind's name is not
-        await until(pilot, lambda: [kind.name for kind in dialog._kinds] == ["camera-occluded"])
+        await until_shown(pilot, lambda: [k.name for k in dialog._kinds] == ["camera-occluded"])
 
 
 async def test_no_fault_can_be_brought_about_in_the_demo(

@@ -23,8 +23,8 @@ from tests.pilot.faults import (
     halted,
     halting,
     playing,
-    until,
 )
+from tests.support.waiting import until_shown
 
 # ------------------------------------------------------------ looking
 
@@ -46,7 +46,7 @@ async def test_a_fault_is_told_at_the_next_look(
 
         monkeypatch.setattr(game, "look", counted)
         world.inject("laser-disconnected")
-        await until(pilot, lambda: looks)
+        await until_shown(pilot, lambda: looks)
         assert any(isinstance(event, Diagnosed) for event in looks[0])
         assert game.halted is not None
         await halted(pilot)
@@ -62,7 +62,7 @@ async def test_nothing_is_written_while_nothing_changes(
         told: list[Any] = []
         monkeypatch.setattr(screen._faults, "_tell", lambda *told_now: told.append(told_now))
         ticks = screen._faults.ticks
-        await until(pilot, lambda: screen._faults.ticks > ticks + 2)
+        await until_shown(pilot, lambda: screen._faults.ticks > ticks + 2)
         assert not told
 
 
@@ -81,7 +81,7 @@ async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tr
         with monkeypatch.context() as broken:
             broken.setattr(workspace.store, "append", refuse)
             world.inject("emergency-stop")
-            await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
             count = screen.query_one(Transcript).count
             assert "the disk is full" in pilot.text()
         await pilot.press("enter")
@@ -122,7 +122,7 @@ async def test_how_banner_and_list_look(
         await pilot.press("p")
         for kind in ("requests-silent", "arm-failed"):
             world.inject(kind)
-            await until(pilot, lambda: len(game.faults) == len(world.present))
+            await until_shown(pilot, lambda: len(game.faults) == len(world.present))
         while [fault.status for fault in game.faults] != [BORNE, BORNE]:
             await pilot.press("n")
             await pilot.pause()

@@ -28,8 +28,8 @@ from tests.pilot.faults import (
     kinds_of,
     playing,
     seen,
-    until,
 )
+from tests.support.waiting import until_shown
 
 
 @pytest.mark.parametrize("size", [TINY, SMALL], ids=["tiny", "small"])
@@ -52,7 +52,7 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
         assert game.halted is fault
         assert "g give up" in seen(pilot)
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert kinds_of(fault) == [
             "halted",
             "acknowledged",
@@ -62,7 +62,7 @@ async def test_a_critical_fault_is_cleared_step_by_step_and_the_game_goes_on(
         ]
         assert screen.query_one(Transcript).count == count
         await pilot.press("p")
-        await until(pilot, lambda: screen.query_one(Transcript).count > count)
+        await until_shown(pilot, lambda: screen.query_one(Transcript).count > count)
         assert "robot OK" in seen(pilot)
     kept = read_faults(workspace.store)
     assert [kinds_of(fault) for fault in kept] == [kinds_of(fault)]
@@ -93,7 +93,7 @@ async def test_the_dialog_says_when_the_fault_is_gone_and_calls_the_expert_once(
         assert "Still there: head camera" in seen(pilot)
         assert "brightness" not in seen(pilot)  # it only says that it is not covered
         world.lift("camera-frozen")
-        await until(pilot, lambda: "It is gone now: press a, and c" in seen(pilot))
+        await until_shown(pilot, lambda: "It is gone now: press a, and c" in seen(pilot))
         await pilot.press("e", "e")
         await pilot.pause()
         assert "It is gone now: press c to clear." in seen(pilot)
@@ -120,16 +120,16 @@ async def test_giving_up_is_asked_about_and_esc_does_not_hide_it(
         screen, game, _ = game_of(pilot)
         dialog = await halting(pilot)
         await pilot.press(key)
-        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.pause()
         assert "not mended" in pilot.text()
         await pilot.press("escape")
         await pilot.pause()
         assert pilot.app.screen is dialog
         await pilot.press(key)
-        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.press("y")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert game.over
         assert kinds_of(dialog.fault)[-1] == "given up"
         assert "robot WARN: Emergency stop pressed, not cleared" in seen(pilot)
@@ -151,19 +151,19 @@ async def test_after_what_nobody_cleared_a_game_begins_only_if_all_is_well(
         before.step()
     before.give_up()
     async with run(app=playing(workspace, policy)) as pilot:
-        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.pause()
         assert "The last game ended with: Emergency stop pressed" in seen(pilot)
         logged = workspace.store.last("game begun")
         await pilot.press(key)
         if key == "n":
-            await until(
+            await until_shown(
                 pilot, lambda: not any(isinstance(s, PlayScreen) for s in pilot.app.screen_stack)
             )
             assert workspace.store.last("game begun") == logged
         else:
             game = game_of(pilot)[1]
-            await until(pilot, lambda: not game.over)
+            await until_shown(pilot, lambda: not game.over)
             assert uncleared(workspace.store) is None
 
 
@@ -181,18 +181,18 @@ async def test_stop_works_inside_and_leaves_the_dialog(
         assert "p lets Tangy go on" in seen(pilot)
         count = screen.query_one(Transcript).count
         await pilot.press("g")
-        await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
         await pilot.press("ctrl+x")
         await pilot.pause()
         assert pilot.app.screen is dialog
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert "STOPPED" in seen(pilot)
         for _ in range(3):
             await pilot.pause(0.02)
         assert screen.query_one(Transcript).count == count
         await pilot.press("p")
-        await until(pilot, lambda: screen.query_one(Transcript).count > count)
+        await until_shown(pilot, lambda: screen.query_one(Transcript).count > count)
 
 
 async def test_two_critical_faults_are_cleared_one_after_the_other(
@@ -202,14 +202,14 @@ async def test_two_critical_faults_are_cleared_one_after_the_other(
         screen, game, world = game_of(pilot)
         first = await halting(pilot)
         world.inject("camera-disconnected")
-        await until(pilot, lambda: len(game.faults) == 2)
+        await until_shown(pilot, lambda: len(game.faults) == 2)
         assert "Also wrong" in seen(pilot)
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is not first)
+        await until_shown(pilot, lambda: pilot.app.screen is not first)
         second = await halted(pilot)
         assert second.fault.code == "camera-disconnected"
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert game.halted is None
         assert [fault.status for fault in game.faults] == [OVER, OVER]
 
@@ -224,7 +224,7 @@ async def test_a_critical_fault_comes_over_help_and_stays_when_that_goes(
         world.inject("emergency-stop")
         await halted(pilot)
         await pilot.press("e", "c")
-        await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         await pilot.press("escape")
         await pilot.pause()
         assert pilot.app.screen is screen
@@ -252,10 +252,10 @@ async def test_skipping_stops_where_tangy_stands_still(
         assert screen.query_one(RoomView).going is None
         count = screen.query_one(Transcript).count
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert screen.query_one(Transcript).count - count <= 1
         await pilot.press("e")
-        await until(pilot, lambda: screen._supervision.over)
+        await until_shown(pilot, lambda: screen._supervision.over)
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
 
 
@@ -266,13 +266,13 @@ async def test_a_question_is_withdrawn_and_asked_again_after_clearing(
         screen, _, world = game_of(pilot)
         first = await asked(pilot)
         pilot.type(*"call number", "enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, QuestionDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, QuestionDialog))
         world.inject("emergency-stop")
         await halted(pilot)
-        await until(pilot, lambda: not screen.query(AskingPanel))
+        await until_shown(pilot, lambda: not screen.query(AskingPanel))
         assert not any(isinstance(s, QuestionDialog) for s in pilot.app.screen_stack)
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert await asked(pilot) is not first
         assert "This was not to be expected" in seen(pilot)
 
@@ -285,9 +285,9 @@ async def test_what_was_not_expected_is_accepted_by_word(
         await asked(pilot)
         assert "If all is well, type: all right" in seen(pilot)
         pilot.type(*"all right", "enter")
-        await until(pilot, lambda: kinds_of(game.faults[0])[-1] == "accepted")
+        await until_shown(pilot, lambda: kinds_of(game.faults[0])[-1] == "accepted")
         await pilot.press("e")
-        await until(pilot, lambda: not screen.query(AskingPanel))
+        await until_shown(pilot, lambda: not screen.query(AskingPanel))
     accepted = workspace.store.last("effect accepted")
     assert accepted is not None
     assert accepted.body["by"] == "ann"
@@ -307,12 +307,12 @@ async def test_what_was_not_expected_is_accepted_by_key_but_not_after_a_stop(
         assert game.question is not None
         assert "press p to go on first" in seen(pilot)
         await pilot.press("p", "escape", "w")
-        await until(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, FaultDialog))
         assert "If all is well, say so" in seen(pilot)
         await pilot.press("escape", "r")
-        await until(pilot, lambda: game.faults[0].status == OVER)
+        await until_shown(pilot, lambda: game.faults[0].status == OVER)
         assert kinds_of(game.faults[0])[-1] == "accepted"
-        await until(pilot, lambda: not screen.query(AskingPanel))
+        await until_shown(pilot, lambda: not screen.query(AskingPanel))
 
 
 async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
@@ -330,7 +330,7 @@ async def test_the_picture_stays_where_stop_or_a_fault_caught_it(
         await halted(pilot)
         assert (room.place_of_robot, room.going) == (caught, going)
         await pilot.press("e", "c")
-        await until(pilot, lambda: pilot.app.screen is screen)
+        await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert (room.place_of_robot, room.going) == (caught, going)
         assert room._timer is None
         await pilot.press("p")

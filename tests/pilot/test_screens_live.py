@@ -28,7 +28,8 @@ from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import screen_text
 from tests.pilot.ears import FakeEars
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -51,8 +52,8 @@ def program(workspace: Workspace, world: LiveWorld, policy: Policy) -> Program:
 
 async def asked_about_the_next(pilot: TangyPilot) -> None:
     """Wait until the question is there to be read: keys from before do not answer it."""
-    await until(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
-    await until(pilot, lambda: "Next: " in screen_text(pilot.app))
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, ConfirmDialog))
+    await until_shown(pilot, lambda: "Next: " in screen_text(pilot.app))
     await pilot.pause()
 
 
@@ -90,12 +91,12 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24)) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         link.free = False
         try:
-            await until(pilot, lambda: live(pilot).working > 0)
+            await until_shown(pilot, lambda: live(pilot).working > 0)
             link.state = replace(link.state, going="user1")
-            await until(pilot, lambda: "drives to User 1" in pilot.lines()[0])
+            await until_shown(pilot, lambda: "drives to User 1" in pilot.lines()[0])
             told = pilot.lines()[0]
             assert "TANGY live" in told and "robot OK" in told and "FACILITATE" in told
         finally:
@@ -111,17 +112,19 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
     link.free = False
     async with run(app=program, size=(120, 40)) as pilot:
         try:
-            await until(pilot, lambda: "finds its place" in pilot.lines()[0])
+            await until_shown(pilot, lambda: "finds its place" in pilot.lines()[0])
             assert [do for do, _ in link.done] == ["spin"]
-            await until(pilot, lambda: "does not know where it stands" in screen_text(pilot.app))
+            await until_shown(
+                pilot, lambda: "does not know where it stands" in screen_text(pilot.app)
+            )
             assert "OVER" not in pilot.lines()[0] and "i autonomy" in pilot.lines()[-1]
             await pilot.press("escape")
-            await until(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
+            await until_shown(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))
             await pilot.press("n")
         finally:
             link.state = replace(link.state, health=well)
             link.free = True
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
 
 
 @pytest.mark.parametrize("hands_free", [True, False])
@@ -135,50 +138,50 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
 ) -> None:
     ears = FakeEars(hands_free=hands_free)
     async with run(app=live_program(workspace, world, policy, ears)) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         line = pilot.app.screen.query_one(MicrophoneLine)
         assert ears.asks and ("listening for stop" if hands_free else "t talk") in line.text
         link.free = False
-        await until(pilot, lambda: live(pilot).working > 0)
+        await until_shown(pilot, lambda: live(pilot).working > 0)
         if not hands_free:
             await pilot.press("t")
             assert ears.state == "listening"
         ears.hear(StopCommand("stop the robot"))
-        await until(pilot, lambda: "stop: staff stopped it" in link.told)
-        await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "stop: staff stopped it" in link.told)
+        await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
         assert "Heard: stop the robot." in [told.message for told in pilot.app._notifications]
         link.free = True
         await pilot.press("p")
-        await until(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
 
 
 async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         link.free = False
-        await until(pilot, lambda: live(pilot).working > 0)
+        await until_shown(pilot, lambda: live(pilot).working > 0)
         await pilot.press("ctrl+x")
-        await until(pilot, lambda: "stop: staff stopped it" in link.told)
-        await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "stop: staff stopped it" in link.told)
+        await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
         link.free = True
         await pilot.press("p")
-        await until(pilot, lambda: link.told[-1] == "release")
+        await until_shown(pilot, lambda: link.told[-1] == "release")
 
 
 async def test_each_stop_is_logged_once_and_told_once(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         for count in (1, 2):
             await pilot.press("ctrl+x")
-            await until(pilot, lambda: "STOPPED" in screen_text(pilot.app))
+            await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
             noted = [event.body["what"] for event in workspace.store.events(STAFF)]
             assert noted.count("the robot was stopped") == count
             await pilot.press("p")
-            await until(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
+            await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
         told = live(pilot).query_one(LogView).sentences
         assert sum(line.startswith("STOP.") for line in told) == 2
 
@@ -194,7 +197,7 @@ async def test_staff_can_ask_for_help_for_somebody(
         await pilot.press("down", "enter")
         assert "user2" in world.requests.all
         live(pilot).control.apply(GoOn())
-        await until(pilot, lambda: world.tracker.place == "user2")
+        await until_shown(pilot, lambda: world.tracker.place == "user2")
 
 
 async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that_is_over(
@@ -208,13 +211,13 @@ async def test_the_log_says_once_who_sits_where_somebody_else_does_and_when_that
     async with run(app=program) as pilot:
         log = live(pilot).query_one(LogView)
         link.sign(2)
-        await until(pilot, lambda: other in log.sentences)
+        await until_shown(pilot, lambda: other in log.sentences)
         assert own not in log.sentences
         link.faces.clear()
         link.state = replace(link.state, asks=())
-        await until(pilot, lambda: world.tracker.place == "front")
+        await until_shown(pilot, lambda: world.tracker.place == "front")
         link.sign(2)
-        await until(pilot, lambda: own in log.sentences)
+        await until_shown(pilot, lambda: own in log.sentences)
         assert log.sentences.count(other) == log.sentences.count(own) == 1
 
 
@@ -223,29 +226,29 @@ async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
 ) -> None:
     world._pace = 30.0
     async with run(app=program) as pilot:
-        await until(pilot, lambda: len(world.called) == 1)
-        await until(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: len(world.called) == 1)
+        await until_shown(pilot, lambda: "next call in 30 s" in screen_text(pilot.app))
         said = list(link.said)
         await pilot.press("c")
-        await until(pilot, lambda: len(link.said) == len(said) + 1)
+        await until_shown(pilot, lambda: len(link.said) == len(said) + 1)
         assert link.said[-1] == world.activity.deck.label(world.called[0])
         link.cards["user2"] = LaidCard(7)
         link.sign(2)
-        await until(pilot, lambda: world.tracker.place == "user2")
+        await until_shown(pilot, lambda: world.tracker.place == "user2")
         assert len(world.called) == 1
 
 
 async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         await pilot.press("i", "i")
         await asked_about_the_next(pilot)
         steps = live(pilot)._supervision.steps
         await pilot.press("y")
-        await until(pilot, lambda: live(pilot)._supervision.steps == steps + 1)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps == steps + 1)
         await asked_about_the_next(pilot)
         await pilot.press("n")
-        await until(pilot, lambda: bool(live(pilot).query(AskingPanel)))
+        await until_shown(pilot, lambda: bool(live(pilot).query(AskingPanel)))
 
 
 async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
@@ -253,26 +256,28 @@ async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
 ) -> None:
     link.cards["user2"] = LaidCard(7)
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         await pilot.press("i", "i")
         await asked_about_the_next(pilot)
         assert "Next: call number?" in screen_text(pilot.app)
         done = len(link.done)
         link.sign(2)
         await pilot.press("y")
-        await until(pilot, lambda: "Next: navigate to user (User 2)?" in screen_text(pilot.app))
+        await until_shown(
+            pilot, lambda: "Next: navigate to user (User 2)?" in screen_text(pilot.app)
+        )
         await pilot.pause()
         assert link.done[done:] == []
         await pilot.press("y")
-        await until(pilot, lambda: world.tracker.place == "user2")
+        await until_shown(pilot, lambda: world.tracker.place == "user2")
         await asked_about_the_next(pilot)
 
 
 async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         await pilot.press("o")
-        await until(pilot, lambda: "You say what Tangy does next." in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "You say what Tangy does next." in screen_text(pilot.app))
         assert live(pilot)._supervision.question is not None
 
 
@@ -280,14 +285,14 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
     run: Run, program: Program
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
         await pilot.press("o")
-        await until(pilot, lambda: any(one._open for one in live(pilot).query(AskingPanel)))
+        await until_shown(pilot, lambda: any(one._open for one in live(pilot).query(AskingPanel)))
         await pilot.press("escape")  # out of the line
-        await until(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
         steps = live(pilot)._supervision.steps
         await pilot.press("escape")
-        await until(pilot, lambda: live(pilot)._supervision.steps > steps)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps > steps)
         assert not live(pilot)._supervision.over and live(pilot).is_current
         assert not live(pilot).query(AskingPanel)
         assert "Tangy goes on by itself." in screen_text(pilot.app)
@@ -297,7 +302,7 @@ async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLin
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
         await pilot.press("d")
-        await until(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
         await pilot.press("up", "left", "escape")
         assert link.told.count("drive") == 3  # the last one stands still
         assert not isinstance(pilot.app.screen, DrivingDialog)
@@ -309,18 +314,18 @@ async def test_whoever_drives_by_keys_reads_what_tangy_does_about_what_is_near(
     async with run(app=program, size=(80, 24)) as pilot:
         await paused_after(pilot, link, 2)
         await pilot.press("d")
-        await until(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, DrivingDialog))
         told = screen_text(pilot.app)
         for words in ("slows down near people", "cannot see behind itself", "scanner is silent"):
             assert words in told
         for held, words in (("slow", "Tangy drives slowly."), ("stands", "Tangy stands. Turn")):
             link.state = replace(link.state, held=held)
-            await until(pilot, lambda words=words: words in screen_text(pilot.app))  # type: ignore[misc]
+            await until_shown(pilot, lambda words=words: words in screen_text(pilot.app))  # type: ignore[misc]
         link.state = replace(link.state, held="")
         await pilot.press("down")
-        await until(pilot, lambda: "Something is" not in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "Something is" not in screen_text(pilot.app))
         link.state = replace(link.state, hazard="laser scanner says nothing")
-        await until(
+        await until_shown(
             pilot, lambda: "stands still: laser scanner says nothing." in screen_text(pilot.app)
         )
         link.state = replace(link.state, hazard="")
@@ -333,7 +338,7 @@ async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
     async with run(app=program, size=(120, 40)) as pilot:
         await paused_after(pilot, link, 2)
         link.state = replace(link.state, frozen=5.0)
-        await until(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
         await pilot.pause(0.5)
         noted = [event.body["what"] for event in workspace.store.events(STAFF)]
         assert noted.count("the robot process was frozen for 5.0 s") == 1
@@ -349,7 +354,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
         link.state = replace(link.state, frozen=5.0)
         link.released.clear()
         await pilot.press("p")
-        await until(pilot, lambda: link.released == [""])
+        await until_shown(pilot, lambda: link.released == [""])
         assert "may move again" in screen_text(pilot.app)
 
 
@@ -361,16 +366,16 @@ async def test_a_call_is_said_again_and_taken_back(
         label = world.activity.deck.label(world.called[-1])
         count = len(world.called)
         await pilot.press("c")
-        await until(pilot, lambda: link.said[-1] == label)
-        await until(pilot, lambda: not live(pilot).working)
+        await until_shown(pilot, lambda: link.said[-1] == label)
+        await until_shown(pilot, lambda: not live(pilot).working)
         await pilot.press("x")
-        await until(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("n")
         assert len(world.called) == count
         await pilot.press("x")
-        await until(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
+        await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("y")
-        await until(pilot, lambda: len(world.called) == count - 1)
+        await until_shown(pilot, lambda: len(world.called) == count - 1)
         noted = [event.body["what"] for event in workspace.store.events(STAFF)]
         again = "staff had the last number called again"
         assert noted == [again, f"staff took a call back: {label}"]
@@ -380,19 +385,19 @@ async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: link.stamps > 1)
+        await until_shown(pilot, lambda: link.stamps > 1)
         for key in ("question_mark", "7"):
             await pilot.press(key)
-            await until(pilot, lambda: pilot.app.screen is not live(pilot))
+            await until_shown(pilot, lambda: pilot.app.screen is not live(pilot))
             stamps = link.stamps
-            await until(pilot, lambda stamps=stamps: link.stamps > stamps + 2)  # type: ignore[misc]
+            await until_shown(pilot, lambda stamps=stamps: link.stamps > stamps + 2)  # type: ignore[misc]
             await pilot.press("escape")
-            await until(pilot, lambda: pilot.app.screen is live(pilot))
+            await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
 
 
 async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
         for action in ("one_step", "speed", "skip"):
             assert live(pilot).check_action(action, ()) is False
 
@@ -403,8 +408,8 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
     kept = Path(__file__).parent / "pictures" / "live.svg"
     link.most = 6
     async with run(app=program, size=(120, 40)) as pilot:
-        await until(pilot, lambda: live(pilot)._supervision.steps >= 6)
-        await until(pilot, lambda: live(pilot).working > 0)
+        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 6)
+        await until_shown(pilot, lambda: live(pilot).working > 0)
         link.sign(2)
         link.state = replace(
             link.state,

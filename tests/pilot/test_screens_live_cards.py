@@ -16,7 +16,8 @@ from tangy_tui.ui.program import Program
 from tangy_tui.ui.widgets.log_view import LogView
 from tests.hw.links import LaidCard
 from tests.pilot.conftest import screen_text
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -46,7 +47,7 @@ def notes(workspace: Workspace) -> list[str]:
 
 
 async def shown(pilot: TangyPilot, text: str) -> None:
-    await until(pilot, lambda: text in screen_text(pilot.app))
+    await until_shown(pilot, lambda: text in screen_text(pilot.app))
 
 
 async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
@@ -59,12 +60,12 @@ async def test_staff_are_told_of_two_cards_and_nothing_is_said_of_marks(
         before = len(link.said)
         live(pilot).control.apply(GoOn())
         name = workspace.name("user1")
-        await until(
+        await until_shown(
             pilot, lambda: f"There are two cards in front of {name}: 17 and 31" in told(pilot)
         )
         assert "Tangy cannot tell which is theirs, and judges neither" in told(pilot)
         live(pilot).control.apply(Pause())
-        await until(pilot, lambda: not live(pilot).working)
+        await until_shown(pilot, lambda: not live(pilot).working)
         wrong = workspace.activity.behaviours["remove markers"].name
         assert not [said for said in link.said[before:] if wrong in said]
         assert "several cards before user1: 17, 31; not judged" in notes(workspace)
@@ -82,14 +83,14 @@ async def test_staff_say_whose_a_card_is(
         link.cards["user1"] = LaidCard(31)
         world.cards.look("user1", [], person="user1")
         assert world.cards.doubt is not None
-        await until(pilot, lambda: "as far as Tangy knows" in told(pilot))
+        await until_shown(pilot, lambda: "as far as Tangy knows" in told(pilot))
         await pilot.press("b")
-        await until(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
         await shown(pilot, "has card 17")
         await pilot.press("enter")
         await shown(pilot, f"Which card does {workspace.name('user1')} have?")
         await pilot.press("enter")
-        await until(pilot, lambda: world.cards.dealt.card_of("user1") == 31)
+        await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") == 31)
         assert world.cards.dealt.card_of("user2") is None
         assert "staff said that user1 has card 31" in notes(workspace)
         world.cards.look("user1", [], person="user1")
@@ -103,8 +104,8 @@ async def test_staff_let_tangy_learn_a_card_anew(
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
         await pilot.press("b")
-        await until(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, ChooseDialog))
         await pilot.press("enter")
         await shown(pilot, "another one")
         await pilot.press("enter")
-        await until(pilot, lambda: world.cards.dealt.card_of("user1") is None)
+        await until_shown(pilot, lambda: world.cards.dealt.card_of("user1") is None)

@@ -16,7 +16,8 @@ from tangy_tui.learning.policy import Policy
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
-from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after, until
+from tests.pilot.live_games import HeldLink, live, live_program, live_world, paused_after
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -56,17 +57,17 @@ async def halting(
     if device == "navigator":
         link.state = replace(link.state, failed="its control has failed")
     link.ail(device, state, latched=True)
-    await until(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
+    await until_shown(pilot, lambda: isinstance(pilot.app.screen, CriticalDialog))
     dialog = pilot.app.screen
     assert isinstance(dialog, CriticalDialog)
-    await until(pilot, lambda: dialog._keys.seen)
+    await until_shown(pilot, lambda: dialog._keys.seen)
     await pilot.pause()
 
 
 async def lives(pilot: TangyPilot, link: HeldLink) -> None:
     """Wait until the screen has said again that it lives."""
     stamps = link.stamps
-    await until(pilot, lambda: link.stamps > stamps + 1)
+    await until_shown(pilot, lambda: link.stamps > stamps + 1)
 
 
 @pytest.mark.parametrize(("device", "state"), [("link", STALE), ("navigator", ERROR)])
@@ -88,7 +89,7 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
             link.told.append("another process")
         finally:
             link.free = True
-        await until(
+        await until_shown(
             pilot, lambda: "The robot process was started again. No expert is named" in seen(pilot)
         )
         assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
@@ -112,7 +113,7 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
             assert "stop: staff stopped it" in link.told
         finally:
             link.free = True
-        await until(pilot, lambda: pilot.app.screen is live(pilot))
+        await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
         assert live(pilot)._supervision.halted is None
 
 
@@ -125,7 +126,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         released = len(link.released)
         link.ail("stop_button")
         await pilot.press("a", "c")
-        await until(pilot, lambda: pilot.app.screen is live(pilot))
+        await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
         assert live(pilot)._supervision.halted is None
         done = len(link.done)
         await lives(pilot, link)
@@ -144,10 +145,10 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
         link.free = False
         try:
             await pilot.press("a", "c", "question_mark")
-            await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+            await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         finally:
             link.free = True
-        await until(pilot, lambda: live(pilot)._supervision.halted is None)
+        await until_shown(pilot, lambda: live(pilot)._supervision.halted is None)
         await pilot.pause()
         await pilot.press("escape")
-        await until(pilot, lambda: pilot.app.screen is live(pilot))
+        await until_shown(pilot, lambda: pilot.app.screen is live(pilot))

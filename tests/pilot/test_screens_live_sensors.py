@@ -28,8 +28,8 @@ from tests.pilot.live_games import (
     live_world,
     paused_after,
     settled,
-    until,
 )
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -96,7 +96,7 @@ def make(workspace: Workspace, sensors: LinkedSensors) -> Callable[[], SensorsSc
 
 async def shown(pilot: TangyPilot, words: str) -> None:
     """Wait until it says so."""
-    await until(pilot, lambda: words in pilot.text())
+    await until_shown(pilot, lambda: words in pilot.text())
 
 
 def row(pilot: TangyPilot, label: str) -> str:
@@ -143,12 +143,12 @@ async def test_v_shows_what_its_camera_sees(
         assert link.asked_for == []
         pilot.type("v")
         await shown(pilot, BLOCK)
-        await until(pilot, lambda: len(link.asked_for) > 2)
+        await until_shown(pilot, lambda: len(link.asked_for) > 2)
         first, second = link.asked_for[:2]
         assert (first["after"], second["after"]) == (-1, 1)
         link.pid = 2  # it was started again, and counts its pictures anew
         count = len(link.asked_for)
-        await until(pilot, lambda: len(link.asked_for) > count)
+        await until_shown(pilot, lambda: len(link.asked_for) > count)
         assert link.asked_for[count]["after"] == -1
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -26,6 +25,7 @@ from tangy_tui.ui.screens.sensors import SensorsScreen, device_row
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.widgets.block_picture import BLOCK, BlockPicture
 from tests.pilot.conftest import StillClock
+from tests.support.waiting import until_shown
 
 if TYPE_CHECKING:
     from tests.pilot.conftest import Run, TangyPilot
@@ -116,13 +116,6 @@ async def later(pilot: TangyPilot) -> None:
     await pilot.pause()
 
 
-async def until(pilot: TangyPilot, true: Callable[[], object]) -> None:
-    """Wait until something is so."""
-    async with asyncio.timeout(PATIENCE):
-        while not true():
-            await pilot.pause(0.02)
-
-
 def left(pilot: TangyPilot) -> list[str]:
     """What stands on the left: the devices, and what is told of one."""
     return [line[:46] for line in pilot.lines()]
@@ -209,7 +202,7 @@ async def test_a_picture_comes_on_request_and_costs_nothing_while_it_is_hidden(
         await pilot.pause(2 * LOOK)
         assert sensors.asked == [] and BLOCK not in pilot.text()
         pilot.type("v")
-        await until(pilot, lambda: BLOCK in pilot.text())
+        await until_shown(pilot, lambda: BLOCK in pilot.text())
         shown = pilot.app.screen.query_one(BlockPicture)
         width, height = shown.content_size
         assert sensors.asked[-1] == (width, 2 * height) == shown.fit
@@ -237,10 +230,10 @@ async def test_an_enlarged_picture_is_made_for_the_room_there_is(
         pilot.type("v", "tab", "tab")
         await pilot.pause()
         pilot.type("plus")
-        await until(pilot, lambda: BLOCK * 70 in pilot.text())
+        await until_shown(pilot, lambda: BLOCK * 70 in pilot.text())
         assert sensors.asked[-1][0] > 70 and sensors.asked[-1][1] > 36
         pilot.type("escape")
-        await until(pilot, lambda: sensors.asked[-1][0] < 40)
+        await until_shown(pilot, lambda: sensors.asked[-1][0] < 40)
         assert isinstance(pilot.app.screen, SensorsScreen)
 
 
@@ -250,7 +243,7 @@ async def test_without_colours_a_picture_is_drawn_in_shades(
 ) -> None:
     async with run(make(), kind=kind) as pilot:
         pilot.type("v")
-        await until(pilot, lambda: "@@@" in pilot.text())
+        await until_shown(pilot, lambda: "@@@" in pilot.text())
         width, height = pilot.app.screen.query_one(BlockPicture).content_size
         assert pilot.text().count("." * width) >= height // 2 - 1
         assert pilot.text().count("@" * width) >= height // 2
@@ -308,7 +301,7 @@ async def test_the_cameras_are_open_as_long_as_the_screen_is_there(
         assert isinstance(pilot.app.screen, SensorsScreen)
         assert (sensors.open, sensors.readers) == (1, 1)
         pilot.type("escape")
-        await until(pilot, lambda: (sensors.open, sensors.readers) == (0, 0))
+        await until_shown(pilot, lambda: (sensors.open, sensors.readers) == (0, 0))
         assert not isinstance(pilot.app.screen, SensorsScreen)
         pilot.type("c")
         await pilot.pause()
@@ -341,22 +334,22 @@ async def test_a_real_camera_counts_in_a_game_and_7_shows_it(
         workspace, lambda program: program.play(seed=3), sensors=given, live=True, clock=clock
     )
     async with run(app=app) as pilot:
-        await until(pilot, lambda: "robot OK" in pilot.text())
+        await until_shown(pilot, lambda: "robot OK" in pilot.text())
         assert (sensors.open, sensors.readers) == (1, 0)
         sensors.now = replace(WELL, state="COVERED", brightness=0.01, contrast=0.005)
-        await until(pilot, lambda: "Head camera covered" in pilot.text())
+        await until_shown(pilot, lambda: "Head camera covered" in pilot.text())
         pilot.type("7")
         await pilot.pause()
         assert "! robot WARN: Head camera covered" in pilot.lines()[0]
         assert "covered" in row(pilot, "!  head camera") and "~arms" in row(pilot, "arms")
         assert sensors.open == 2
         pilot.type("escape")
-        await until(pilot, lambda: sensors.open == 1)
+        await until_shown(pilot, lambda: sensors.open == 1)
         assert isinstance(pilot.app.screen, PlayScreen)
         pilot.type("escape")
         await pilot.pause()
         pilot.type("y")
-        await until(pilot, lambda: sensors.open == 0)
+        await until_shown(pilot, lambda: sensors.open == 0)
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
@@ -374,7 +367,7 @@ async def test_how_it_looks(
     health = (Reading("laser", 0.05, OK), Reading("link", 3.0))
     async with run(make(health=lambda: health), size) as pilot:
         pilot.type("v")
-        await until(pilot, lambda: BLOCK in pilot.text())
+        await until_shown(pilot, lambda: BLOCK in pilot.text())
         await later(pilot)
         picture(pilot.app)
 
@@ -386,7 +379,7 @@ async def test_in_a_narrow_window_v_leads_to_picture_and_card_and_back(
     async with run(make(), (60, 18)) as pilot:
         assert "head camera" in pilot.text() and "Last card" not in pilot.text()
         pilot.type("v")
-        await until(pilot, lambda: BLOCK in pilot.text())
+        await until_shown(pilot, lambda: BLOCK in pilot.text())
         assert "Card 17" in pilot.text() and "Devices" not in pilot.text()
         pilot.type("v")
         await pilot.pause()

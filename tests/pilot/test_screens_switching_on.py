@@ -22,7 +22,8 @@ from tangy_tui.ui.screens.help import HelpScreen
 from tangy_tui.ui.screens.home import HomeScreen
 from tangy_tui.ui.screens.live import LiveScreen
 from tests.pilot.conftest import Run, StillClock, TangyPilot
-from tests.pilot.live_games import HeldLink, live_world, paused_after, until
+from tests.pilot.live_games import HeldLink, live_world, paused_after
+from tests.support.waiting import until_shown
 
 
 class Robot:
@@ -59,7 +60,9 @@ def program(workspace: Workspace, policy: Policy, robot: Robot) -> Program:
 
 
 async def switching(pilot: TangyPilot, robot: Robot) -> None:
-    await until(pilot, lambda: "Switching Tangy on" in pilot.text() and robot.did == ["begins"])
+    await until_shown(
+        pilot, lambda: "Switching Tangy on" in pilot.text() and robot.did == ["begins"]
+    )
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
@@ -84,7 +87,7 @@ async def test_esc_and_stop_leave_it_off(
     async with run(app=program(workspace, policy, robot)) as pilot:
         await switching(pilot, robot)
         await pilot.press(key)
-        await until(pilot, lambda: robot.did == ["begins", "is off", "over"])
+        await until_shown(pilot, lambda: robot.did == ["begins", "is off", "over"])
         assert isinstance(pilot.app.screen, HomeScreen)
 
 
@@ -97,7 +100,7 @@ async def test_leaving_the_program_leaves_it_off(
     async with run(app=app) as pilot:
         await switching(pilot, robot)
         leave(app)
-        await until(pilot, lambda: robot.did[:2] == ["begins", "is off"])
+        await until_shown(pilot, lambda: robot.did[:2] == ["begins", "is off"])
 
 
 async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
@@ -107,9 +110,9 @@ async def test_esc_that_was_typed_ahead_lets_nothing_be_started(
     robot = Robot(workspace)
     app = program(workspace, policy, robot)
     async with run(app=app) as pilot:
-        await until(pilot, lambda: isinstance(app.screen, SwitchingOnDialog))
+        await until_shown(pilot, lambda: isinstance(app.screen, SwitchingOnDialog))
         pilot.type("escape")
-        await until(pilot, lambda: robot.did == ["over"])
+        await until_shown(pilot, lambda: robot.did == ["over"])
 
 
 async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
@@ -119,9 +122,9 @@ async def test_one_that_answers_is_played_with_whatever_lay_over_the_dialog(
     async with run(app=program(workspace, policy, robot)) as pilot:
         await switching(pilot, robot)
         await pilot.press("question_mark")
-        await until(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         robot.answers.set()
-        await until(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
+        await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
         assert not any(isinstance(s, SwitchingOnDialog) for s in pilot.app.screen_stack)
         await paused_after(pilot, robot.link, 1)
 
@@ -132,7 +135,7 @@ async def test_what_is_wrong_with_the_robot_is_said(
     robot = Robot(workspace, wrong="The arms have no cable.")
     robot.answers.set()
     async with run(app=program(workspace, policy, robot)) as pilot:
-        await until(pilot, lambda: "The arms have no cable." in pilot.text())
+        await until_shown(pilot, lambda: "The arms have no cable." in pilot.text())
         assert robot.did == ["begins", "is off"]
         await pilot.press("enter")
-        await until(pilot, lambda: robot.did[-1] == "over")
+        await until_shown(pilot, lambda: robot.did[-1] == "over")

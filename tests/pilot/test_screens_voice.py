@@ -20,6 +20,7 @@ from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.transcript import Transcript
 from tests.pilot.conftest import Run, StillClock, TangyPilot, screen_text
 from tests.pilot.ears import FakeEars, FakeVoice
+from tests.support.waiting import until_shown
 
 SILENT = "espeak-ng is not installed; until it is, what Tangy says is shown as text."
 
@@ -71,15 +72,6 @@ async def do(pilot: TangyPilot, words: str) -> None:
     await pilot.pause()
 
 
-async def until(pilot: TangyPilot, there: Callable[[], bool]) -> None:
-    """Wait until something is so."""
-    for _ in range(500):
-        if there():
-            return
-        await pilot.pause(0.01)
-    raise AssertionError("it never was")
-
-
 async def test_what_tangy_says_while_teaching_is_spoken(
     run: Run, workspace: Workspace, voices: list[FakeVoice]
 ) -> None:
@@ -104,7 +96,7 @@ async def test_a_new_step_cuts_what_was_said_for_the_last(
     async with run(app=teaching(workspace)) as pilot:
         await do(pilot, "greet everyone")
         await do(pilot, "call number")
-        await until(pilot, lambda: len(voices[0].lines) == 2)
+        await until_shown(pilot, lambda: len(voices[0].lines) == 2)
         assert "number is" in voices[0].lines[-1]
 
 
@@ -116,7 +108,7 @@ async def test_of_lines_that_follow_at_once_only_the_last_is_spoken(
         assert isinstance(pilot.app, Program)
         for line in ("one", "two", "three", "four"):
             pilot.app.speaker.interject(line, VoicePreference())
-        await until(pilot, lambda: len(voices[0].lines) == 2)
+        await until_shown(pilot, lambda: len(voices[0].lines) == 2)
         assert voices[0].lines == ["one", "four"]
 
 
@@ -207,7 +199,7 @@ async def test_stop_and_leaving_let_it_fall_silent(
         await pilot.pause()
         assert not voices[0].speaking
         await do(pilot, "call number")
-        await until(pilot, lambda: voices[0].speaking)
+        await until_shown(pilot, lambda: voices[0].speaking)
         await pilot.press("escape", "escape")
         await pilot.pause()
         assert not voices[0].speaking
@@ -222,14 +214,14 @@ async def test_in_lifes_pace_the_next_step_waits_until_the_line_was_heard(
         assert voices[0].prepared == opening_lines(workspace.activity)
         assert len(voices[0].prepared) > len(workspace.activity.deck.numbers)
         steps = screen.query_one(Transcript)
-        await until(pilot, lambda: steps.count == 1)
+        await until_shown(pilot, lambda: steps.count == 1)
         screen._nudge.set()  # the time of the step has passed
         for _ in range(5):
             await pilot.pause(0.01)
         assert steps.count == 1
         voices[0].heard()
         screen._nudge.set()
-        await until(pilot, lambda: steps.count == 2)
+        await until_shown(pilot, lambda: steps.count == 2)
         assert len(voices[0].lines) == 2
         await pilot.press("ctrl+x")
         await pilot.pause()
@@ -244,13 +236,13 @@ async def test_steps_by_key_and_faster_games_do_not_wait_for_it(
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
         steps = screen.query_one(Transcript)
-        await until(pilot, lambda: steps.count == 1)
+        await until_shown(pilot, lambda: steps.count == 1)
         await pilot.press("p", "n")
-        await until(pilot, lambda: steps.count == 2)
+        await until_shown(pilot, lambda: steps.count == 2)
         await pilot.press("n")
-        await until(pilot, lambda: steps.count == 3)
+        await until_shown(pilot, lambda: steps.count == 3)
         said = [s for s in screen.query_one(LogView).sentences if "complied" not in s]
-        await until(pilot, lambda: voices[0].lines[-1] in said[-1])
+        await until_shown(pilot, lambda: voices[0].lines[-1] in said[-1])
         assert voices[0].hushed >= 2
 
 
@@ -260,9 +252,9 @@ async def test_a_game_that_is_skipped_to_its_end_is_silent(
     async with run(app=playing(workspace, policy, 1)) as pilot:
         screen = pilot.app.screen
         assert isinstance(screen, PlayScreen)
-        await until(pilot, lambda: bool(voices[0].lines))
+        await until_shown(pilot, lambda: bool(voices[0].lines))
         await pilot.press("e")
-        await until(pilot, lambda: screen._supervision.over)
+        await until_shown(pilot, lambda: screen._supervision.over)
         assert len(voices[0].lines) <= 2
         assert not voices[0].speaking
 

@@ -15,8 +15,9 @@ import pytest
 
 from tangy_sim.device_simulator.tablet import Tablet
 from tangy_tui.app.device_simulator import DeviceSimulator
-from tests.real.test_robot_process import STOPS, seconds_to_stop, speed, wait_until
+from tests.real.test_robot_process import STOPS, seconds_to_stop, speed
 from tests.support.terminal import TANGY, Terminal
+from tests.support.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
 PROFILE = ROOT / "profiles/tangy_profiles/robots/tangy.toml"

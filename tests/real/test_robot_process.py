@@ -26,6 +26,7 @@ from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.worker_lines import LONGEST_LINE
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tests.real.bench_setup import setup_on
+from tests.support.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
 STOPS = 0.6  # s after the program's end in which the base stands still
@@ -73,13 +74,6 @@ def program(bench: DeviceSimulator) -> Iterator[Program]:
     wait_until(lambda: speed(bench) > 0.25, "the robot drives")
     yield program
     program.close()
-
-
-def wait_until(holds: Callable[[], bool], what: str) -> None:
-    until = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < until, f"it did not come about that {what}"
-        time.sleep(0.01)
 
 
 def speed(bench: DeviceSimulator) -> float:

@@ -40,6 +40,7 @@ from tangy_hw.drivers.rosbridge import Rosbridge
 from tangy_profiles.health import ERROR, OK
 from tangy_profiles.robot import Limb
 from tangy_sim.servers.rosbridge_server import RosbridgeServer
+from tests.support.waiting import until
 
 HERE = Path(__file__).parent
 PYTHON = "/usr/bin/python3"
@@ -156,13 +157,6 @@ async def linked(ros: Ros) -> AsyncIterator[Rosbridge]:
     assert await bridge.wait_connected(10)
     yield bridge
     await bridge.close()
-
-
-async def until(holds: Callable[[], object], seconds: float = 15) -> None:
-    deadline = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < deadline
-        await asyncio.sleep(0.01)
 
 
 async def test_it_drives_and_stands_still_when_told_or_when_nothing_is_told(ros: Ros) -> None:

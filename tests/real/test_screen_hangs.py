@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 import pytest
 
 from tangy_hw.robot_client.client import HANGS_SECONDS, RobotLink
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_tui.app.device_simulator import DeviceSimulator
+from tests.support.waiting import wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 FAR = [9.0, 1.2, 1.57]  # some ten seconds away
 STOPS = 0.6  # s
-
-
-def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.02)
 
 
 def moves(bench: DeviceSimulator) -> bool:
@@ -31,23 +24,23 @@ def test_the_robot_stops_when_a_screen_does_not_say_any_more_that_it_lives(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     drive = link.ask("go", to=FAR)
-    until(lambda: moves(bench))
+    wait_until(lambda: moves(bench))
     link.alive()
     said = time.monotonic()
-    until(lambda: "the program says nothing" in link.state.hazard)
-    until(lambda: not moves(bench))
+    wait_until(lambda: "the program says nothing" in link.state.hazard)
+    wait_until(lambda: not moves(bench))
     assert HANGS_SECONDS - 0.1 < time.monotonic() - said < HANGS_SECONDS + STOPS
     with pytest.raises(Preempted):
         drive.result(10)
 
     link.alive()
-    until(lambda: link.state.hazard == "")
+    wait_until(lambda: link.state.hazard == "")
 
 
 def test_a_program_without_a_screen_need_not_say_it(
     bench: DeviceSimulator, link: RobotLink
 ) -> None:
     link.ask("go", to=FAR)
-    until(lambda: moves(bench))
+    wait_until(lambda: moves(bench))
     time.sleep(HANGS_SECONDS + 1.0)
     assert moves(bench) and link.state.hazard == ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 
@@ -13,6 +13,7 @@ from tangy_profiles.robot import load_robot
 from tangy_tui.app.device_simulator import DeviceSimulator
 from tangy_tui.app.sensing import LinkedSensors
 from tests.real.bench_setup import setup_on
+from tests.support.waiting import until
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("robot")]
 
@@ -28,12 +29,6 @@ def link() -> Iterator[RobotLink]:
     finally:
         link.close()
         bench.close()
-
-
-async def until(holds: Callable[[], object]) -> None:
-    async with asyncio.timeout(30):
-        while not holds():  # noqa: ASYNC110
-            await asyncio.sleep(0.05)
 
 
 async def test_cameras_pictures_and_cards_come_over_the_wires(link: RobotLink) -> None:

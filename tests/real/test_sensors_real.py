@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -20,15 +19,9 @@ from tangy_sim.rendering.card_frames import CardCamera, View
 from tests.hw.pictures import room, seen
 from tests.real.camera_server import CameraServer
 from tests.support.terminal import PATIENCE
+from tests.support.waiting import until
 
 MARKED = 0b00100_01010_10001_00000_11111
-
-
-async def until(true: Callable[[], object]) -> None:
-    """Wait until something is so."""
-    async with asyncio.timeout(PATIENCE):
-        while not true():  # noqa: ASYNC110 - a camera tells one listener, which is not the test
-            await asyncio.sleep(0.02)
 
 
 @pytest.fixture(scope="module")
