@@ -206,7 +206,7 @@ class GameController:
                 if isinstance(command, AT_ONCE):
                     return self._dispatch(command)
                 if isinstance(command, EndGame):
-                    self.robot.stop(ENDED)  # what it does is broken off
+                    self.break_off()
                 with self._turn:
                     return self._dispatch(command)
             finally:
@@ -279,8 +279,14 @@ class GameController:
             return True
         return False
 
+    def break_off(self) -> None:
+        """Stop the robot in the midst of what it does, because the game ends."""
+        self.supervision.stopped_by_staff()
+        self.robot.stop(ENDED)
+
     def _stop(self) -> list[Result]:
         self.stopped, self.going = True, False
+        self.supervision.stopped_by_staff()
         self.robot.stop()
         self.note("the robot was stopped")
         return [StaffNote("stopped")]
@@ -344,11 +350,10 @@ class GameController:
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
         """Stop the robot, and let the log say that the game was left: whoever watches it leaves.
 
-        Args:
-            patience: in s, for what is being done to be broken off; then it is left as it is.
+        What is being done has `patience` s to be broken off; then it is left as it is.
         """
         self.stopped = True
-        self.robot.stop(ENDED)
+        self.break_off()
         if not self._turn.acquire(timeout=patience):
             return []
         try:

@@ -34,7 +34,6 @@ from tangy_tui.app.game_commands import (
     StopRobot,
 )
 from tangy_tui.app.game_controller import GameController, Told
-from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.scripted_staff import go_on_by_script
 from tangy_tui.console.inquiries import ANSWER_IN_WORDS, Inquiries
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
@@ -310,7 +309,7 @@ class StaffLines:
             self._tell(self._controller.apply(command))
             return
         if isinstance(command, EndGame):
-            self._controller.robot.stop(ENDED)
+            self._controller.break_off()
         self._tasks.put(lambda: self._controller.apply(command))
 
     def _take(self, text: str) -> None:

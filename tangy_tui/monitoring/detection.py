@@ -120,6 +120,10 @@ class Detector:
             evidence["behaviour.response"] = _response(outcome)
         return evidence, found
 
+    def take_in(self, now: ActivityState) -> None:
+        """Begin anew from a state that staff brought about."""
+        self._last = now
+
     def unexpected(
         self, behaviour: Behaviour, before: ActivityState, outcome: Outcome, after: ActivityState
     ) -> list[Mismatch]:

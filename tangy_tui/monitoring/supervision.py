@@ -83,6 +83,7 @@ class Supervision:
         self._recovery = Recovery(game, self._detector, robot, store, name)
         self._watch = FaultWatch(game, book, self._detector, self._recovery)
         self._clearings: Counter[str] = Counter()
+        self._stops = 0
 
     @property
     def book(self) -> FaultBook:
@@ -182,8 +183,14 @@ class Supervision:
             return told + self._stop(f"The game did not end within {MOST_STEPS} steps.")
         if not self.game.asks:
             told += self._watch.foresee()
-        told += self._watch.after(self.game.step())
+        stops = self._stops
+        events = self.game.step()
+        told += self._watch.after(events, ordered=self._stops != stops)
         return told + self._end_if_hopeless()
+
+    def stopped_by_staff(self) -> None:
+        """Take note of a STOP: what it breaks off is nobody's fault, and nothing to be expected."""
+        self._stops += 1
 
     def look(self) -> list[Event]:
         """Look at the devices, without doing anything: tell what is new there.
@@ -274,12 +281,17 @@ class Supervision:
         question = self.question
         if question is None:
             return told
+        stops, chosen = self._stops, question.decision
         events = self.game.answer(behaviour, target, teacher)
         self._idle = 0
+        wanted = bool(question.fault) and self._asked_about(question) is None
+        otherwise = wanted and behaviour.name != chosen.behaviour  # staff said so, unasked
         taught = any(isinstance(event, Taught) for event in events)
         if taught or any(isinstance(event, DoneOnce) for event in events):
             told += self._answered(question, RecoveryEvent("taught", self.seconds, by=teacher))
-        found = self._watch.after(events)  # by what was expected before the answer was learnt
+        ordered = otherwise or self._stops != stops
+        # by what was expected before the answer was learnt
+        found = self._watch.after(events, ordered=ordered)
         if taught:
             self._detector.effects = self._effects_of(self.policy)
         return found + told + self._end_if_hopeless()

@@ -74,13 +74,17 @@ class FaultWatch:
             self._seen = None
         return self.look()
 
-    def after(self, events: Sequence[GameEvent]) -> list[Event]:
-        """Hold what was done against what was to be expected; end a game that came to its end."""
+    def after(self, events: Sequence[GameEvent], *, ordered: bool = False) -> list[Event]:
+        """Hold what was done against what was to be expected; end a game that came to its end.
+
+        What was `ordered` otherwise, by a STOP or by staff who took over, is held against nothing:
+        what comes of it is theirs, and neither a fault nor anybody's refusal.
+        """
         told: list[Event] = []
         for event in events:
             told.append(event)
             if isinstance(event, Acted):
-                told += self._compare(event)
+                told += self._take_in(event) if ordered else self._compare(event)
             elif isinstance(event, Unsure) and not event.fault:
                 told += self._take(diagnose(self.book, NOT_SHOWN), None)
                 for fault in self._recovery.waiting[:1]:
@@ -105,6 +109,12 @@ class FaultWatch:
         if decision.sure:
             return []
         return self._take(diagnose(self.book, NOT_SHOWN), None) + self._recovery.leave_open()
+
+    def _take_in(self, acted: Acted) -> list[Event]:
+        """Take in what is there after something that staff ordered; only the devices are judged."""
+        self._recovery.seconds += acted.outcome.seconds
+        self._detector.take_in(acted.after)
+        return self.look()
 
     def _compare(self, acted: Acted) -> list[Event]:
         self._recovery.seconds += acted.outcome.seconds

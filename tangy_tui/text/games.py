@@ -30,14 +30,14 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
     match event:
         case GameBegun(_, number, _):
             return [f"Game {number} begins."]
-        case Acted(number, state, decision, choice, action, _, _, speech):
+        case Acted(number, state, decision, choice, action, outcome, _, speech):
             target = f" ({name(action.target)})" if action.target else ""
             how = f", {choice.strategy}" if choice else ""
             why = f"as {teacher} said" if teacher else f"{decision.share:.0%} of the votes"
             return [
                 f"{number}. {activity.in_words(state.situation)} -> "
                 f"{action.behaviour.name}{target}{how}, {why}",
-                f"   Tangy says: {speech}",
+                f"   Tangy says: {speech}" if outcome.completed else "   It was not carried out.",
             ]
         case Diagnosed() | Moved():
             return fault_lines(event)

@@ -39,7 +39,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
-from tangy_tui.monitoring.fault import STAFF
+from tangy_tui.monitoring.fault import STAFF, Diagnosed
 from tests.hw.links import FakeLink
 
 
@@ -130,6 +130,37 @@ def test_stop_reaches_the_robot_at_once_in_the_middle_of_a_behaviour(live: Playe
     assert live.link.told[-1] == "release" and live.next() == ["call number"]
     assert ("the robot was stopped", "Ada") in live.logged()
     assert ("the robot was let go on", "Ada") in live.logged()
+
+
+def test_what_a_stop_breaks_off_is_no_fault_and_nobodys_refusal(live: Played) -> None:
+    for _ in range(3):
+        live.next()
+    live.link.sign(2)
+
+    def meanwhile(do: str, time: float) -> None:
+        if do == "go" and live.phase == "running":
+            live.control.apply(StopRobot())
+
+    live.link.meanwhile = meanwhile
+    live.link.missed = {"user2"}  # it was stopped on its way
+    told = [one for _ in range(3) for one in live.control.next()]
+    assert any(isinstance(one, Acted) and not one.outcome.completed for one in told)
+    assert live.phase == "stopped" and not live.control.supervision.faults
+    assert not any(isinstance(one, Diagnosed) for one in told)
+
+
+def test_where_staff_send_tangy_elsewhere_that_is_nobodys_fault(live: Played) -> None:
+    control = live.control
+    while live.world is None or live.world.tracker.place != "user2":
+        live.link.sign(2)
+        live.next()
+    control.apply(TakeOver())
+    control.next()
+    control.answers.say(Say("go to the front"))
+    yes = control.answers.reply(Reply(yes=True))
+    assert isinstance(yes, Verified)
+    told = kinds(control.answer(yes.behaviour, yes.target))
+    assert "Acted" in told and "Diagnosed" not in told and not control.supervision.faults
 
 
 def test_staff_take_over_say_what_is_done_and_give_back(live: Played) -> None:

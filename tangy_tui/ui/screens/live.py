@@ -31,7 +31,6 @@ from tangy_tui.app.game_commands import (
     TakeBackCall,
     TakeOver,
 )
-from tangy_tui.app.robot_controls import ENDED
 from tangy_tui.app.seats import Seats
 from tangy_tui.app.sensing import LinkedSensors
 from tangy_tui.app.simulated_devices_world import BenchedWorld
@@ -269,7 +268,7 @@ class LiveScreen(PlayScreen):
 
     async def _come_to_rest(self) -> None:
         """Stop the robot in the midst of what it does, and wait until it has broken that off."""
-        self.control.robot.stop(ENDED)
+        self.control.break_off()
         await asyncio.to_thread(self.control.wait_for_turn, REST_SECONDS)
 
     def _show_status(self) -> None:
