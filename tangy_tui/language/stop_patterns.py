@@ -19,17 +19,29 @@ def _any(*ways: str) -> str:
 # ------------------------------------------------------------------------------ who or what stops
 
 DETERMINER = (
-    "all of (?:the|this|that)|all(?: the| this| your)?|any|the|this|that|your|our|its|these|those"
+    "all of (?:the|this|that)|all(?: the| this| your)?|any|the|this|that|your|my|our|its|these"
+    "|those"
 )
 PASSION = (
     "whole|entire|bloody|stupid|damn(?:ed)?|darn|silly|crazy|mad|blasted|poor|big|little|horrible"
-    "|left|right|other|front|rear"
+    "|left|right|other|front|rear|old|dear|good|lovely|nasty|wretched"
 )
+NO_ADJECTIVE = (
+    "of|on|in|at|to|by|for|from|with|and|or|near|behind|beside|into|like|as|than|not|is|are|was"
+    "|a|an|the|that|this|my|your|his|her|our|their|who|which|you|i|we|he|she|they|it|him|them"
+    "|coffee|tea|washing|sewing|vending|answering|ticket|slot|fax|ice|cash|copy|knitting|bread"
+    "|weighing|fruit|time|drinks?|milling|rowing|exercise|x ray|ultrasound|infusion|dialysis"
+)
+"""What is no word that somebody may use of the robot: other machines among them."""
 BODY = "robots?|bot|machine|machinery|thing|tangy|device|contraption|system"
 LIMBS = "base|wheels?|motors?|engines?|drives?|arms?|hands?|head|movements?|motions?|moving|driving"
 PLAYS = "games?|rounds?|programme|activity|session|exercise|program|playing|play|demo|test|trial"
 DOINGS = "lot|nonsense|madness|noise|talking|experiment|simulation|action"
-ROBOT = f"(?:(?:{DETERMINER}) )?(?:(?:{PASSION}|game) )*(?:{BODY})"
+_CALLED = "robots?|bot|machine|tangy|contraption"
+ROBOT = (
+    f"(?:(?:(?:{DETERMINER}) )?(?:(?:{PASSION}|game) )*(?:{BODY})"
+    rf"|(?:{DETERMINER}) (?:(?!(?:{NO_ADJECTIVE})\b)\w+ ){{1,3}}(?:{_CALLED}))"
+)
 GAME = f"(?:{DETERMINER}) (?:(?:{PASSION}|game) )*(?:{LIMBS}|{PLAYS}|{DOINGS})|game"
 _IS = f"(?:(?:you|it|he|she|they|{ROBOT}) (?:are|is)|youre|its|hes|shes|theyre)"
 _DOING = f"(?:what|whatever) (?:it is )?{_IS} (?:doing|up to)"
@@ -107,6 +119,7 @@ PEOPLE_DO = (
 """What only people do: the robot is not asked to leave it off, though nobody is named."""
 _WHOM = "me|us|him|her|them|you|it|that|this|people|everybody|everyone|anybody|anyone|somebody"
 _WHERE = (
+    r"about(?! (?:it|that|this|him|her|them|me|us)\b)|"
     "forwards?|backwards?|back|up|around|round|away|off|on|in|out|over|ahead|left|right|sideways"
     "|closer|nearer|further|faster|so (?:fast|quickly|close|near|much)|(?:this|that) way"
     "|in circles|in (?:my|our|her|his|the) way|to the (?:left|right|front|back|table)"
@@ -134,7 +147,9 @@ CALL = _any(
     "(?:my |oh )?(?:god|gosh|goodness|lord|dear)|jesus|christ|damn|damn it|dammit|hell|come on",
     f"enough|that(?: i)?s (?:enough|it)|(?:i|we) (?:said|say|repeat|mean)|{NAMED}|{SAKE}|nurse",
     "somebody|someone|anybody|anyone|guys|immediately|at once|first|really|not another \\w+|ha",
-    "emergency|(?:this is|its) an emergency|then|also|yes|do|stop|halt|end (?:it|this)",
+    "emergency|(?:this is|its) an emergency|then|also|yes|do|stop|halt|end (?:it|this)|kindly",
+    "(?:go|get|keep|stay|move) (?:away|off|back)|back off|leave (?:me|us|her|him|them|it) alone",
+    "(?:i am|im|we are|were) begging you|i beg (?:of )?you",
 )
 _MUST = (
     "must|have to|has to|have got to|has got to|got to|gotta|needs? to|should|ought to|had better"
@@ -147,10 +162,12 @@ _ASKING = "asking|telling|begging|ordering|commanding|imploring|warning"
 _CAUSE = "make|get|have|let|tell|ask|order|force|command|help|bring"
 _NOBODY = "dont|didnt|doesnt|never|not|nobody"
 ASK = _any(
+    "(?:would you )?be so (?:kind|good) (?:as to|and)|may i (?:please )?ask you to",
+    rf"(?:make|tell|get|ask) (?:{SOMEBODY})(?: to)?(?= (?:stop|quit) (?:{_DRIVES})\b)",
     f"(?:{_YOU}|youd|wed|id|it|this|that|everything|{GAME}) (?:just |really |all )*(?:{_MUST})",
     "you (?:can|could|will|would|may|might)",
     f"(?:can|could|will|would|shall|should|may|might|cant|couldnt|wont|wouldnt|shouldnt)"
-    f" (?:{_YOU})",
+    f" (?:{_YOU}|it)(?: (?:please|kindly|just|now))*",
     f"(?:im|i am|were|we are) (?:just |really |now )*(?:{_ASKING}) (?:{ITSELF}|you) to",
     f"why (?:dont|cant|wont|wouldnt|couldnt) (?:{_YOU})",
     rf"(?!{_NOBODY})\w+ (?:just |really |now )*(?:{_WISH}) (?:{ITSELF}|you) to",
@@ -189,6 +206,8 @@ _STILL = _any(
     "not another (?:inch|step|move|metre|centimetre)|nobody move|emergency|e ?stop|enough",
     "that(?: i)?s enough|cut it out|knock it off|shut ?down|power (?:off|down)|switch off",
     "come to a (?:complete |full )?(?:stop|halt|standstill)|hit the brakes?|brakes?",
+    f"(?:do not|dont) let {ROBOT} (?:move|drive|go|come|turn|run)(?: \\w+){{0,3}}",
+    f"(?:keep|hold) {ROBOT} (?:still|there|back|where it is)",
 )
 _OFF = "turn|switch|shut|power"
 _CANCEL = "cancel|interrupt|suspend|pause|abandon|break off|call off|quit|terminate|discontinue"

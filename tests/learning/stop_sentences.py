@@ -820,3 +820,53 @@ MENTIONING_TOO = (
     "he works at the stop and shop",
 )
 """As MENTIONING, written afterwards."""
+
+STOPPING_WITH_ADJECTIVES = (
+    "stop that awful robot",
+    "would you kindly stop",
+    "tell him to stop driving",
+    "stop the lovely robot at once",
+    "stop the flipping robot",
+    "stop that nasty machine",
+    "stop this wretched robot",
+    "stop the fucking machine",
+    "stop my dear robot",
+    "stop the wheelchair robot",
+    "stop poor old Tangy",
+    "make her stop moving",
+    "I am begging you stop",
+    "be so kind as to stop",
+    "may I ask you to stop",
+    "please would you stop moving about",
+    "go away stop",
+    "leave me alone stop",
+    "can it please stop",
+    "don't let the robot move",
+    "keep the robot still",
+    "stop the noisy little robot now",
+    "stop that great big metal machine",
+    "please stop the very loud robot",
+    "stop this annoying blue robot please",
+)
+"""Whatever the robot is called, and however kindly or at the end it is asked."""
+
+MENTIONING_WITH_ADJECTIVES = (
+    "stop teasing the robot",
+    "stop the coffee machine",
+    "stop the washing machine",
+    "stop the man touching the robot",
+    "stop the music on the machine",
+    "tell him to stop teasing her",
+    "make her stop crying",
+    "stop the boy from hitting the robot",
+    "the nice robot never stops",
+    "don't stop the robot",
+    "I like the way the robot stops",
+    "keep still please Rosa",
+    "keep the robot company",
+    "stop the vending machine please",
+    "did the clever robot stop",
+    "would you kindly pass the salt",
+    "be so kind as to stop whistling",
+    "go away Peter",
+)

@@ -16,8 +16,10 @@ from tests.bench.sentences import FAR, NEAR, WORDINGS
 from tests.learning.stop_sentences import (
     MENTIONING,
     MENTIONING_TOO,
+    MENTIONING_WITH_ADJECTIVES,
     STOPPING,
     STOPPING_TOO,
+    STOPPING_WITH_ADJECTIVES,
 )
 
 ROOT = Path(__file__).parents[1]
@@ -45,6 +47,12 @@ def test_what_only_mentions_stopping_does_not(sentence: str) -> None:
 def test_the_sentences_that_were_written_apart_from_the_rules_are_told_apart_too() -> None:
     missed = [s for s in (*STOPPING[1::2], *STOPPING_TOO) if not stops(s, {"bingo"})]
     wrongly = [s for s in (*MENTIONING[1::2], *MENTIONING_TOO) if stops(s, {"bingo"})]
+    assert (missed, wrongly) == ([], [])
+
+
+def test_no_word_that_somebody_calls_the_robot_keeps_it_from_stopping() -> None:
+    missed = [s for s in STOPPING_WITH_ADJECTIVES if not stops(s, {"bingo"})]
+    wrongly = [s for s in MENTIONING_WITH_ADJECTIVES if stops(s, {"bingo"})]
     assert (missed, wrongly) == ([], [])
 
 
