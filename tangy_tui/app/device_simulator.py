@@ -6,20 +6,17 @@ bench would do by hand: deal cards, bring a fault about, lift it, and look how t
 
 from __future__ import annotations
 
-import json
-import select
-import subprocess
 import sys
-import threading
 from collections.abc import Mapping
-from contextlib import suppress
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as TooLate
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from tangy_hw.cancellation import Cancellation
+from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.errors import TangyError
-from tangy_profiles.worker_log import open_log
 
 CHILD = (sys.executable, "-P", "-m", "tangy_sim.device_simulator")
 END_SECONDS = 3.0
@@ -82,36 +79,19 @@ class DeviceSimulator:
         command = [*CHILD, "--seed", str(seed), "--room", room]
         command += [f"--person={id}={name}" for id, name in people.items()]
         command += ["--activity", activity, "--robot", robot, *(["--stepped"] if stepped else [])]
-        err: IO[bytes] | int = subprocess.DEVNULL
-        if log is not None:
-            with suppress(OSError):
-                err = open_log(log)
-        self._process = subprocess.Popen(  # noqa: S603 - it is our own program
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=err,
-            start_new_session=True,
-        )
-        if not isinstance(err, int):
-            err.close()
-        cancellation.register(self._process.kill)  # there is nothing in it to be put in order
-        self._lock = threading.Lock()
         try:
-            ready = self._read()["ready"]
-            self.wires = Wires(
-                ready["rosbridge"],
-                ready["scip"],
-                ready["head"],
-                ready["infrared"],
-                tuple((float(x), float(y)) for x, y in ready["corners"]),
-                {str(person): int(number) for person, number in ready["faces"].items()},
-            )
-        except (KeyError, TypeError, BenchError):
+            self._worker = WorkerProcess(command, read=_answer, lost=_ended, log=log)
+        except WorkerError as error:
+            raise BenchError(f"The bench cannot be started ({error}).") from None
+        cancellation.register(self._worker.kill)  # there is nothing in it to be put in order
+        try:
+            self.wires = _wires(self._await(self._worker.first)["ready"])
+        except (KeyError, TypeError, ValueError, BenchError):
             self.close()
             cancellation.check()
+            how = f" ({self._worker.how})" if self._worker.how else ""
             where = f": see {log}" if log is not None else ""
-            raise BenchError(f"The bench does not begin{where}.") from None
+            raise BenchError(f"The bench does not begin{how}{where}.") from None
 
     def do(self, do: str, **what: Any) -> dict[str, Any]:
         """Let it do something, and return its answer.
@@ -119,38 +99,42 @@ class DeviceSimulator:
         Raises:
             BenchError: it cannot, or it has ended.
         """
-        with self._lock:
-            try:
-                assert self._process.stdin is not None  # noqa: S101 - it was asked for
-                self._process.stdin.write(json.dumps({"do": do, **what}).encode() + b"\n")
-                self._process.stdin.flush()
-            except (OSError, ValueError):
-                raise BenchError("The bench has ended.") from None
-            answer = self._read()
-        if "failed" in answer:
-            raise BenchError(str(answer["failed"]))
-        return answer
+        return self._await(self._worker.ask({"do": do, **what}))
 
     def close(self) -> None:
         """End it."""
-        with suppress(OSError):
-            assert self._process.stdin is not None  # noqa: S101 - it was asked for
-            self._process.stdin.close()
-        try:
-            self._process.wait(END_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        if self._process.stdout is not None:
-            self._process.stdout.close()
+        self._worker.stop(END_SECONDS)
 
-    def _read(self) -> dict[str, Any]:
-        assert self._process.stdout is not None  # noqa: S101 - it was asked for
-        if not select.select([self._process.stdout], [], [], ANSWER_SECONDS)[0]:
-            raise BenchError("The bench does not answer.")
-        line = self._process.stdout.readline()
+    @staticmethod
+    def _await(asked: Future[dict[str, Any]]) -> dict[str, Any]:
         try:
-            answer = json.loads(line)
-        except ValueError:
-            raise BenchError("The bench has ended.") from None
-        return dict(answer)
+            return asked.result(ANSWER_SECONDS)
+        except TooLate:
+            asked.cancel()
+            raise BenchError("The bench does not answer.") from None
+
+
+def _ended(how: str) -> BenchError:
+    return BenchError(f"The bench has ended ({how}).")
+
+
+def _answer(said: dict[str, Any]) -> dict[str, Any]:
+    """Return an answer.
+
+    Raises:
+        BenchError: it could not do it.
+    """
+    if "failed" in said:
+        raise BenchError(str(said["failed"]))
+    return said
+
+
+def _wires(ready: Mapping[str, Any]) -> Wires:
+    return Wires(
+        ready["rosbridge"],
+        ready["scip"],
+        ready["head"],
+        ready["infrared"],
+        tuple((float(x), float(y)) for x, y in ready["corners"]),
+        {str(person): int(number) for person, number in ready["faces"].items()},
+    )

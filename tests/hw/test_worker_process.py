@@ -29,6 +29,7 @@ from tangy_hw.drivers.chest import WebChestScreen
 from tangy_hw.drivers.chest_pairing import Pairing
 from tangy_hw.worker_process import WorkerError, WorkerProcess
 from tangy_profiles.worker_lines import LONGEST_LINE
+from tangy_tui.app import device_simulator
 from tangy_tui.speech import recogniser
 from tests.hw.waiting import until
 from tests.support.processes import runs
@@ -224,12 +225,15 @@ class Child:
     """A key of the answer."""
 
 
-@pytest.fixture(params=["camera", "chest", "speech"])
+@pytest.fixture(params=["camera", "chest", "speech", "device simulator"])
 def child(request: pytest.FixtureRequest, tmp_path: Path) -> Child:
     """Each of our children in turn."""
     module = "-P", "-m"
     if request.param == "speech":
         return Child(recogniser.WORKER, [], {"id": 8, "pieces": ""}, "found")
+    if request.param == "device simulator":
+        bench = (*device_simulator.CHILD, "--activity", "bingo", "--stepped")
+        return Child(bench, [], {"id": 8, "do": "truth"}, "truth")
     if request.param == "camera":
         cv2.imwrite(str(tmp_path / "a.png"), np.zeros((4, 4, 3), np.uint8))
         source = find_camera(str(tmp_path), each=True).to_json()

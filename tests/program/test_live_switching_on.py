@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import cast
 
 import pytest
@@ -15,7 +17,7 @@ import pytest
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app import device_simulator
-from tangy_tui.app.device_simulator import DeviceSimulator
+from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
 from tangy_tui.app.switching_on import SwitchingOn, switched_on
 
 WORLD = cast(LiveWorld, object())
@@ -168,6 +170,36 @@ def test_a_bench_that_is_called_off_is_ended_at_once(monkeypatch: pytest.MonkeyP
         )
     assert time.monotonic() - began < device_simulator.END_SECONDS  # it is not waited for
     caller.join()
+
+
+@pytest.mark.parametrize(
+    ("does", "how"), [("sys.exit(3)", "status 3"), ("print('x', flush=True); input()", "signal 9")]
+)
+def test_a_bench_that_does_not_begin_says_how_it_ended(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, does: str, how: str
+) -> None:
+    monkeypatch.setattr(device_simulator, "CHILD", (sys.executable, "-c", "import sys; " + does))
+    log = tmp_path / "bench.log"
+    with pytest.raises(BenchError, match=rf"does not begin \({how}\): see .*bench.log"):
+        DeviceSimulator(seed=1, people={}, stepped=True, activity="bingo", robot="", log=log)
+
+
+def test_a_bench_that_does_not_answer_or_ends_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    ready = dict.fromkeys(("rosbridge", "scip", "head", "infrared"), "")
+    says = json.dumps({"ready": {**ready, "corners": [], "faces": {}}})
+    does = f"import os, sys; print({says!r}, flush=True); input(); input(); os._exit(4)"
+    monkeypatch.setattr(device_simulator, "CHILD", (sys.executable, "-c", does))
+    bench = DeviceSimulator(seed=1, people={}, stepped=True, activity="bingo", robot="")
+    try:
+        monkeypatch.setattr(device_simulator, "ANSWER_SECONDS", 0.05)
+        with pytest.raises(BenchError, match="does not answer"):
+            bench.do("truth")
+        monkeypatch.setattr(device_simulator, "ANSWER_SECONDS", 20)
+        for _ in range(2):
+            with pytest.raises(BenchError, match=r"has ended \(status 4\)"):
+                bench.do("truth")
+    finally:
+        bench.close()
 
 
 def test_no_bench_is_started_once_it_was_called_off(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import json
 import logging
 import signal
 import sys
@@ -23,12 +22,11 @@ from tangy_profiles.person import MOST_PEOPLE, Person, load_people
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
+from tangy_profiles.worker_lines import AnswerWriter, Asked, coming, open_lines
 from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.world import BenchWorld
 
 _LOG = logging.getLogger(__name__)
-
-LONGEST_LINE = 1 << 20
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,15 +75,14 @@ def _people(count: int, named: Sequence[str]) -> tuple[Person, ...]:
 
 
 async def _serve(bench: DeviceServers) -> None:
-    reader = asyncio.StreamReader(limit=LONGEST_LINE)
-    loop = asyncio.get_running_loop()
-    await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
-    _say({"ready": await bench.start()})
+    answers = AnswerWriter()
+    lines, _ = await open_lines()
+    answers.write({"ready": await bench.start()})
     passing = None if bench.stepped else asyncio.create_task(bench.run())
     try:
-        while line := await reader.readline():
-            answer = _answer(bench, line)
-            _say(answer)
+        async for told in coming(answers.refuse, lines):
+            answer = _answer(bench, told)
+            answers.write(answer)
             if answer.get("done") == "stop":
                 break
     finally:
@@ -96,24 +93,13 @@ async def _serve(bench: DeviceServers) -> None:
         await bench.close()
 
 
-def _answer(bench: DeviceServers, line: bytes) -> dict[str, Any]:
-    told: Any = None
-    answer: dict[str, Any]
+def _answer(bench: DeviceServers, told: Asked) -> dict[str, Any]:
     try:
-        told = json.loads(line)
         answer = {"done": "stop"} if told["do"] == "stop" else bench.do(told)
-    except (KeyError, TypeError, ValueError) as error:
-        said = line.decode(errors="replace").strip()
-        answer = {"failed": f"The bench does not understand {said:.200} ({error!r})."}
-    _LOG.info("asked for %s: %s", told.get("do") if isinstance(told, dict) else None, *answer)
-    if isinstance(told, dict) and "id" in told:
-        answer["id"] = told["id"]
-    return answer
-
-
-def _say(answer: dict[str, Any]) -> None:
-    with suppress(BrokenPipeError):
-        print(json.dumps(answer), flush=True)
+    except Exception as error:  # whoever asked must not wait for ever
+        answer = {"failed": f"The bench does not understand {told!r:.200} ({error!r:.200})."}
+    _LOG.info("asked for %s: %s", told.get("do"), *answer)
+    return {**answer, "id": told["id"]} if "id" in told else answer
 
 
 if __name__ == "__main__":
