@@ -5,16 +5,23 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+)
+from tests.support.append_body import append_body
 
 
 def log_demonstration(store: Store, shown: Demonstration) -> None:
     """Log a demonstration."""
     with store.transaction():
-        store.append(
-            BEGUN,
+        append_body(
+            store,
+            DemonstrationBegun,
             {
                 "demonstration": shown.id,
                 "activity": shown.activity,
@@ -26,9 +33,9 @@ def log_demonstration(store: Store, shown: Demonstration) -> None:
             },
         )
         for step in shown.steps:
-            store.append(STEP, {"demonstration": shown.id, **step.to_json()})
+            append_body(store, DemonstrationStep, {"demonstration": shown.id, **written(step)})
         if shown.finished:
-            store.append(FINISHED, {"demonstration": shown.id})
+            append_body(store, DemonstrationFinished, {"demonstration": shown.id})
 
 
 def answering(shown: Demonstration, user_state: str, behaviour: str) -> Demonstration:

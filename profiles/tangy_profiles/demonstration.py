@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
 
-from tangy_profiles.state import ActivityState
+from tangy_profiles.codec import Unlogged
+from tangy_profiles.state import ActivityState, Situation
 
 Origin = Literal["shown", "again", "asked", "merged", "split"]
 """How a demonstration came about: shown in a game, shown again from a step of an earlier one,
@@ -27,30 +27,38 @@ class Step:
     state: ActivityState
     after: ActivityState
     completed: bool = True
-    id: int = field(default=0, compare=False)
-    teacher: str = field(default="", compare=False)
+    id: Unlogged[int] = field(default=0, compare=False)
+    teacher: Unlogged[str] = field(default="", compare=False)
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the step as the log keeps it."""
-        return {
-            "behaviour": self.behaviour,
-            "target": self.target,
-            "state": self.state.to_json(),
-            "after": self.after.to_json(),
-            "completed": self.completed,
-        }
+    def misfit(self) -> str:
+        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        return not_the_same(self.state, self.after)
 
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any], id: int = 0, teacher: str = "") -> Step:
-        """Read a step that `to_json` wrote."""
-        return cls(
-            str(body["behaviour"]),
-            body["target"],
-            ActivityState.from_json(body["state"]),
-            ActivityState.from_json(body["after"]),
-            bool(body.get("completed", True)),
-            id,
-            teacher,
+
+def not_the_same(before: ActivityState, after: ActivityState | None) -> str:
+    """Say, as the tail of a sentence, if others take part after a step than before it."""
+    same = after is None or [user.id for user in before.users] == [user.id for user in after.users]
+    return "" if same else "has other people in 'after' than in 'state'"
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """What a teacher said of a conflict: the right answers, and the steps that are wrong by it.
+
+    Only the steps that were looked at are set aside: whoever shows another answer later makes a
+    conflict again. An answer in `right` that nobody demonstrated is learnt all the same.
+    """
+
+    situation: Situation
+    right: tuple[str, ...]
+    wrong: frozenset[int]
+
+    def sets_aside(self, step: Step) -> bool:
+        """Say whether a step is not to be learnt from."""
+        return (
+            step.state.situation == self.situation
+            and step.behaviour not in self.right
+            and step.id in self.wrong
         )
 
 

@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from tangy_profiles.events import BODIES
+from tangy_profiles.codec import keys_of
+from tangy_profiles.events import KINDS
 from tangy_profiles.reading import read_toml
-from tangy_profiles.shapes import Fields
 
 FREE_TEXT = frozenset(("heard", "how", "what", "why", "stopped"))
 """The keys of an event's body that hold words of people."""
@@ -193,8 +193,7 @@ def _kept_in(kind: str, key: str) -> str:
         return "exact"
     if key in FREE_TEXT:
         return "" if key == "what" and kind in OWN_WORDS else "running"
-    body = BODIES.get(kind, Fields())
-    known = {*body.needs, *body.may} if isinstance(body, Fields) else {key}
+    known = keys_of(KINDS[kind]) if kind in KINDS else frozenset()
     return "" if key in known or key in WHOSE else "running"
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal, get_args
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal, cast, get_args
 
+from tangy_profiles.codec import Unreadable, one_of
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.extensions import extensions
 from tangy_profiles.reading import Table, nearest, plain
@@ -34,6 +35,16 @@ LEAST_KEPT = 0.5
 """What keeps less than half of itself each time learns nothing."""
 
 
+def _method(name: str) -> str:
+    return name if is_method(name) else cast(str, one_of(*METHODS)(name))
+
+
+def _share(value: float) -> float:
+    if not LEAST_KEPT <= value <= 1:
+        raise Unreadable("is not a share that can be kept")
+    return value
+
+
 @dataclass(frozen=True)
 class PersuasionConfig:
     """A choice of method; the default is the paper's, exactly.
@@ -43,32 +54,10 @@ class PersuasionConfig:
     interaction, or from one day, to the next (1: everything).
     """
 
-    method: str = "thompson"
-    prior: str = "uniform"
-    forgetting: float = 1.0
-    forgetting_per: str = "interaction"
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the choice as the log keeps it."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> PersuasionConfig:
-        """Read a choice that `to_json` wrote; what is not there is as in the paper.
-
-        Raises:
-            ProfileError: there is no such method.
-        """
-        method = str(body.get("method", cls.method))
-        if not is_method(method):
-            known = nearest(method, known_methods())
-            raise ProfileError(plain(f"There is no method {method!r}: {known}"))
-        return cls(
-            method,
-            str(body.get("prior", cls.prior)),
-            float(body.get("forgetting", cls.forgetting)),
-            str(body.get("forgetting_per", cls.forgetting_per)),
-        )
+    method: Annotated[str, _method] = "thompson"
+    prior: Annotated[str, one_of(*PRIORS)] = "uniform"
+    forgetting: Annotated[float, _share] = 1.0
+    forgetting_per: Annotated[str, one_of(*PERIODS)] = "interaction"
 
 
 PAPER = PersuasionConfig()

@@ -9,14 +9,21 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from datetime import datetime
-from typing import Any, NamedTuple, NoReturn
+from functools import cache
+from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
-from tangy_profiles.events import wrong_with
+from tangy_profiles.codec import Unreadable
+from tangy_profiles.events import KINDS, EventRecord, Unknown, read_record
 from tangy_profiles.reading import plain
 
+R = TypeVar("R", bound=EventRecord, covariant=True)
 
-class Event(NamedTuple):
-    """One thing that happened, at a UTC time in ISO 8601; `complied` answers `strategy`."""
+
+class Event(NamedTuple, Generic[R]):
+    """One thing that happened, at a UTC time in ISO 8601; `complied` answers `strategy`.
+
+    `record` is what the program reads of it, and `body` the JSON that it was read from.
+    """
 
     seq: int
     uuid: str
@@ -27,6 +34,7 @@ class Event(NamedTuple):
     strategy: str | None
     complied: bool | None
     body: dict[str, Any]
+    record: R
 
 
 class BadRow(Exception):
@@ -36,12 +44,12 @@ class BadRow(Exception):
     the row says nothing that can be relied on.
     """
 
-    def __init__(self, why: str, event: Event | None = None) -> None:
+    def __init__(self, why: str, event: Event[EventRecord] | None = None) -> None:
         super().__init__(why)
         self.event = event
 
 
-def read_row(row: Sequence[Any]) -> Event:
+def read_row(row: Sequence[Any]) -> Event[EventRecord]:
     """Return the event of a row: seq, uuid, robot, at, kind, person, strategy, complied, body.
 
     Raises:
@@ -63,13 +71,24 @@ def read_row(row: Sequence[Any]) -> Event:
         raise BadRow("it holds bytes that are not text") from None
     except ValueError:
         raise BadRow("its time is not a time") from None
-    event = Event(row[0], uuid, robot, at, kind, person, strategy, complied and bool(complied), {})
+    complied = complied and bool(complied)
+    event = Event(row[0], uuid, robot, at, kind, person, strategy, complied, {}, _empty(kind))
     body, wrong = _read_body(text)
-    if not wrong and (found := wrong_with(kind, person, strategy, body)):
-        wrong = f"it {found}"
     if wrong:
         raise BadRow(wrong, event)
-    return event._replace(body=body)
+    try:
+        return event._replace(body=body, record=read_record(kind, person, strategy, body))
+    except Unreadable as why:
+        raise BadRow(f"it {why}", event) from None
+
+
+@cache
+def _empty(kind: str) -> EventRecord:
+    """Return the record of an event of which only the row is known."""
+    try:
+        return KINDS.get(kind, Unknown)()
+    except TypeError:  # it has fields that must be there
+        return Unknown()
 
 
 def left_out(seq: int, kind: object, why: str, rest: str = "") -> str:
@@ -77,6 +96,11 @@ def left_out(seq: int, kind: object, why: str, rest: str = "") -> str:
     of = f" ({kind[:40]})" if isinstance(kind, str) else ""
     said = f"tangy.db: event {seq}{of} is damaged and left out{rest}: {why}."
     return plain(said.encode(errors="replace").decode())
+
+
+def are_text(*words: object) -> bool:
+    """Say whether all of these are texts that can be shown."""
+    return all(isinstance(word, str) and word.isprintable() for word in words)
 
 
 def _read_body(text: str) -> tuple[dict[str, Any], str]:

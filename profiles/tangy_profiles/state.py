@@ -6,8 +6,9 @@ simulator is measured in steps per second.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
+
+from tangy_profiles.codec import Count
 
 Request = Literal["ANR", "AR"]
 """The assistance request state s_h: assistance not required, or required."""
@@ -16,7 +17,7 @@ FRONT = "front"
 """The place in front of the group; every other place is the id of the person the robot is with."""
 
 
-VARIABLES = (
+Variable = Literal[
     "robot's place",
     "activity",
     "end",
@@ -25,8 +26,13 @@ VARIABLES = (
     "what was asked about",
     "card",
     "others' requests",
-)
+]
 """What a behaviour can change, as its effects are learnt and compared."""
+VARIABLES: tuple[Variable, ...] = get_args(Variable)
+
+
+LARGEST_STEP = 10**12
+"""No game has so many steps."""
 
 
 class UserState(NamedTuple):
@@ -54,7 +60,7 @@ class ActivityState(NamedTuple):
     stayed open and one that was closed and made anew at once would look alike.
     """
 
-    step: int
+    step: Count
     situation: Situation
     place: str
     attended: str | None
@@ -77,28 +83,47 @@ class ActivityState(NamedTuple):
                 return user
         raise KeyError(id)
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the state as the log keeps it."""
-        return {
-            "step": self.step,
-            "situation": list(self.situation),
-            "place": self.place,
-            "attended": self.attended,
-            "users": [list(user) for user in self.users],
-            "closed": self.closed,
-        }
+    def misfit(self) -> str:
+        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        ids = [user.id for user in self.users]
+        if len(set(ids)) < len(ids):
+            return "has somebody twice"
+        there = self.attended is None or self.attended in ids
+        return "" if there else "has somebody 'attended' who is not among the 'users'"
 
     @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> ActivityState:
-        """Read a state that `to_json` wrote."""
-        return cls(
-            int(body["step"]),
-            Situation(*body["situation"]),
-            str(body["place"]),
-            body["attended"],
-            tuple(UserState(*user) for user in body["users"]),
-            body["closed"],
-        )
+    def glance(cls, value: Any) -> ActivityState | None:
+        """Read a state that is plainly as it should be: most of a log are states.
+
+        Returns:
+            The state, or None where the codec must look closely.
+        """
+        try:
+            stage, request, activity = value["situation"]
+            users, ids = [], set()
+            for user in value["users"]:
+                id, doing, asks = user
+                if not (type(user) is list and type(id) is type(doing) is str):
+                    return None
+                users.append(UserState(id, doing, asks))
+                ids.add(id)
+            step, place = value["step"], value["place"]
+            attended, closed = value["attended"], value["closed"]
+            fits = (
+                type(value["situation"]) is type(value["users"]) is list
+                and type(stage) is type(activity) is type(place) is str
+                and request in ("ANR", "AR")
+                and all(user.request in ("ANR", "AR") for user in users)
+                and type(step) is int
+                and 0 <= step < LARGEST_STEP
+                and len(ids) == len(users)
+                and (attended is None or attended in ids)
+                and (closed is None or type(closed) is str)
+            )
+        except (TypeError, KeyError, ValueError):
+            return None
+        situation = Situation(stage, request, activity)
+        return cls(step, situation, place, attended, tuple(users), closed) if fits else None
 
 
 class Response(NamedTuple):

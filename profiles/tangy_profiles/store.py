@@ -12,34 +12,32 @@ import json
 import sqlite3
 import uuid
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
-from typing import Any, Self
+from typing import Any, Self, TypeVar, overload
 
+from tangy_profiles.codec import Unreadable
 from tangy_profiles.erased_log import count_left, erase_from_log
 from tangy_profiles.erasure import NameEraser
 from tangy_profiles.errors import ProfileError, StoreError
-from tangy_profiles.events import wrong_with
+from tangy_profiles.events import EventRecord, read_record
 from tangy_profiles.log_file import FILE, NAMING, LogFile
+from tangy_profiles.people_records import EventsLost, PersonForgotten, Renamed, SpeechNoted
 from tangy_profiles.person import read_name
 from tangy_profiles.phones import read_name_phones
 from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, fetch, responses_among
-from tangy_profiles.rows import BadRow, left_out, read_row
+from tangy_profiles.records import name_of
+from tangy_profiles.rows import BadRow, are_text, left_out, read_row
 from tangy_profiles.rows import Event as Event
 from tangy_profiles.seal import Seal, lost_words
 from tangy_profiles.voice import VoicePreference
 
+R = TypeVar("R", bound=EventRecord)
+
 WINDOW = 4096  # events fetched at a time, so that a slow reader never holds up a checkpoint
-
-VOID, TAKEN_BACK = "void", "taken back"
-"""The kinds of event whose body names another event `of` (by uuid) that no longer holds, and whose
-person and strategy are that one's. A void that was taken back does not hold itself."""
-
-LOST = "events lost"
-"""The kind of event that says which newest ones were gone when the log was opened."""
 
 _to_json = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":")).encode
 
@@ -93,8 +91,7 @@ class Store:
 
     def append(
         self,
-        kind: str,
-        body: Mapping[str, Any],
+        record: EventRecord,
         *,
         person: str | None = None,
         strategy: str | None = None,
@@ -102,24 +99,23 @@ class Store:
     ) -> int:
         """Log one event and return its seq; outside a `transaction` it is then on the disk.
 
-        `body` is JSON with text keys; `complied` says whether `person` followed `strategy`.
-
         Raises:
             ValueError, TypeError: the caller's mistake: a body that is not JSON (NaN, too deep) or
-                not that of its kind (see `events`), no kind, or `complied` without person and
-                strategy.
+                not of its kind, no kind, or `complied` without person and strategy.
             StoreError: it could not be kept, and nothing of it was.
         """
-        if not kind or (complied is not None and (person is None or strategy is None)):
+        kind, of_nobody = record.KIND, person is None or strategy is None
+        if not kind or (complied is not None and of_nobody):
             raise ValueError("An event has a kind, and a response has a person and a strategy.")
         try:
-            text = _to_json(dict(body))
+            text = _to_json(record.body)
+            read_record(kind, person, strategy, json.loads(text))
         except RecursionError:
             raise ValueError("The body of an event is nested too deeply.") from None
-        if wrong := wrong_with(kind, person, strategy, json.loads(text)):
-            raise ValueError(f"An event of the kind {kind!r} {wrong}.")
+        except Unreadable as why:
+            raise ValueError(f"An event of the kind {kind!r} {why}.") from None
         at = self._now().astimezone(UTC).isoformat(timespec="microseconds")
-        answer = None if complied is None else int(complied)
+        answer = None if complied is None else int(complied)  # whether `person` followed `strategy`
         with self.transaction():
             row = (str(uuid.uuid4()), self._robot, at, kind, person, strategy, answer, text)
             self._newest = self._write(ADD, row)
@@ -156,11 +152,15 @@ class Store:
                         with suppress(sqlite3.Error):
                             self._file.db.rollback()  # after a commit: nothing
 
-    def events(self, *kinds: str, after: int = 0) -> Iterator[Event]:
+    @overload
+    def events(self, *kinds: str, after: int = 0) -> Iterator[Event[EventRecord]]: ...
+    @overload
+    def events(self, *kinds: type[R], after: int = 0) -> Iterator[Event[R]]: ...
+    def events(self, *kinds: type[EventRecord] | str, after: int = 0) -> Iterator[Event[Any]]:
         """Yield the events of these kinds (of all, if none is named) with seq > `after`, by seq.
 
-        They are those logged when the iteration begins; appending meanwhile is allowed. One that
-        cannot be read is left out, and `aside` says so.
+        A kind is named by its record. They are those logged when the iteration begins; appending
+        meanwhile is allowed. One that cannot be read is left out, and `aside` says so.
         """
         newest = self._rows("SELECT coalesce(max(seq), 0) FROM event")
         until = newest[0][0] if newest else 0
@@ -169,19 +169,23 @@ class Store:
         low = max(after, 0)
         while low < until:
             high = min(low + WINDOW, until)
-            rows = self._rows(sql, low, high, *kinds)
+            rows = self._rows(sql, low, high, *map(name_of, kinds))
             yield from self._events(rows)
             # a damaged seq may lie far beyond all others
             low = high if rows else self._rows(NEXT, high, high)[0][0]
 
-    def last(self, kind: str) -> Event | None:
+    @overload
+    def last(self, kind: str) -> Event[EventRecord] | None: ...
+    @overload
+    def last(self, kind: type[R]) -> Event[R] | None: ...
+    def last(self, kind: type[EventRecord] | str) -> Event[Any] | None:
         """Return the newest event of a kind that can be read."""
         sql = f"{READ} WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
-        rows = self._rows(sql, kind, LARGEST_SEQ)
+        rows = self._rows(sql, name_of(kind), LARGEST_SEQ)
         while rows:
             if found := list(self._events(rows)):
                 return found[0]
-            rows = self._rows(sql, kind, rows[0][0])
+            rows = self._rows(sql, name_of(kind), rows[0][0])
         return None
 
     def kinds(self) -> dict[str, int]:
@@ -189,7 +193,7 @@ class Store:
         rows = self._rows("SELECT kind, count(*) FROM event GROUP BY kind ORDER BY kind")
         return {kind if isinstance(kind, str) else repr(kind): count for kind, count in rows}
 
-    def set_aside(self, event: Event, why: str) -> None:
+    def set_aside(self, event: Event[EventRecord], why: str) -> None:
         """Say of an event that it makes no sense where it stands, so that it is left out."""
         self.aside.setdefault(event.seq, left_out(event.seq, event.kind, why))
 
@@ -208,7 +212,7 @@ class Store:
         rows = self._rows(*responses_among(of, but))
         return {(person, strategy): (yes, no) for person, strategy, yes, no in rows}
 
-    def answers(self, person: str) -> Iterator[Event]:
+    def answers(self, person: str) -> Iterator[Event[EventRecord]]:
         """Yield every response of one person, also those that do not hold, by seq."""
         sql = f"{READ} WHERE complied IS NOT NULL AND person = ? ORDER BY seq"
         return self._events(self._rows(sql, person))
@@ -220,7 +224,7 @@ class Store:
     def names(self) -> dict[str, str]:
         """Return the name of every person who has one, by id."""
         rows = self._rows("SELECT person, name FROM name ORDER BY person")
-        return {person: name for person, name in rows if _are_text(person, name)}
+        return {person: name for person, name in rows if are_text(person, name)}
 
     def rename(self, person: str, name: str) -> None:
         """Give a person a name, and log that ("renamed"), but not the name.
@@ -235,12 +239,12 @@ class Store:
             if self.names().get(person) != name:
                 self._write("UPDATE speech SET pronunciation = NULL WHERE person = ?", (person,))
             self._write("INSERT OR REPLACE INTO name VALUES (?, ?)", (person, name))
-            self.append("renamed", {}, person=person)
+            self.append(Renamed(), person=person)
 
     def pronunciations(self) -> dict[str, str]:
         """Return how the names of people are pronounced, by id, of those who have that noted."""
         rows = self._rows("SELECT person, pronunciation FROM speech ORDER BY person")
-        return {person: phones for person, phones in rows if _are_text(person, phones)}
+        return {person: phones for person, phones in rows if are_text(person, phones)}
 
     def pronounce(self, person: str, phones: str | None) -> None:
         """Note how a person's name is pronounced (None: no more), and log that, but not how.
@@ -270,7 +274,7 @@ class Store:
         with self.transaction():
             self._write("INSERT OR IGNORE INTO speech (person) VALUES (?)", (person,))
             self._write(f"UPDATE speech SET {what} = ? WHERE person = ?", (value, person))  # noqa: S608
-            self.append("speech noted", {"what": what}, person=person)
+            self.append(SpeechNoted(what=what), person=person)
 
     def forget(self, person: str, eraser: NameEraser | None = None) -> tuple[bool, int]:
         """Delete a person's name, how it is said, and how they like to be spoken to.
@@ -278,7 +282,7 @@ class Store:
         What they did stays, under their id. An `eraser` takes the name from the words in the log.
 
         Returns:
-            Whether there was anything to forget, and how many events were changed.
+            Whether there was anything to forget, and in how many events.
         """
         with self.transaction():
             there = any(
@@ -289,7 +293,7 @@ class Store:
                 self._write(f"DELETE FROM {table} WHERE person = ?", (person,))  # noqa: S608
             changed = self._erase(eraser) if eraser else 0
             if there or changed:
-                self.append("forgotten", {"texts": changed} if changed else {}, person=person)
+                self.append(PersonForgotten(texts=changed), person=person)
         if eraser:
             with self._lock, self._file.in_words():
                 self._file.compact()
@@ -345,7 +349,7 @@ class Store:
         if lost := self._lost():
             self.notices.append(lost_words(*lost))
             if self.writable:
-                self.append(LOST, {"first": lost[0], "last": lost[1]})
+                self.append(EventsLost(first=lost[0], last=lost[1]))
 
     def _lost(self) -> tuple[int, int] | None:
         """Return the first and the last of the newest events that were kept and are gone."""
@@ -382,7 +386,7 @@ class Store:
         with self._file.in_words():
             return db.execute(sql, values).lastrowid or 0
 
-    def _events(self, rows: Iterable[Sequence[Any]]) -> Iterator[Event]:
+    def _events(self, rows: Iterable[Sequence[Any]]) -> Iterator[Event[EventRecord]]:
         """Yield the events of rows; of an answer whose body cannot be read, the answer stays."""
         for row in rows:
             try:
@@ -393,8 +397,3 @@ class Store:
                 self.aside.setdefault(row[0], left_out(row[0], row[4], str(bad), rest))
                 if stays:
                     yield stays
-
-
-def _are_text(*words: object) -> bool:
-    """Say whether all of these are texts that can be shown."""
-    return all(isinstance(word, str) and word.isprintable() for word in words)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.reading import plain
@@ -320,12 +321,10 @@ class Workspace:
 
     def game_seed(self, seed: int | None) -> int:
         """Return a seed: the given one, or one that no game has had."""
-        from tangy_tui.interaction import facilitation
-
         if seed is not None:
             return seed
-        games = self.store.events(facilitation.BEGUN)
-        return 1 + max((int(game.body.get("seed", 0)) for game in games), default=0)
+        games = self.store.events(GameBeginning)
+        return 1 + max((game.record.seed for game in games), default=0)
 
     def _facilitation(self, world: World, policy: Policy, seed: int, asks: bool) -> Facilitation:
         from tangy_tui.interaction.facilitation import Facilitation

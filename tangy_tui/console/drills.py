@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tangy_profiles.drill_sheet import Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_tui.app.command_grammar import ANSWERS, Leave, read_teaching
@@ -11,7 +12,6 @@ from tangy_tui.language.words import words_of
 from tangy_tui.learning.verification import StopCommand
 from tangy_tui.monitoring.drill import Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round
-from tangy_tui.monitoring.drill_sheet import Sheet
 from tangy_tui.text.drills import (
     HELP,
     NOTHING_MOVES,

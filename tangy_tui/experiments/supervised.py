@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -19,12 +19,16 @@ from tangy_profiles.faults import FaultBook
 from tangy_profiles.person import Person, load_people
 from tangy_profiles.robot import Robot, load_robot
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+)
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments.classroom import Course, activity_of, learnt, taught
 from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.persuasion import Persuasion
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP
 from tangy_tui.learning.online_learning import OnlineLearning
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import expected_effects
@@ -101,18 +105,10 @@ def supervised(course: Course) -> Iterator[Supervised]:
 
 def keep(store: Store, shown: Demonstration) -> None:
     """Write a demonstration into a log, as if it had been given in the program."""
-    name = {"demonstration": shown.id}
-    about = {
-        "activity": shown.activity,
-        "teacher": shown.teacher,
-        "seed": shown.seed,
-        "people": list(shown.people),
-        "guided": shown.guided,
-    }
-    store.append(BEGUN, {**name, **about})
+    store.append(DemonstrationBegun.of_shown(shown))
     for step in shown.steps:
-        store.append(STEP, {**name, **replace(step, id=0).to_json()})
-    store.append(FINISHED, name)
+        store.append(DemonstrationStep(demonstration=shown.id, step=step))
+    store.append(DemonstrationFinished(demonstration=shown.id))
 
 
 def play(

@@ -13,10 +13,11 @@ from uuid import uuid4
 
 from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.demonstration import Step
+from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
+from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.person import Person
 from tangy_profiles.state import ActivityState, Outcome, Response
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -38,11 +39,6 @@ from tangy_tui.learning.verification import Verifier
 from tangy_tui.world import World
 
 _LOG = logging.getLogger(__name__)
-
-BEGUN = "game begun"
-STEP = "game step"
-RESPONSE = "response"
-ENDED = "game ended"
 
 NOT_DONE = "(it could not be carried out)"
 
@@ -138,16 +134,15 @@ class Facilitation:
         self.question = None
         self._refused = None
         self._store.append(
-            BEGUN,
-            {
-                "game": self._game,
-                "number": self.games,
-                "activity": self._activity.name,
-                "policy": self.policy.digest,
-                "seed": self._seed,
-                "people": list(self.world.people),
-                "world": self.world.played_in,
-            },
+            GameBeginning(
+                game=self._game,
+                number=self.games,
+                activity=self._activity.name,
+                policy=self.policy.digest,
+                seed=self._seed,
+                people=tuple(self.world.people),
+                world=self.world.played_in,
+            )
         )
         return [GameBegun(self._game, self.games, state)]
 
@@ -329,33 +324,31 @@ class Facilitation:
         """Log a step and how a person responded; return how the game ended, if it has."""
         action, outcome, choice = acted.action, acted.outcome, acted.choice
         self._store.append(
-            STEP,
-            {
-                "game": self._game,
-                "behaviour": action.behaviour.name,
-                "target": action.target,
-                "strategy": action.strategy,
-                "share": acted.decision.share,
-                "teacher": teacher,
-                "draws": choice and dict(choice.draws),
-                "numbers": list(outcome.numbers),
-                "completed": outcome.completed,
-                "seconds": outcome.seconds,
-                "state": acted.state.to_json(),
-                "after": acted.after.to_json(),
-            },
+            GameStep(
+                game=self._game,
+                behaviour=action.behaviour.name,
+                target=action.target,
+                strategy=action.strategy,
+                share=acted.decision.share,
+                teacher=teacher,
+                draws=choice.draws if choice else None,
+                numbers=outcome.numbers,
+                completed=outcome.completed,
+                seconds=outcome.seconds,
+                state=acted.state,
+                after=acted.after,
+            )
         )
         if outcome.response is not None:
             self._log_response(outcome.response)
         elif choice is not None and outcome.completed:  # what they did may be known later
-            body = {"game": self._game}
-            self._store.append(AWAITED, body, person=choice.person, strategy=choice.strategy)
+            awaited = ResponseAwaited(game=self._game)
+            self._store.append(awaited, person=choice.person, strategy=choice.strategy)
         return self._end(None) if self.world.over and not self.looked_over else None
 
     def _log_response(self, response: Response) -> None:
         self._store.append(
-            RESPONSE,
-            {"game": self._game, "followed": response.followed, "seconds": response.seconds},
+            ResponseGiven(game=self._game, followed=response.followed, seconds=response.seconds),
             person=response.person,
             strategy=response.strategy,
             complied=response.complied,
@@ -363,5 +356,5 @@ class Facilitation:
 
     def _end(self, reason: str | None) -> GameEnded:
         self.over = True
-        self._store.append(ENDED, {"game": self._game, "steps": self.steps, "stopped": reason})
+        self._store.append(GameEnding(game=self._game, steps=self.steps, stopped=reason))
         return GameEnded(self._game, self.steps, reason)

@@ -9,20 +9,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import TypeVar
 
 from tangy_profiles.errors import TangyError
-from tangy_profiles.game_world import SIMULATED, GameWorld, game_world
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_world import SIMULATED, GameWorld
+from tangy_profiles.people_records import (
+    ChangeTakenBack,
+    FeedbackGiven,
+    MethodChosen,
+    ResponseAwaited,
+    ResponseGiven,
+    ResponseVoided,
+    StrategySwitched,
+)
 from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.reading import plain
-from tangy_profiles.store import TAKEN_BACK, VOID, Event, Store
+from tangy_profiles.store import Event, Store
 
-AWAITED = "response awaited"
-"""A request was put to a person and it is not known yet what they did (written by the game)."""
-FEEDBACK = "feedback"
-SWITCHED = "strategy switched"
-METHOD = "method chosen"
-CHANGES = (FEEDBACK, VOID, SWITCHED, METHOD)
+CHANGES = (FeedbackGiven, ResponseVoided, StrategySwitched, MethodChosen)
 """What can be taken back."""
+C = TypeVar("C", StrategySwitched, MethodChosen)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +53,7 @@ class FeedbackEntry:
     void: bool
     why: str
     settled: bool = False
-    world: str | None = None
+    world: GameWorld | None = None
     """The world that it names itself, where it belongs to no game."""
 
     @property
@@ -77,13 +84,13 @@ class Feedback:
     def names_worlds(self) -> bool:
         """Whether staff said something without a game that belongs to another world."""
         return any(
-            game_world(event.body.get("world")) not in (None, SIMULATED)
-            for event in self.store.events(FEEDBACK)
+            event.record.world not in (None, SIMULATED)
+            for event in self.store.events(FeedbackGiven)
         )
 
     def history(self, person: str) -> list[FeedbackEntry]:
         """Return everything a person was asked to do with a strategy, in the order of the log."""
-        awaited = (e for e in self.store.events(AWAITED) if e.person == person)
+        awaited = (e for e in self.store.events(ResponseAwaited) if e.person == person)
         found = sorted([*self.store.answers(person), *awaited], key=lambda event: event.seq)
         voids, back = self._gone()
         times = {event.uuid: event.at for event in found}
@@ -113,7 +120,7 @@ class Feedback:
         Raises:
             TangyError: the request was answered already, or was another one.
         """
-        body: dict[str, str | None] = {"of": None, "game": None, "world": self._world}
+        given = FeedbackGiven(world=self._world)
         if of is not None:
             request = self._at(person, of)
             if request.strategy != strategy:
@@ -124,8 +131,8 @@ class Feedback:
                     "That request has its answer already, and none counts twice: "
                     "void the answer first if it is wrong."
                 )
-            body = {"of": request.request, "game": request.game, "world": request.world}
-        seq = self.store.append(FEEDBACK, body, person=person, strategy=strategy, complied=complied)
+            given = FeedbackGiven(of=request.request, game=request.game, world=request.world)
+        seq = self.store.append(given, person=person, strategy=strategy, complied=complied)
         return self._at(person, seq)
 
     def void(self, person: str, seq: int, why: str = "") -> FeedbackEntry:
@@ -139,11 +146,11 @@ class Feedback:
             raise TangyError("That request has no response yet that could be void.")
         if entry.void:
             raise TangyError("That response is void already.")
-        body = {"of": entry.uuid, "why": why}
-        self.store.append(VOID, body, person=person, strategy=entry.strategy)
+        void = ResponseVoided(of=entry.uuid, why=why)
+        self.store.append(void, person=person, strategy=entry.strategy)
         return self._at(person, seq)
 
-    def last_change(self, person: str | None = None) -> Event | None:
+    def last_change(self, person: str | None = None) -> Event[EventRecord] | None:
         """Return what `undo` would take back: the last change (of one person) that still holds."""
         back = self._back()
         found = None
@@ -152,7 +159,7 @@ class Feedback:
                 found = event
         return found
 
-    def undo(self, person: str | None = None) -> Event:
+    def undo(self, person: str | None = None) -> Event[EventRecord]:
         """Take back the last change that holds, of one person or of anybody, and return it.
 
         Raises:
@@ -161,16 +168,16 @@ class Feedback:
         change = self.last_change(person)
         if change is None:
             raise TangyError("There is nothing to take back.")
-        body = {"of": change.uuid, "what": change.kind}
-        self.store.append(TAKEN_BACK, body, person=change.person, strategy=change.strategy)
+        back = ChangeTakenBack(of=change.uuid, what=change.kind)
+        self.store.append(back, person=change.person, strategy=change.strategy)
         return change
 
     def off(self, person: str) -> frozenset[str]:
         """Return the strategies that are switched off for a person."""
         off: set[str] = set()
-        for event in self._holding(SWITCHED, person):
+        for event in self._holding(StrategySwitched, person):
             if event.strategy is not None:
-                (off.discard if event.body.get("on") else off.add)(event.strategy)
+                (off.discard if event.record.on else off.add)(event.strategy)
         return frozenset(off)
 
     def switch(self, person: str, strategy: str, on: bool, among: Iterable[str]) -> None:
@@ -191,14 +198,13 @@ class Feedback:
             raise TangyError(plain(f"{strategy} is switched {state} already."))
         if not on and not set(among) - off - {strategy}:
             raise TangyError(plain(f"{strategy} is the last one left: one must stay on."))
-        self.store.append(SWITCHED, {"on": on}, person=person, strategy=strategy)
+        self.store.append(StrategySwitched(on=on), person=person, strategy=strategy)
 
     def method(self, person: str) -> PersuasionConfig | None:
         """Return the method that was chosen for a person; None: the activity's."""
         chosen = None
-        for event in self._holding(METHOD, person):
-            body = event.body.get("chosen")
-            chosen = PersuasionConfig.from_json(body) if isinstance(body, dict) else None
+        for event in self._holding(MethodChosen, person):
+            chosen = event.record.chosen
         return chosen
 
     def choose_method(self, person: str, chosen: PersuasionConfig | None) -> None:
@@ -209,8 +215,7 @@ class Feedback:
         """
         if chosen == self.method(person):
             raise TangyError("That is the method already.")
-        body = {"chosen": chosen and chosen.to_json()}
-        self.store.append(METHOD, body, person=person)
+        self.store.append(MethodChosen(chosen=chosen), person=person)
 
     def _at(self, person: str, seq: int) -> FeedbackEntry:
         for entry in self.history(person):
@@ -218,21 +223,21 @@ class Feedback:
                 return entry
         raise TangyError(plain(f"Event {seq} is not a request to {person}, nor a response."))
 
-    def _holding(self, kind: str, person: str) -> Iterator[Event]:
+    def _holding(self, kind: type[C], person: str) -> Iterator[Event[C]]:
         """Yield a person's changes of one kind that were not taken back."""
         events = [event for event in self.store.events(kind) if event.person == person]
         back = self._back() if events else frozenset()
         return (event for event in events if event.uuid not in back)
 
     def _back(self) -> frozenset[str]:
-        return frozenset(str(event.body.get("of")) for event in self.store.events(TAKEN_BACK))
+        return frozenset(event.record.of for event in self.store.events(ChangeTakenBack))
 
     def _gone(self) -> tuple[dict[str, str], frozenset[str]]:
         """Return what is void, with the reasons, and what was taken back, by uuid."""
         back = self._back()
         voids = {
-            str(event.body.get("of")): str(event.body.get("why", ""))
-            for event in self.store.events(VOID)
+            event.record.of: event.record.why
+            for event in self.store.events(ResponseVoided)
             if event.uuid not in back
         }
         return voids, back
@@ -240,25 +245,29 @@ class Feedback:
 
 def _entry(
     number: int,
-    event: Event,
+    event: Event[EventRecord],
     times: dict[str, str],
     voids: dict[str, str],
     back: frozenset[str],
 ) -> FeedbackEntry:
-    late = event.kind == FEEDBACK
-    request = str(event.body.get("of") or event.uuid) if late else event.uuid
-    game = event.body.get("game")
+    request, game, world = event.uuid, None, None
+    match event.record:
+        case FeedbackGiven() as given:
+            request, game = given.of or event.uuid, given.game
+            world = given.world if game is None else None
+        case (ResponseGiven() | ResponseAwaited()) as one:
+            game = one.game
     return FeedbackEntry(
         number=number,
         seq=event.seq,
         uuid=event.uuid,
         request=request,
         at=datetime.fromisoformat(times.get(request, event.at)),
-        game=str(game) if game is not None else None,
+        game=game,
         strategy=event.strategy or "",
         complied=event.complied,
-        late=late,
+        late=isinstance(event.record, FeedbackGiven),
         void=event.uuid in voids or event.uuid in back,
         why=voids.get(event.uuid, "taken back" if event.uuid in back else ""),
-        world=None if game is not None else game_world(event.body.get("world")),
+        world=world,
     )

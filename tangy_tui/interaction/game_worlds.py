@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from datetime import datetime, timedelta
 
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import GameBeginning, GameStep, GameWorldSet
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED, GameWorld, game_world
 from tangy_profiles.store import Event, Store
-
-BEGUN, STEP = "game begun", "game step"
-SET = "game world set"
-"""The kind of event with which staff say in which world a game was played."""
 
 
 class GameWorlds:
@@ -25,18 +23,17 @@ class GameWorlds:
     @property
     def all(self) -> Mapping[str, GameWorld]:
         """The world of every game, by its id, in the order of the log."""
-        unmarked: dict[str, Event] = {}
+        unmarked: dict[str, Event[EventRecord]] = {}
         said: dict[str, GameWorld] = {}
-        for event in self._store.events(BEGUN, SET, after=self._read):
+        for event in self._store.events(GameBeginning, GameWorldSet, after=self._read):
             self._read = event.seq
-            game = str(event.body.get("game"))
-            world = game_world(event.body.get("world"))
-            if event.kind == SET:
-                said |= {game: world} if world is not None else {}
-                continue
-            self._worlds[game] = world or SIMULATED
-            if world is None and "world" not in event.body:
-                unmarked[game] = event
+            match event.record:
+                case GameWorldSet(game=game, world=named):
+                    said[game] = named
+                case GameBeginning(game=game, world=world):
+                    self._worlds[game] = world or SIMULATED
+                    if world is None:
+                        unmarked[game] = event
         if unmarked:
             self._worlds.update(_told_by_time(self._store, unmarked))
         self._worlds.update(said)
@@ -51,7 +48,7 @@ class GameWorlds:
             by: who says so.
         """
         if self.all.get(game) != world:
-            self._store.append(SET, {"game": game, "world": world, "by": by})
+            self._store.append(GameWorldSet(game=game, world=world, by=by))
 
     @property
     def last(self) -> GameWorld:
@@ -68,7 +65,7 @@ class GameWorlds:
         return self.all.get(str(game)) or game_world(said) or SIMULATED
 
 
-def _told_by_time(store: Store, begun: Mapping[str, Event]) -> dict[str, GameWorld]:
+def _told_by_time(store: Store, begun: Mapping[str, Event[EventRecord]]) -> dict[str, GameWorld]:
     """Tell the world of games of before worlds were logged, by how long their calls took.
 
     A simulated call always takes the same time, and a robot's is measured. A game that was
@@ -77,15 +74,14 @@ def _told_by_time(store: Store, begun: Mapping[str, Event]) -> dict[str, GameWor
     calls: dict[str, set[float]] = {game: set() for game in begun}
     lasted = dict.fromkeys(begun, 0.0)
     until = {game: event.at for game, event in begun.items()}
-    for event in store.events(STEP, after=min(event.seq for event in begun.values())):
-        game = str(event.body.get("game"))
-        seconds = event.body.get("seconds")
-        if game not in begun or not isinstance(seconds, int | float):
+    for done in store.events(GameStep, after=min(event.seq for event in begun.values())):
+        step, game = done.record, done.record.game
+        if game not in begun or step.seconds is None:
             continue
-        lasted[game] += seconds
-        until[game] = event.at
-        if event.body.get("numbers") and event.body.get("target") is None:
-            calls[game].add(round(seconds, 3))
+        lasted[game] += step.seconds
+        until[game] = done.at
+        if step.numbers and step.target is None:
+            calls[game].add(round(step.seconds, 3))
     found: dict[str, GameWorld] = {}
     for game, event in begun.items():
         took = datetime.fromisoformat(until[game]) - datetime.fromisoformat(event.at)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, leading, probability_best, settled
+from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.person import Person
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import BEGUN
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.memory import PersonModel, PersonModels
 
@@ -66,12 +66,13 @@ def read_records(store: Store, memory: PersonModels, people: Iterable[Person]) -
     responses = memory.responses()
     begun: dict[str, datetime] = {}
     present: dict[str, datetime] = {}
-    for event in store.events(BEGUN):
-        if not memory.is_of_this_world(str(event.body.get("game"))):
+    for event in store.events(GameBeginning):
+        game = event.record
+        if not memory.is_of_this_world(game.game):
             continue
         at = datetime.fromisoformat(event.at)
-        begun[str(event.body.get("game"))] = at
-        present.update(dict.fromkeys(map(str, event.body.get("people", ())), at))
+        begun[game.game] = at
+        present.update(dict.fromkeys(game.people, at))
     return [
         _record(person, memory, memory.recall(person.id, responses), begun, present)
         for person in people

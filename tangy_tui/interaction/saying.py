@@ -5,8 +5,10 @@ from __future__ import annotations
 from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
-from tangy_profiles.store import VOID, Event
-from tangy_tui.interaction.feedback import FEEDBACK, METHOD, FeedbackEntry
+from tangy_profiles.events import EventRecord
+from tangy_profiles.people_records import FeedbackGiven, ResponseVoided, StrategySwitched
+from tangy_profiles.store import Event
+from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 
 SELDOM = 0.5
@@ -91,16 +93,18 @@ def entry_words(entry: FeedbackEntry) -> str:
     return words
 
 
-def change_words(change: Event) -> str:
+def change_words(change: Event[EventRecord]) -> str:
     """Say what a change was that can be taken back."""
-    if change.kind == METHOD:
-        return "the method that was chosen"
-    if change.kind == FEEDBACK:
-        did = "complied" if change.complied else "did not comply"
-        return f"the late response: {change.strategy}, {did}"
-    if change.kind == VOID:
-        return f"that a response to {change.strategy} is void"
-    return f"that {change.strategy} was switched {'on' if change.body.get('on') else 'off'}"
+    match change.record:
+        case FeedbackGiven():
+            did = "complied" if change.complied else "did not comply"
+            return f"the late response: {change.strategy}, {did}"
+        case ResponseVoided():
+            return f"that a response to {change.strategy} is void"
+        case StrategySwitched(on=on):
+            return f"that {change.strategy} was switched {'on' if on else 'off'}"
+        case _:
+            return "the method that was chosen"
 
 
 def ago(then: datetime, now: datetime) -> str:

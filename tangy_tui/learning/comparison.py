@@ -40,7 +40,7 @@ def compare(activity: Activity, a: Policy, b: Policy) -> list[SituationCompariso
 
 def choices(store: Store, activity: Activity) -> list[str]:
     """Return what can be compared: names of policies, the latest first, and of teachers."""
-    names = [str(kept["name"]) for kept in reversed(kept_policies(store, activity.name))]
+    names = [kept.name for kept in reversed(kept_policies(store, activity.name))]
     teachers = _teachers(read_library(store, activity.name).finished)
     return list(dict.fromkeys([*names, *teachers]))
 
@@ -58,11 +58,11 @@ def find_policy(store: Store, activity: Activity, wanted: str) -> tuple[Policy, 
     """
     kind, _, name = wanted.partition(":") if ":" in wanted else ("", "", wanted)
     kept = kept_policies(store, activity.name)
-    known = {str(one["name"]) for one in kept}
+    known = {one.name for one in kept}
     if kind != "teacher" and (
         place_of(name) is not None
         or name in known
-        or any(len(name) >= 4 and one["digest"].startswith(name) for one in kept)
+        or any(len(name) >= 4 and one.digest.startswith(name) for one in kept)
     ):
         return load_policy(store, activity, name)
     library = read_library(store, activity.name)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.demonstration import Resolution as Resolution
 from tangy_profiles.state import Situation
 
 
@@ -23,40 +23,6 @@ class Shown:
     teacher: str
     number: int
     step: Step
-
-
-@dataclass(frozen=True, slots=True)
-class Resolution:
-    """What a teacher said of a conflict: the right answers, and the steps that are wrong by it.
-
-    Only the steps that were looked at are set aside: whoever shows another answer later makes a
-    conflict again. An answer in `right` that nobody demonstrated is learnt all the same.
-    """
-
-    situation: Situation
-    right: tuple[str, ...]
-    wrong: frozenset[int]
-
-    def sets_aside(self, step: Step) -> bool:
-        """Say whether a step is not to be learnt from."""
-        return (
-            step.state.situation == self.situation
-            and step.behaviour not in self.right
-            and step.id in self.wrong
-        )
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the resolution as the log keeps it."""
-        return {
-            "situation": list(self.situation),
-            "right": list(self.right),
-            "wrong": sorted(self.wrong),
-        }
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> Resolution:
-        """Read a resolution that `to_json` wrote."""
-        return cls(Situation(*body["situation"]), tuple(body["right"]), frozenset(body["wrong"]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ from typing import Any
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import DemonstrationStep
 from tangy_tui.learning.coverage import coverage
-from tangy_tui.learning.library import STEP, Library, LibraryEntry
+from tangy_tui.learning.library import Library, LibraryEntry
 from tangy_tui.learning.quality import quality_notes
 
 
@@ -87,5 +88,5 @@ def list_rows(activity: Activity, library: Library) -> list[ListRow]:
 def heard_words(store: Store, shown: Demonstration) -> dict[int, str]:
     """Return the words in which each step was commanded, where they are known, by its number."""
     numbers = {step.id: number for number, step in enumerate(shown.steps, 1) if step.id}
-    events = (event for event in store.events(STEP) if event.seq in numbers)
-    return {numbers[e.seq]: str(e.body["heard"]) for e in events if e.body.get("heard")}
+    events = (event for event in store.events(DemonstrationStep) if event.seq in numbers)
+    return {numbers[e.seq]: e.record.heard for e in events if e.record.heard}

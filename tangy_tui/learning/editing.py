@@ -12,11 +12,19 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    Deletion,
+    DemonstrationsEdited,
+    DemonstrationsEditRedone,
+    DemonstrationsEditUndone,
+    Division,
+    EditDone,
+    Merger,
+    Restoration,
+    Settlement,
+)
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.library import (
-    EDIT_REDONE,
-    EDIT_UNDONE,
-    EDITED,
     Edit,
     Library,
     LibraryEntry,
@@ -60,7 +68,7 @@ class Editor:
             if entry.hidden:
                 name = self.library.name(entry.demonstration.id)
                 raise NotPossible(f"{name} is not in use: {entry.hidden}.")
-        return self._edit("delete", entries)
+        return self._edit(Deletion(ids=_ids(entries)))
 
     def restore(self, *wanted: str) -> Edit:
         """Take demonstrations into use again that were deleted."""
@@ -81,7 +89,7 @@ class Editor:
                 )
             if not entry.hidden:
                 raise NotPossible(f"{name} is in use already.")
-        return self._edit("restore", entries)
+        return self._edit(Restoration(ids=_ids(entries)))
 
     def merge(self, *wanted: str) -> Edit:
         """Make one demonstration of several, in the given order; they give way to it."""
@@ -89,7 +97,7 @@ class Editor:
         self._need_use(entries)
         if len(entries) < 2:
             raise NotPossible("Merging needs two demonstrations or more.")
-        return self._edit("merge", entries, made=[self._make_id()])
+        return self._edit(Merger(ids=_ids(entries), made=(self._make_id(),)))
 
     def split(self, wanted: str, kept: int) -> Edit:
         """Make two demonstrations of one: the first `kept` steps, and those after them."""
@@ -102,8 +110,9 @@ class Editor:
             raise NotPossible(
                 f"{name} has {steps} steps and cannot be split after {kept}: {choice}."
             )
-        made = [self._make_id(), self._make_id()]
-        return self._edit("split", entries, kept=kept, made=made)
+        whole = (entries[0].demonstration.id,)
+        made = (self._make_id(), self._make_id())
+        return self._edit(Division(ids=whole, made=made, kept=kept))
 
     def resolve(self, conflict: Conflict, *right: str) -> Edit:
         """Say which answers to a situation are right, shown or not; the other steps are wrong."""
@@ -111,18 +120,15 @@ class Editor:
             raise NotPossible("Say which answer is right.")
         for behaviour in right:
             self.activity.behaviour(behaviour)
-        body = conflict.resolved(*right).to_json()
-        seq = self._store.append(
-            EDITED, {"activity": self.activity.name, "what": "resolve", **body}
-        )
-        return self._made(seq)
+        return self._edit(Settlement(resolution=conflict.resolved(*right)))
 
     def undo(self) -> Edit:
         """Take back the last edit."""
         done = self.library.done
         if not done:
             raise NotPossible("There is no change of the demonstrations to undo.")
-        self._store.append(EDIT_UNDONE, {"activity": self.activity.name, "edit": done[-1].seq})
+        undo = DemonstrationsEditUndone(activity=self.activity.name, edit=done[-1].seq)
+        self._store.append(undo)
         return done[-1]
 
     def redo(self) -> Edit:
@@ -130,7 +136,8 @@ class Editor:
         undone = self.library.undone
         if not undone:
             raise NotPossible("There is no change of the demonstrations to do again.")
-        self._store.append(EDIT_REDONE, {"activity": self.activity.name, "edit": undone[-1].seq})
+        redo = DemonstrationsEditRedone(activity=self.activity.name, edit=undone[-1].seq)
+        self._store.append(redo)
         return undone[-1]
 
     def _choose(self, wanted: Sequence[str]) -> list[LibraryEntry]:
@@ -152,13 +159,13 @@ class Editor:
             if not shown.finished:
                 raise NotPossible(plain(f"{name} by {shown.teacher} is not finished yet."))
 
-    def _edit(self, what: str, entries: Sequence[LibraryEntry], **more: object) -> Edit:
-        ids = [entry.demonstration.id for entry in entries]
-        body = {"activity": self.activity.name, "what": what, "ids": ids, **more}
-        return self._made(self._store.append(EDITED, body))
-
-    def _made(self, seq: int) -> Edit:
+    def _edit(self, done: EditDone) -> Edit:
+        seq = self._store.append(DemonstrationsEdited(activity=self.activity.name, edit=done))
         edit = self.library.done[-1]
         if edit.seq != seq:  # one writer, so nobody can come between
             raise NotPossible("The log was changed meanwhile.")
         return edit
+
+
+def _ids(entries: Sequence[LibraryEntry]) -> tuple[str, ...]:
+    return tuple(entry.demonstration.id for entry in entries)

@@ -14,22 +14,9 @@ from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
-from tangy_profiles.state import FRONT, ActivityState
+from tangy_profiles.game_records import Mismatch as Mismatch
+from tangy_profiles.state import FRONT, ActivityState, Variable
 from tangy_tui.learning.conflicts import Resolution, joined
-
-
-@dataclass(frozen=True, slots=True)
-class Mismatch:
-    """A variable that took a value which no demonstration showed after this behaviour."""
-
-    behaviour: str
-    variable: str
-    expected: tuple[str, ...]
-    seen: str
-
-    def __str__(self) -> str:
-        wanted = " or ".join(self.expected) if self.expected else "nothing known"
-        return f"{self.behaviour}: {self.variable} should be {wanted}, is {self.seen}"
 
 
 @dataclass(frozen=True)
@@ -100,7 +87,9 @@ def learn_effects(
     )
 
 
-def transition(before: ActivityState, after: ActivityState, activity: Activity) -> dict[str, str]:
+def transition(
+    before: ActivityState, after: ActivityState, activity: Activity
+) -> dict[Variable, str]:
     """Describe a transition by the variables (`VARIABLES`) that a behaviour can change, in words.
 
     Variables about the person who was attended to are left out when there was none.
@@ -114,7 +103,7 @@ def transition(before: ActivityState, after: ActivityState, activity: Activity) 
         place = "with the person who asked"
     else:
         place = "with somebody else"
-    changes = {"robot's place": place}
+    changes: dict[Variable, str] = {"robot's place": place}
     if before.stage in opening:
         changes["activity"] = "not begun" if after.stage in opening else "begun"
     changes["end"] = "reached" if after.stage in closing else "not reached"

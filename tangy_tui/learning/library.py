@@ -7,29 +7,46 @@ again like typing, the latest first, by events of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, assert_never
 
 from tangy_profiles.activity import Activity
-from tangy_profiles.demonstration import Demonstration, Step
+from tangy_profiles.demonstration import Demonstration, Origin, Step
 from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Event, Store
+from tangy_profiles.teaching_records import (
+    Deletion,
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationsEdited,
+    DemonstrationsEditRedone,
+    DemonstrationsEditUndone,
+    DemonstrationStep,
+    DemonstrationStepRedone,
+    DemonstrationStepUndone,
+    Division,
+    EditDone,
+    Merger,
+    Restoration,
+    Settlement,
+)
 from tangy_tui.learning.conflicts import Conflict, Resolution, find_conflicts, joined
 
 if TYPE_CHECKING:  # home counts demonstrations before anybody needs a forest
     from tangy_tui.learning.effects import Effects
     from tangy_tui.learning.policy import Policy
 
-BEGUN = "demonstration begun"
-STEP = "demonstration step"
-UNDONE = "demonstration step undone"
-REDONE = "demonstration step redone"
-FINISHED = "demonstration finished"
-EDITED = "demonstrations edited"
-EDIT_UNDONE = "demonstrations edit undone"
-EDIT_REDONE = "demonstrations edit redone"
+_STEPS = (
+    DemonstrationBegun,
+    DemonstrationStep,
+    DemonstrationStepUndone,
+    DemonstrationStepRedone,
+    DemonstrationFinished,
+)
+_EDITS = (DemonstrationsEdited, DemonstrationsEditUndone, DemonstrationsEditRedone)
 
 SHORTEST_PREFIX = 3
 """Characters of an id that are enough to name a demonstration, if only one begins so."""
@@ -70,14 +87,13 @@ class Edit:
 
     seq: int
     at: str
-    what: str
-    body: Mapping[str, Any]
+    done: EditDone
     found: Mapping[str, Demonstration] = field(default_factory=dict)
 
     @property
     def ids(self) -> tuple[str, ...]:
         """The demonstrations that it was done to."""
-        return tuple(self.body.get("ids", ()))
+        return () if isinstance(self.done, Settlement) else self.done.ids
 
 
 @dataclass
@@ -104,7 +120,7 @@ class Library:
     @property
     def resolutions(self) -> tuple[Resolution, ...]:
         """What teachers said of conflicts, joined for each situation."""
-        said = (Resolution.from_json(e.body) for e in self.done if e.what == "resolve")
+        said = (e.done.resolution for e in self.done if isinstance(e.done, Settlement))
         return tuple(joined(said).values())
 
     @property
@@ -161,40 +177,44 @@ def read_library(store: Store, activity: str) -> Library:
     An event that makes no sense where it stands, because one before it is damaged, is set aside.
     """
     library = Library(activity)
-    edits: list[tuple[Edit, Event]] = []
+    edits: list[tuple[Edit, Event[EventRecord]]] = []
     made: dict[str, int] = {}
-    for event in store.events(
-        BEGUN, STEP, UNDONE, REDONE, FINISHED, EDITED, EDIT_UNDONE, EDIT_REDONE
-    ):
-        body = event.body
+    for event in store.events(*_STEPS, *_EDITS):
         try:
-            if event.kind == BEGUN:
-                if body["activity"] == activity:
-                    _begin(library, event)
-                    made[str(body["demonstration"])] = event.seq
-            elif event.kind in (STEP, UNDONE, REDONE, FINISHED):
-                entry = library.entries.get(str(body["demonstration"]))
-                if entry is not None:
-                    changed = replace(_stepped(entry, event, store.aside), last=event.at)
-                    library.entries[entry.demonstration.id] = changed
-            elif body["activity"] == activity:
-                if event.kind == EDITED:
-                    edits.append((_edit(library, event), event))
+            match event.record:
+                case DemonstrationBegun(demonstration=id, activity=of) as begun:
+                    if of == activity:
+                        _begin(library, begun, event.at)
+                        made[id] = event.seq
+                case (
+                    DemonstrationStep(demonstration=id)
+                    | DemonstrationStepUndone(demonstration=id)
+                    | DemonstrationStepRedone(demonstration=id)
+                    | DemonstrationFinished(demonstration=id)
+                ):
+                    entry = library.entries.get(id)
+                    if entry is not None:
+                        changed = replace(_stepped(entry, event, store.aside), last=event.at)
+                        library.entries[id] = changed
+                case DemonstrationsEdited(activity=of, edit=done) if of == activity:
+                    edits.append((_edit(library, event, done), event))
                     library.done.append(edits[-1][0])
                     library.undone.clear()
-                    made.update((str(id), event.seq) for id in body.get("made", ()))
-                elif event.kind == EDIT_UNDONE:
-                    library.undone.append(_taken(library.done, event))
-                else:
-                    library.done.append(_taken(library.undone, event))
+                    if isinstance(done, Merger | Division):
+                        made |= dict.fromkeys(done.made, event.seq)
+                case DemonstrationsEditUndone(activity=of, edit=seq) if of == activity:
+                    library.undone.append(_taken(library.done, seq))
+                case DemonstrationsEditRedone(activity=of, edit=seq) if of == activity:
+                    library.done.append(_taken(library.undone, seq))
         except OutOfPlace as why:
             store.set_aside(event, str(why))
     in_force = {edit.seq for edit in library.done}
     for edit, event in edits:
-        if edit.what in ("merge", "split") and not _sources_of(edit) <= library.entries.keys():
+        making = isinstance(edit.done, Merger | Division)
+        if making and not _sources_of(edit) <= library.entries.keys():
             store.set_aside(event, "a demonstration that it was done to is not there")
         else:
-            _APPLY[edit.what](library, edit, edit.seq in in_force)
+            _apply(library, edit, edit.seq in in_force)
     in_order = sorted(library.entries.items(), key=lambda entry: made[entry[0]])
     library.entries = dict(in_order)  # so that nobody's number changes when more is shown
     _replace_repeated(library)
@@ -218,39 +238,39 @@ def effects_of(store: Store, activity: Activity, policy: Policy) -> Effects:
 # ------------------------------------------------------------------------ the chain of steps
 
 
-def _begin(library: Library, event: Event) -> None:
-    body = event.body
-    id = str(body["demonstration"])
+def _begin(library: Library, begun: DemonstrationBegun, at: str) -> None:
+    id = begun.demonstration
     if id in library.entries:
         raise OutOfPlace("a demonstration of this id was begun before")
-    of = tuple(body.get("of", ()))
     steps: tuple[Step, ...] = ()
-    if body.get("origin") == "again" and of[0] in library.entries:
-        steps = library.entries[of[0]].demonstration.steps[: int(body["kept"])]
+    if begun.origin == "again" and begun.of[0] in library.entries:
+        steps = library.entries[begun.of[0]].demonstration.steps[: begun.kept]
     made = Demonstration(
         id,
         library.activity,
-        str(body["teacher"]),
-        int(body["seed"]),
-        tuple(body["people"]),
+        begun.teacher,
+        begun.seed,
+        begun.people,
         steps,
-        origin=body.get("origin", "shown"),
-        of=of,
-        guided=bool(body.get("guided", False)),
+        origin=begun.origin,
+        of=begun.of,
+        guided=begun.guided,
     )
-    library.entries[id] = LibraryEntry(made, event.at, event.at)
+    library.entries[id] = LibraryEntry(made, at, at)
 
 
-def _stepped(entry: LibraryEntry, event: Event, aside: Collection[int]) -> LibraryEntry:
+def _stepped(
+    entry: LibraryEntry, event: Event[EventRecord], aside: Collection[int]
+) -> LibraryEntry:
     """Return a demonstration after one more event; `aside` are the events that are left out."""
     shown = entry.demonstration
-    match event.kind:
-        case "demonstration step":
-            step = Step.from_json(event.body, event.seq, shown.teacher)
+    match event.record:
+        case DemonstrationStep(step=step):
+            step = replace(step, id=event.seq, teacher=shown.teacher)
             return replace(entry, demonstration=shown.with_step(step), undone=())
-        case "demonstration step undone":
-            return _step_undone(entry, event, aside)
-        case "demonstration step redone":
+        case DemonstrationStepUndone(step=number):
+            return _step_undone(entry, number, event.seq, aside)
+        case DemonstrationStepRedone():
             if not entry.undone:
                 raise OutOfPlace("there is no step to do again")
             again = shown.with_step(entry.undone[-1])
@@ -259,12 +279,14 @@ def _stepped(entry: LibraryEntry, event: Event, aside: Collection[int]) -> Libra
             return replace(entry, demonstration=replace(shown, finished=True))
 
 
-def _step_undone(entry: LibraryEntry, event: Event, aside: Collection[int]) -> LibraryEntry:
-    """Take back the step that the event means, whose number tells where others are left out."""
+def _step_undone(
+    entry: LibraryEntry, number: int | None, at: int, aside: Collection[int]
+) -> LibraryEntry:
+    """Take back the step that event `at` means, whose number tells where others are left out."""
     steps = entry.demonstration.steps
-    number = int(event.body.get("step", len(steps)))
+    number = len(steps) if number is None else number
     newest = steps[-1].id if steps else 0
-    if number > len(steps) and any(newest < seq < event.seq for seq in aside):
+    if number > len(steps) and any(newest < seq < at for seq in aside):
         # The one that was taken back is left out itself.
         return replace(entry, undone=(), taken_back=entry.taken_back + 1)
     if not steps or number < 1:
@@ -281,17 +303,16 @@ def _step_undone(entry: LibraryEntry, event: Event, aside: Collection[int]) -> L
 # --------------------------------------------------------------------------------- the edits
 
 
-def _edit(library: Library, event: Event) -> Edit:
-    ids = (str(id) for id in event.body.get("ids", ()))
-    entries = library.entries
-    found = {id: entries[id].demonstration for id in ids if id in entries}
-    return Edit(event.seq, event.at, str(event.body["what"]), event.body, found)
+def _edit(library: Library, event: Event[EventRecord], done: EditDone) -> Edit:
+    edit, entries = Edit(event.seq, event.at, done), library.entries
+    found = {id: entries[id].demonstration for id in edit.ids if id in entries}
+    return replace(edit, found=found)
 
 
-def _taken(edits: list[Edit], event: Event) -> Edit:
+def _taken(edits: list[Edit], seq: int) -> Edit:
     """Take the edit that an undo or a redo means out of those that it can mean."""
     for place, edit in enumerate(edits):
-        if edit.seq == event.body["edit"]:
+        if edit.seq == seq:
             return edits.pop(place)
     raise OutOfPlace("the change that it is about is not there")
 
@@ -312,37 +333,31 @@ def _hide(library: Library, ids: Sequence[str], why: str) -> None:
             library.entries[id] = replace(library.entries[id], hidden=why)
 
 
-def _delete(library: Library, edit: Edit, in_force: bool) -> None:
+def _apply(library: Library, edit: Edit, in_force: bool) -> None:
+    """Do what an edit did; what it made is there even where the edit was undone."""
+    match edit.done:
+        case Deletion():
+            hidden = "deleted"
+        case Restoration():
+            hidden = ""
+        case Settlement():
+            return  # it changes no demonstration; `Library.resolutions` reads it
+        case Merger(made=(id,)):
+            sources = [_as_it_was(library, edit, id) for id in edit.ids]
+            steps = tuple(step for source in sources for step in source.steps)
+            teachers = dict.fromkeys(source.teacher for source in sources)
+            source = replace(sources[0], teacher=" and ".join(teachers))
+            _make(library, edit, id, source, steps, "merged", in_force)
+            hidden = "merged"
+        case Division(made=(first, second), kept=at):
+            source = _as_it_was(library, edit, edit.ids[0])
+            _make(library, edit, first, source, source.steps[:at], "split", in_force)
+            _make(library, edit, second, source, source.steps[at:], "split", in_force)
+            hidden = "split"
+        case forgotten:
+            assert_never(forgotten)
     if in_force:
-        _hide(library, edit.ids, "deleted")
-
-
-def _restore(library: Library, edit: Edit, in_force: bool) -> None:
-    if in_force:
-        _hide(library, edit.ids, "")
-
-
-def _resolve(library: Library, edit: Edit, in_force: bool) -> None:
-    """A resolution changes no demonstration; `Library.resolutions` reads it."""
-
-
-def _merge(library: Library, edit: Edit, in_force: bool) -> None:
-    sources = [_as_it_was(library, edit, id) for id in edit.ids]
-    steps = tuple(step for source in sources for step in source.steps)
-    teachers = dict.fromkeys(source.teacher for source in sources)
-    source = replace(sources[0], teacher=" and ".join(teachers))
-    _make(library, edit, str(edit.body["made"][0]), source, steps, "merged", in_force)
-    if in_force:
-        _hide(library, edit.ids, "merged")
-
-
-def _split(library: Library, edit: Edit, in_force: bool) -> None:
-    source = _as_it_was(library, edit, edit.ids[0])
-    at = int(edit.body["kept"])
-    for id, steps in zip(edit.body["made"], (source.steps[:at], source.steps[at:]), strict=True):
-        _make(library, edit, str(id), source, steps, "split", in_force)
-    if in_force:
-        _hide(library, edit.ids, "split")
+        _hide(library, edit.ids, hidden)
 
 
 def _make(
@@ -351,7 +366,7 @@ def _make(
     id: str,
     source: Demonstration,
     steps: tuple[Step, ...],
-    origin: Any,
+    origin: Origin,
     in_force: bool,
 ) -> None:
     """Add what an edit made; where the edit was undone it stays, hidden, for old policies."""
@@ -360,15 +375,6 @@ def _make(
     )
     hidden = "" if in_force else "undone"
     library.entries[id] = LibraryEntry(made, edit.at, edit.at, hidden=hidden)
-
-
-_APPLY: Mapping[str, Callable[[Library, Edit, bool], None]] = {
-    "delete": _delete,
-    "restore": _restore,
-    "resolve": _resolve,
-    "merge": _merge,
-    "split": _split,
-}
 
 
 STILL_USED = ("", "merged", "split", "shown again")

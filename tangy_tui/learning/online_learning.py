@@ -13,9 +13,14 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+)
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, joined, shown_steps
 from tangy_tui.learning.editing import Editor, new_id
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, Library, read_library
+from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 
@@ -134,20 +139,9 @@ class OnlineLearning:
         made = Demonstration(
             new_id(), self._activity.name, teacher, seed, people, finished=True, origin="asked"
         )
-        name = {"demonstration": made.id}
-        self._store.append(
-            BEGUN,
-            {
-                **name,
-                "activity": made.activity,
-                "teacher": teacher,
-                "seed": seed,
-                "people": list(people),
-                "origin": made.origin,
-            },
-        )
-        id = self._store.append(STEP, {**name, **step.to_json()})
-        self._store.append(FINISHED, name)
+        self._store.append(DemonstrationBegun.of_shown(made))
+        id = self._store.append(DemonstrationStep(demonstration=made.id, step=step))
+        self._store.append(DemonstrationFinished(demonstration=made.id))
         return replace(made, steps=(replace(step, id=id),))
 
 

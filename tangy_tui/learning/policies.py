@@ -6,21 +6,18 @@ when it is loaded, and never used silently if it does not come out as it was.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.conflicts import Resolution
+from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.learning.forest_cache import ForestCache
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policy import SURE, Decision, ForestSettings, Grow, Policy, learn_policy
+from tangy_tui.learning.policy import SURE, Decision, Grow, Policy, learn_policy
 
-POLICY = "policy learnt"
 ASKS = "to ask"
 """What a policy does where it is not sure."""
 GONE = "no situation any more"
@@ -43,25 +40,25 @@ class Change:
 
 def keep_policy(store: Store, policy: Policy) -> None:
     """Log a policy: how to learn it again, and the digest of what that must give."""
-    store.append(POLICY, policy.to_json())
+    store.append(policy.record())
 
 
-def kept_policies(store: Store, activity: str) -> list[Mapping[str, Any]]:
-    """Return what was kept of every policy of an activity, with the time ("at"), oldest first."""
+def kept_policies(store: Store, activity: str) -> list[PolicyLearnt]:
+    """Return what was kept of every policy of an activity, oldest first."""
     return [
-        {**event.body, "at": event.at}
-        for event in store.events(POLICY)
-        if event.body["activity"] == activity
+        replace(event.record, at=event.at)
+        for event in store.events(PolicyLearnt)
+        if event.record.activity == activity
     ]
 
 
-def last_policy(store: Store, activity: str) -> Mapping[str, Any] | None:
-    """Return what was kept of the last policy of an activity (`Policy.to_json`), or None."""
+def last_policy(store: Store, activity: str) -> PolicyLearnt | None:
+    """Return what was kept of the last policy of an activity, or None."""
     kept = kept_policies(store, activity)
     return kept[-1] if kept else None
 
 
-def need_policy(store: Store, activity: Activity, wanted: str = "") -> Mapping[str, Any]:
+def need_policy(store: Store, activity: Activity, wanted: str = "") -> PolicyLearnt:
     """Return what was kept of a policy: of the last one, or of the last one of a name or digest.
 
     `wanted` is `last` or `last~N` (the N-th before it), a name, or how a digest begins (four
@@ -82,11 +79,11 @@ def need_policy(store: Store, activity: Activity, wanted: str = "") -> Mapping[s
             there = "1 policy was" if len(kept) == 1 else f"{len(kept)} policies were"
             raise NoPolicy(f"{wanted}: only {there} learnt.")
         return kept[-1 - place]
-    by_name = [one for one in kept if one["name"] == wanted]
+    by_name = [one for one in kept if one.name == wanted]
     enough = len(wanted) >= 4
-    found = by_name or [one for one in kept if enough and one["digest"].startswith(wanted)]
+    found = by_name or [one for one in kept if enough and one.digest.startswith(wanted)]
     if not found:
-        names = [str(one["name"]) for one in kept]
+        names = [one.name for one in kept]
         raise NoPolicy(plain(f"There is no policy {wanted!r}: {nearest(wanted, names)}"))
     return found[-1]
 
@@ -111,7 +108,7 @@ def check_name(name: str) -> None:
 
 def unused_name(store: Store, policy: Policy) -> Policy:
     """Give a policy that is only named by count a name that no other one has."""
-    taken = {str(k["name"]): str(k["digest"]) for k in kept_policies(store, policy.activity)}
+    taken = {kept.name: kept.digest for kept in kept_policies(store, policy.activity)}
     name, count = policy.name, 1
     while policy.named_by_count and taken.get(name, policy.digest) != policy.digest:
         count += 1
@@ -131,10 +128,10 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
     """
     kept = need_policy(store, activity, wanted)
     entries = read_library(store, activity.name).entries
-    missing = [id for id in kept["demonstrations"] if id not in entries]
+    missing = [id for id in kept.demonstrations if id not in entries]
     if missing:
         raise NoPolicy(
-            f"The policy {kept['name']!r} rests on {len(missing)} demonstrations that are not in "
+            f"The policy {kept.name!r} rests on {len(missing)} demonstrations that are not in "
             "this data folder: run `tangy learn` again."
         )
     cache = ForestCache(store.folder)
@@ -142,26 +139,25 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
     def again(grow: Grow) -> Policy:
         return learn_policy(
             activity,
-            [entries[id].demonstration for id in kept["demonstrations"]],
-            resolutions=[Resolution.from_json(one) for one in kept.get("resolved", ())],
-            settings=ForestSettings(**kept["forest"]),
-            name=str(kept["name"]),
+            [entries[id].demonstration for id in kept.demonstrations],
+            resolutions=kept.resolved,
+            settings=kept.forest,
+            name=kept.name,
             grow=grow,
         )
 
     policy = again(cache.grown)
-    if policy.digest != kept["digest"]:
+    if policy.digest != kept.digest:
         policy = again(cache.afresh)  # what was kept may be wrong; what is learnt again is not
-    return policy, [] if policy.digest == kept["digest"] else _explain(kept, policy)
+    return policy, [] if policy.digest == kept.digest else _explain(kept, policy)
 
 
-def changes(kept: Mapping[str, Any], policy: Policy) -> list[Change]:
+def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:
     """Compare what was kept of a policy with a policy: what it does, or that it asks."""
-    unsure = {tuple(row) for row in kept.get("asks", ())}
     was: dict[Situation, str] = {}
-    for stage, request, user_state, behaviour, share in kept["rows"]:
-        asks = (stage, request, user_state) in unsure or ("asks" not in kept and share < SURE)
-        was[Situation(stage, request, user_state)] = ASKS if asks else behaviour
+    for row in kept.rows:
+        asks = row.share < SURE if kept.asks is None else row.situation in kept.asks
+        was[row.situation] = ASKS if asks else row.behaviour
     situations = dict.fromkeys([*was, *policy.table])
     found = []
     for situation in situations:
@@ -178,8 +174,8 @@ def does(decision: Decision) -> str:
     return decision.behaviour if decision.sure else ASKS
 
 
-def _explain(kept: Mapping[str, Any], policy: Policy) -> list[str]:
-    was, now = dict(kept["versions"]), dict(policy.versions)
+def _explain(kept: PolicyLearnt, policy: Policy) -> list[str]:
+    was, now = dict(kept.versions), dict(policy.versions)
     moved = [f"{part} {was.get(part)} -> {now[part]}" for part in now if was.get(part) != now[part]]
     why = f" ({', '.join(moved)})" if moved else " (its demonstrations have changed since)"
     notices = [f"The policy {policy.name!r} does not come out as it was kept{why}."]

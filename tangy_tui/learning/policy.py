@@ -16,12 +16,14 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import product
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
+from tangy_profiles.teaching_records import ForestSettings as ForestSettings
+from tangy_profiles.teaching_records import LearntRow, PolicyLearnt
 from tangy_tui.learning.conflicts import Resolution, find_conflicts, training_rows
 
 SURE = 0.7
@@ -34,16 +36,6 @@ class NothingToLearnFrom(TangyError):
 
 class NotOfThisActivity(TangyError):
     """A demonstration shows what the activity, as it is now, does not have."""
-
-
-@dataclass(frozen=True, slots=True)
-class ForestSettings:
-    """How the forest is grown: see scikit-learn's RandomForestClassifier."""
-
-    trees: int = 100
-    bootstrap: bool = False
-    min_samples_leaf: int = 1
-    seed: int = 0
 
 
 EXACT = ForestSettings()
@@ -119,27 +111,20 @@ class Policy:
             if self.table[situation].behaviour != behaviour
         }
 
-    def to_json(self) -> dict[str, Any]:
+    def record(self) -> PolicyLearnt:
         """Return what the log keeps: how to learn it again, and what that must give."""
-        return {
-            "name": self.name,
-            "activity": self.activity,
-            "demonstrations": list(self.demonstrations),
-            "forest": asdict(self.settings),
-            "versions": dict(self.versions),
-            "digest": self.digest,
-            "resolved": [resolution.to_json() for resolution in self.resolutions],
-            "rows": [
-                [*situation, decision.behaviour, decision.share]
-                for situation, decision in self.table.items()
-                if decision.seen or decision.right
-            ],
-            "asks": [
-                list(situation)
-                for situation, decision in self.table.items()
-                if (decision.seen or decision.right) and not decision.sure
-            ],
-        }
+        known = {s: one for s, one in self.table.items() if one.seen or one.right}
+        return PolicyLearnt(
+            name=self.name,
+            activity=self.activity,
+            demonstrations=self.demonstrations,
+            forest=self.settings,
+            versions=self.versions,
+            digest=self.digest,
+            resolved=self.resolutions,
+            rows=tuple(LearntRow(*s, one.behaviour, one.share) for s, one in known.items()),
+            asks=tuple(situation for situation, one in known.items() if not one.sure),
+        )
 
 
 def all_situations(activity: Activity) -> Iterator[Situation]:

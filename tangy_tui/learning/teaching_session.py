@@ -18,9 +18,16 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_profiles.process_log import serving
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+    DemonstrationStepRedone,
+    DemonstrationStepUndone,
+)
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.editing import new_id
-from tangy_tui.learning.library import BEGUN, FINISHED, REDONE, STEP, UNDONE, read_library
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
@@ -266,13 +273,15 @@ class TeachingSession:
 
     def _execute(self, verified: Verified) -> list[TeachingEvent]:
         behaviour = verified.behaviour
-        heard = {"heard": verified.heard, "confidence": verified.confidence}
 
         def log(step: Step) -> Step:
-            id = self._store.append(
-                STEP, {"demonstration": self.demonstration.id, **step.to_json(), **heard}
+            shown = DemonstrationStep(
+                demonstration=self.demonstration.id,
+                step=step,
+                heard=verified.heard,
+                confidence=verified.confidence,
             )
-            return replace(step, id=id)
+            return replace(step, id=self._store.append(shown))
 
         events = self._carry_out(behaviour, verified.target, log)
         self._undone = []
@@ -292,7 +301,7 @@ class TeachingSession:
                 self._log_beginning()
                 step = log(Step(behaviour.name, target, before, after, outcome.completed))
                 if finished:
-                    self._store.append(FINISHED, {"demonstration": self.demonstration.id})
+                    self._store.append(DemonstrationFinished(demonstration=self.demonstration.id))
         except BaseException:
             self.world = self._replay(self.demonstration) or self.world
             raise
@@ -317,20 +326,7 @@ class TeachingSession:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
         if not self._logged:
             shown = self.demonstration
-            self._store.append(
-                BEGUN,
-                {
-                    "demonstration": shown.id,
-                    "activity": self.activity.name,
-                    "teacher": self.teacher,
-                    "seed": shown.seed,
-                    "people": list(shown.people),
-                    "guided": shown.guided,
-                    "origin": shown.origin,
-                    "of": list(shown.of),
-                    "kept": len(shown.steps),
-                },
-            )
+            self._store.append(DemonstrationBegun.of_shown(shown, kept=len(shown.steps)))
 
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
@@ -343,7 +339,7 @@ class TeachingSession:
             return [Refused("This step cannot be undone: the simulator has changed since.")]
         with self._store.transaction():
             self._log_beginning()
-            self._store.append(UNDONE, {"demonstration": shorter.id, "step": number})
+            self._store.append(DemonstrationStepUndone(demonstration=shorter.id, step=number))
         self._logged = True
         undone = [*self._undone, last]
         self._enter(shorter, world)
@@ -361,7 +357,7 @@ class TeachingSession:
         def log(done: Step) -> Step:
             if done != step:
                 raise NotAsBefore
-            self._store.append(REDONE, {"demonstration": self.demonstration.id})
+            self._store.append(DemonstrationStepRedone(demonstration=self.demonstration.id))
             return step
 
         try:

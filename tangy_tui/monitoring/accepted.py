@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
+from tangy_profiles.game_records import AcceptanceTakenBack, EffectAccepted
 from tangy_profiles.store import Store
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects, Mismatch, learn_effects
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.fault import ACCEPTED, Fault, read_faults
-
-TAKEN_BACK = "acceptance taken back"
+from tangy_tui.monitoring.fault import Fault, read_faults
 
 
 @dataclass(frozen=True)
@@ -35,14 +34,7 @@ def accept(store: Store, activity: Activity, fault: Fault, acted: Acted, by: str
     """Log that what followed a behaviour is to be expected from now on."""
     step = Step(acted.action.behaviour.name, acted.action.target, acted.state, acted.after)
     store.append(
-        ACCEPTED,
-        {
-            "activity": activity.name,
-            "game": fault.game,
-            "fault": fault.id,
-            "by": by,
-            **step.to_json(),
-        },
+        EffectAccepted(activity=activity.name, game=fault.game, fault=fault.id, by=by, step=step)
     )
 
 
@@ -50,19 +42,13 @@ def read_accepted(store: Store, activity: str) -> list[Acceptance]:
     """Return what teachers accepted in games of an activity and did not take back, oldest first."""
     there: dict[int, Acceptance] = {}
     what: dict[str, tuple[Mismatch, ...]] = {}
-    for event in store.events(ACCEPTED, TAKEN_BACK):
-        body = event.body
-        if event.kind == TAKEN_BACK:
-            there.pop(body["number"], None)
-        elif body["activity"] == activity:
-            what = what or {fault.id: fault.mismatches for fault in read_faults(store)}
-            there[event.seq] = Acceptance(
-                event.seq,
-                event.at,
-                body["by"],
-                Step.from_json(body),
-                what.get(body["fault"], ()),
-            )
+    for event in store.events(EffectAccepted, AcceptanceTakenBack):
+        match event.record:
+            case AcceptanceTakenBack(number=number):
+                there.pop(number, None)
+            case EffectAccepted(activity=of, by=by, step=step, fault=id) if of == activity:
+                what = what or {fault.id: fault.mismatches for fault in read_faults(store)}
+                there[event.seq] = Acceptance(event.seq, event.at, by, step, what.get(id, ()))
     return list(there.values())
 
 
@@ -77,7 +63,7 @@ def take_back(store: Store, activity: str, place: int) -> Acceptance:
         there = f"choose from 1 to {len(accepted)}" if accepted else "nothing was accepted"
         raise TangyError(f"There is no number {place} in the list: {there}.")
     taken = accepted[place - 1]
-    store.append(TAKEN_BACK, {"number": taken.number})
+    store.append(AcceptanceTakenBack(number=taken.number))
     return taken
 
 

@@ -15,7 +15,7 @@ from tangy_profiles.behaviour import Action, Behaviour
 from tangy_profiles.faults import Evidence
 from tangy_profiles.health import ERROR, OK, STALE, STATES, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import LINK, Robot
-from tangy_profiles.state import ActivityState, Outcome
+from tangy_profiles.state import ActivityState, Outcome, Variable
 from tangy_tui.interaction.facilitation import refused
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.effects import Effects, Mismatch
@@ -26,7 +26,8 @@ no fault of the robot's."""
 
 
 AWAITS_SECONDS = 0.1  # s, as long as a scanner's data may be older than the link's
-OTHERS, FEWER = "others' requests", "fewer"
+OTHERS: Variable = "others' requests"
+FEWER = "fewer"
 
 
 class Detector:

@@ -13,13 +13,15 @@ from time import monotonic
 from types import MappingProxyType
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.fault_file import load_faults
+from tangy_profiles.game_records import DrillHeld
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
+from tangy_tui.monitoring.drill_log import read_sheets
 from tangy_tui.monitoring.drill_policy import policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop, draw_rounds
-from tangy_tui.monitoring.drill_sheet import DRILL, AnsweredRound, Sheet, read_sheets
 
 ROUNDS, MOST_ROUNDS = 6, 50
 
@@ -220,7 +222,7 @@ class Drill:
     def _keep(self) -> None:
         if not self._kept:
             self._kept = True
-            self._store.append(DRILL, self.sheet.to_json())
+            self._store.append(DrillHeld(sheet=self.sheet))
 
     def _judge(self, shown: Round, seconds: float) -> AnsweredRound:
         rule, table = shown.rule, self.tabletop

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from tangy_profiles.codec import written
+from tangy_profiles.events import EventRecord
 from tangy_profiles.faults import FaultRule
+from tangy_profiles.game_records import NAME as NAME
+from tangy_profiles.game_records import FaultDiagnosed, FaultMove, Mismatch, named
+from tangy_profiles.game_records import RecoveryEvent as RecoveryEvent
 from tangy_profiles.health import Fact
 from tangy_profiles.person import MOST_PEOPLE, load_people
 from tangy_profiles.store import Event, Store
-from tangy_tui.learning.effects import Mismatch
 
-FAULT = "fault"
-RECOVERY = "recovery"
-ACCEPTED = "effect accepted"
-STAFF = "staff action"
-"""What people did that is neither a behaviour nor a move: stopping the robot, letting it go on,
-bringing a fault about."""
-
-NAME = "{name}"
-"""What stands for a person's name in the log, from which names can be forgotten."""
 SOMEBODY = "somebody"
 
 OPEN, BORNE, OVER = "open", "borne", "over"
@@ -28,34 +23,6 @@ OPEN, BORNE, OVER = "open", "borne", "over"
 
 ENDINGS = frozenset(("recovered", "taught", "accepted", "cleared", "ended", "left"))
 """The moves after which a fault is over."""
-
-
-@dataclass(frozen=True, slots=True)
-class RecoveryEvent:
-    """One step of a recovery: what, the how-manieth time, by whom, what was said, when (s)."""
-
-    kind: str
-    seconds: float
-    attempt: int = 0
-    by: str = ""
-    to: str = ""
-    speech: str = ""
-    image: str = ""
-    remedy: str = ""
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the move as `--json` prints it; what is empty is left out."""
-        body = {name: getattr(self, name) for name in self.__slots__}
-        return {name: value for name, value in body.items() if value or name == "seconds"}
-
-    def called(self, name: str) -> RecoveryEvent:
-        """Return the move with the person's name where the log only has a slot for it."""
-        return replace(self, speech=_named(self.speech, name), image=_named(self.image, name))
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> RecoveryEvent:
-        """Read a move that `to_json` wrote."""
-        return cls(**{name: body[name] for name in cls.__slots__ if name in body})
 
 
 @dataclass
@@ -99,22 +66,22 @@ class Fault:
     @property
     def name(self) -> str:
         """What the fault is called."""
-        return _named(self.texts[0], self.called)
+        return named(self.texts[0], self.called)
 
     @property
     def console(self) -> str:
         """What staff are told."""
-        return _named(self.texts[1], self.called)
+        return named(self.texts[1], self.called)
 
     @property
     def advice(self) -> tuple[str, ...]:
         """What staff should do, step by step."""
-        return tuple(_named(text, self.called) for text in self.texts[2:])
+        return tuple(named(text, self.called) for text in self.texts[2:])
 
     @property
     def unnamed(self) -> str:
         """The fault and what staff are told, in words that the log may keep."""
-        return _named(f"{self.texts[0]}: {self.texts[1]}", SOMEBODY)
+        return named(f"{self.texts[0]}: {self.texts[1]}", SOMEBODY)
 
     @property
     def asks_only(self) -> bool:
@@ -136,44 +103,36 @@ class Fault:
         """The recoveries that were begun, from the first to the last that was needed."""
         return (self.recovery, *(move.to for move in self.moves if move.kind == "escalated"))
 
-    def to_json(self) -> dict[str, Any]:
+    def record(self) -> FaultDiagnosed:
         """Return the fault as the log keeps it, without its moves."""
-        return {
-            "game": self.game,
-            "fault": self.id,
-            "code": self.code,
-            "name": self.texts[0],
-            "criticality": "critical" if self.critical else "non-critical",
-            "recovery": self.recovery,
-            "step": self.step,
-            "seconds": self.seconds,
-            "behaviour": self.behaviour,
-            "console": self.texts[1],
-            "why": self.why,
-            "evidence": dict(self.evidence),
-            "mismatches": [
-                {
-                    "behaviour": m.behaviour,
-                    "variable": m.variable,
-                    "expected": list(m.expected),
-                    "seen": m.seen,
-                }
-                for m in self.mismatches
-            ],
-            "advice": list(self.texts[2:]),
-        }
+        return FaultDiagnosed(
+            game=self.game,
+            fault=self.id,
+            code=self.code,
+            name=self.texts[0],
+            criticality="critical" if self.critical else "non-critical",
+            recovery=self.recovery,
+            step=self.step,
+            seconds=self.seconds,
+            behaviour=self.behaviour,
+            console=self.texts[1],
+            why=self.why,
+            evidence=self.evidence,
+            mismatches=self.mismatches,
+            advice=self.texts[2:],
+        )
 
     def document(self) -> dict[str, Any]:
         """Return the fault with what was done about it, as `--json` prints it."""
         return {
-            **self.to_json(),
+            **self.record().body,
             "name": self.name,
             "console": self.console,
             "advice": list(self.advice),
             "person": self.person,
             "status": self.status,
             "ladder": list(self.ladder),
-            "moves": [move.to_json() for move in self.moves],
+            "moves": written(self.moves),
             "reason": f"{self.name}: {self.console}",
         }
 
@@ -215,46 +174,44 @@ def read_faults(store: Store, game: str | None = None) -> list[Fault]:
     return fold_faults(
         (
             event
-            for event in store.events(FAULT, RECOVERY)
-            if game is None or event.body["game"] == game
+            for event in store.events(FaultDiagnosed, FaultMove)
+            if game is None or getattr(event.record, "game", None) == game
         ),
         store.names(),
     )
 
 
-def fold_faults(events: Iterable[Event], names: Mapping[str, str]) -> list[Fault]:
+def fold_faults(events: Iterable[Event[EventRecord]], names: Mapping[str, str]) -> list[Fault]:
     """Put faults and their moves together from their events; `names` are what people are called."""
     known = {**{person.id: person.name for person in load_people(MOST_PEOPLE)}, **names}
     found: dict[str, Fault] = {}
     for event in events:
-        id = event.body["fault"]
-        if event.kind == FAULT:
-            found.setdefault(id, _read_fault(event, known))
-        elif id in found:
-            fault = found[id]
-            fault.add(RecoveryEvent.from_json(event.body).called(fault.called))
+        match event.record:
+            case FaultDiagnosed(fault=id) as record:
+                found.setdefault(id, _read_fault(event, record, known))
+            case FaultMove(fault=id, move=move) if id in found:
+                found[id].add(move.called(found[id].called))
     return list(found.values())
 
 
-def _read_fault(event: Event, known: Mapping[str, str]) -> Fault:
-    body = event.body
+def _read_fault(
+    event: Event[EventRecord], record: FaultDiagnosed, known: Mapping[str, str]
+) -> Fault:
     return Fault(
-        id=body["fault"],
-        game=body["game"],
-        code=body["code"],
-        critical=body["criticality"] == "critical",
-        recovery=body["recovery"],
-        step=int(body["step"]),
-        seconds=float(body["seconds"]),
-        behaviour=body["behaviour"],
+        id=record.fault,
+        game=record.game,
+        code=record.code,
+        critical=record.criticality == "critical",
+        recovery=record.recovery,
+        step=record.step,
+        seconds=record.seconds,
+        behaviour=record.behaviour,
         person=event.person,
         called=known.get(event.person, event.person) if event.person else SOMEBODY,
-        texts=(body["name"], body["console"], *body["advice"]),
-        why=body["why"],
-        evidence=body["evidence"],
-        mismatches=tuple(
-            replace(Mismatch(**one), expected=tuple(one["expected"])) for one in body["mismatches"]
-        ),
+        texts=(record.name, record.console, *record.advice),
+        why=record.why,
+        evidence=record.evidence,
+        mismatches=record.mismatches,
         at=event.at,
     )
 
@@ -265,7 +222,3 @@ def rule_texts(rule: FaultRule, object: str, why: str) -> tuple[str, ...]:
         rule.fill(text, name=NAME, object=object, why=why)
         for text in (rule.name, rule.console, *rule.advice)
     )
-
-
-def _named(text: str, name: str) -> str:
-    return text.replace(NAME, name)

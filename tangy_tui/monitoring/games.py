@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date, datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
 from tangy_profiles.faults import CRITICAL
+from tangy_profiles.game_records import FaultDiagnosed, GameBeginning, GameEnding, GameStep
 from tangy_profiles.game_world import SIMULATED, GameWorld
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Event, Store
-from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
+from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.interaction.game_worlds import GameWorlds
-from tangy_tui.learning.policies import POLICY
-from tangy_tui.monitoring.fault import FAULT, OPEN, Fault, read_faults
+from tangy_tui.monitoring.fault import OPEN, Fault, read_faults
 
 SHORTEST = 4
 """Characters of an id that are enough to name a game."""
@@ -81,47 +82,50 @@ class Game:
         }
 
 
+class _Begun(NamedTuple):
+    event: Event[EventRecord]
+    record: GameBeginning
+    policy: str
+
+
 def read_games(store: Store) -> list[Game]:
     """Read all games of a log, the newest last."""
-    begun: dict[str, tuple[Event, str]] = {}
-    ended: dict[str, Event] = {}
+    begun: dict[str, _Begun] = {}
+    ended: dict[str, tuple[Event[EventRecord], GameEnding]] = {}
     faults: dict[str, list[bool]] = {}
     policies: dict[str, str] = {}
-    for event in store.events(BEGUN, ENDED, FAULT, POLICY):
-        body = event.body
-        game = str(body.get("game"))
-        if event.kind == POLICY:
-            policies[str(body.get("digest"))] = str(body.get("name", ""))
-        elif event.kind == BEGUN:
-            begun[game] = (event, policies.get(str(body.get("policy")), ""))
-        elif event.kind == ENDED:
-            ended[game] = event
-        elif "situation.shown" not in body.get("evidence", {}):
-            faults.setdefault(game, []).append(body.get("criticality") == CRITICAL)
+    for event in store.events(GameBeginning, GameEnding, FaultDiagnosed, PolicyLearnt):
+        match event.record:
+            case PolicyLearnt(digest=digest, name=name):
+                policies[digest] = name
+            case GameBeginning(game=game, policy=policy) as record:
+                begun[game] = _Begun(event, record, policies.get(policy, ""))
+            case GameEnding(game=game) as record:
+                ended[game] = event, record
+            case FaultDiagnosed(game=game, evidence=evidence, criticality=criticality):
+                if "situation.shown" not in evidence:
+                    faults.setdefault(game, []).append(criticality == CRITICAL)
     steps = _steps_of_unended(store, begun.keys() - ended.keys(), begun)
     worlds = GameWorlds(store).all
     return [
         _game(
             number,
-            event,
-            policy,
+            game,
             ended.get(id),
             faults.get(id, []),
             steps.get(id, 0),
             worlds.get(id, SIMULATED),
         )
-        for number, (id, (event, policy)) in enumerate(begun.items(), 1)
+        for number, (id, game) in enumerate(begun.items(), 1)
     ]
 
 
-def _steps_of_unended(
-    store: Store, games: set[str], begun: dict[str, tuple[Event, str]]
-) -> dict[str, int]:
+def _steps_of_unended(store: Store, games: set[str], begun: dict[str, _Begun]) -> dict[str, int]:
     """Count the steps of games that have no end which would say it."""
     counts: dict[str, int] = dict.fromkeys(games, 0)
     if games:
-        for event in store.events(STEP, after=min(begun[id][0].seq for id in games)):
-            game = str(event.body.get("game"))
+        for event in store.events(GameStep, after=min(begun[id].event.seq for id in games)):
+            game = event.record.game
             if game in counts:
                 counts[game] += 1
     return counts
@@ -129,30 +133,29 @@ def _steps_of_unended(
 
 def _game(
     number: int,
-    event: Event,
-    policy: str,
-    end: Event | None,
+    game: _Begun,
+    ended: tuple[Event[EventRecord], GameEnding] | None,
     faults: Sequence[bool],
     steps: int,
     world: GameWorld,
 ) -> Game:
-    body = event.body
-    digest = str(body.get("policy", ""))
+    event, begun, policy = game
+    end, ending = ended or (None, None)
     return Game(
         number=number,
-        id=str(body.get("game")),
+        id=begun.game,
         seq=event.seq,
         at=datetime.fromisoformat(event.at),
-        activity=str(body.get("activity", "")),
-        policy=policy or digest[:8],
-        digest=digest,
-        people=tuple(map(str, body.get("people", ()))),
-        steps=steps if end is None else int(end.body.get("steps", 0)),
+        activity=begun.activity,
+        policy=policy or begun.policy[:8],
+        digest=begun.policy,
+        people=begun.people,
+        steps=steps if ending is None else ending.steps,
         critical=sum(faults),
         other=len(faults) - sum(faults),
         ended=None if end is None else datetime.fromisoformat(end.at),
         last_seq=None if end is None else end.seq,
-        stopped=None if end is None else end.body.get("stopped"),
+        stopped=None if ending is None else ending.stopped,
         world=world,
     )
 
@@ -228,13 +231,13 @@ def _of_day(games: Sequence[Game], day: date) -> list[Game]:
 
 def uncleared(store: Store) -> Fault | None:
     """Return what the last game in a log ended with for which Tangy stood still, if it did."""
-    game, last = store.last(BEGUN), store.last(FAULT)
-    if game is None or last is None or last.body["game"] != game.body["game"]:
+    game, last = store.last(GameBeginning), store.last(FaultDiagnosed)
+    if game is None or last is None or last.record.game != game.record.game:
         return None
     return next(
         (
             fault
-            for fault in read_faults(store, game.body["game"])
+            for fault in read_faults(store, game.record.game)
             if fault.status == OPEN
             and (fault.critical or any(move.kind == "halted" for move in fault.moves))
         ),

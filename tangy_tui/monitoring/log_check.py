@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from tangy_profiles.events import BODIES
+from tangy_profiles.events import KINDS
+from tangy_profiles.game_records import GameBeginning
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import BEGUN
+from tangy_profiles.teaching_records import DemonstrationBegun, DemonstrationsEdited, PolicyLearnt
 from tangy_tui.learning import library
-from tangy_tui.learning.policies import POLICY
 
 
 def log_problems(store: Store) -> list[str]:
@@ -25,11 +25,11 @@ def unknown_kinds(store: Store) -> list[str]:
     return [
         plain(f"tangy.db: events of the kind {kind[:60]!r} are not known and left out.")
         for kind in store.kinds()
-        if kind not in BODIES
+        if kind not in KINDS
     ]
 
 
 def _activities(store: Store) -> list[str]:
     """Return the activities that a log tells of."""
-    events = store.events(library.BEGUN, library.EDITED, BEGUN, POLICY)
-    return sorted({str(event.body["activity"]) for event in events if "activity" in event.body})
+    events = store.events(DemonstrationBegun, DemonstrationsEdited, GameBeginning, PolicyLearnt)
+    return sorted({getattr(event.record, "activity", "") for event in events} - {""})

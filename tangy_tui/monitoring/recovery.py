@@ -15,7 +15,7 @@ from typing import TypeAlias
 from uuid import uuid4
 
 from tangy_profiles.faults import URGENCY, FaultRule, Remedy
-from tangy_profiles.health import Fact
+from tangy_profiles.game_records import FaultMove, MoveKind
 from tangy_profiles.robot import Robot
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
@@ -27,11 +27,9 @@ from tangy_tui.monitoring.evidence import evidence_words
 from tangy_tui.monitoring.fault import (
     BORNE,
     ENDINGS,
-    FAULT,
     NAME,
     OPEN,
     OVER,
-    RECOVERY,
     SOMEBODY,
     Diagnosed,
     Fault,
@@ -142,7 +140,7 @@ class Recovery:
         self._rules[fault.id] = rule
         if rule.critical:
             self.remedy(fault, "halt")  # before it is written down, which can fail
-        self._store.append(FAULT, fault.to_json(), person=person)
+        self._store.append(fault.record(), person=person)
         _LOG.warning("fault %s (%s): %s", fault.id, fault.code, fault.why)
         self.faults.append(fault)
         self._there.append(fault)
@@ -187,7 +185,7 @@ class Recovery:
 
     def _go_on(self, fault: Fault, rule: FaultRule) -> list[Event]:
         if not rule.remedy:
-            kind = "recovered" if self.solved(fault) else "went on"
+            kind: MoveKind = "recovered" if self.solved(fault) else "went on"
             return self.move(fault, RecoveryEvent(kind, self.seconds))
         speech, image = self._text(fault, rule.aloud), self._text(fault, rule.image)
         if rule.recovery[0] != "continue":
@@ -292,8 +290,8 @@ class Recovery:
 
     def move(self, fault: Fault, move: RecoveryEvent) -> list[Event]:
         """Log that something was done about a fault, and tell it."""
-        body: dict[str, Fact | str] = {"game": fault.game, "fault": fault.id, **move.to_json()}
-        self._store.append(RECOVERY, body, person=fault.person)
+        moved = FaultMove(game=fault.game, fault=fault.id, move=move)
+        self._store.append(moved, person=fault.person)
         _LOG.info("fault %s (%s): %s", fault.id, fault.code, move.kind)
         told = move.called(fault.called)
         fault.add(told)

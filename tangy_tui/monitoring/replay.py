@@ -7,22 +7,25 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import (
+    FaultDiagnosed,
+    FaultMove,
+    GameEnding,
+    GameStep,
+    StaffAction,
+)
+from tangy_profiles.people_records import ResponseAwaited, ResponseGiven
 from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Event, Store
-from tangy_tui.interaction.facilitation import ENDED, RESPONSE, STEP
-from tangy_tui.interaction.feedback import AWAITED
-from tangy_tui.monitoring.fault import (
-    FAULT,
-    RECOVERY,
-    STAFF,
-    Diagnosed,
-    Fault,
-    Moved,
-    fold_faults,
-)
+from tangy_tui.monitoring.fault import Diagnosed, Fault, Moved, fold_faults
 from tangy_tui.monitoring.games import Game
 
-KINDS = (STEP, RESPONSE, AWAITED, FAULT, RECOVERY, STAFF, ENDED)
+IN_GAMES = (
+    *(GameStep, ResponseGiven, ResponseAwaited, FaultDiagnosed, FaultMove, StaffAction),
+    GameEnding,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +94,8 @@ class Moment:
                     "target": done.target,
                     "strategy": done.strategy,
                     "situation": list(done.state.situation),
-                    "state": done.state.to_json(),
-                    "after": done.after.to_json(),
+                    "state": written(done.state),
+                    "after": written(done.after),
                     "completed": done.completed,
                     "right": done.right,
                     "teacher": done.teacher,
@@ -113,7 +116,7 @@ class Moment:
             case Noted(what, by):
                 return {"kind": "staff", "what": what, "by": by}
             case Moved(fault, move):
-                return {"kind": "recovery", "fault": fault.id, "move": move.to_json()}
+                return {"kind": "recovery", "fault": fault.id, "move": written(move)}
 
 
 @dataclass
@@ -160,109 +163,100 @@ def read_replays(
         activities: those that are known, by name; without its activity a game is told with less.
         names: of the people, by id, for what Tangy said.
     """
-    events: dict[str, list[Event]] = {game.id: [] for game in games}
+    events: dict[str, list[Event[EventRecord]]] = {game.id: [] for game in games}
     for event in _events(store, games):
-        game = str(event.body.get("game"))
+        game = getattr(event.record, "game", None)
         if game in events:
             events[game].append(event)
     return [_replay(game, events[game.id], activities.get(game.activity), names) for game in games]
 
 
-def _events(store: Store, games: Sequence[Game]) -> Iterator[Event]:
+def _events(store: Store, games: Sequence[Game]) -> Iterator[Event[EventRecord]]:
     if not games:
         return
     ends = [game.last_seq for game in games]
     until = max(end for end in ends if end is not None) if None not in ends else None
-    for event in store.events(*KINDS, after=min(game.seq for game in games)):
+    for event in store.events(*IN_GAMES, after=min(game.seq for game in games)):
         if until is not None and event.seq > until:
             return
         yield event
 
 
 def _replay(
-    game: Game, events: Sequence[Event], activity: Activity | None, names: Mapping[str, str]
+    game: Game,
+    events: Sequence[Event[EventRecord]],
+    activity: Activity | None,
+    names: Mapping[str, str],
 ) -> GameReplay:
-    told = (event for event in events if event.kind in (FAULT, RECOVERY))
+    told = (event for event in events if isinstance(event.record, FaultDiagnosed | FaultMove))
     replay = GameReplay(game, faults=fold_faults(told, names))
     faults = {fault.id: fault for fault in replay.faults}
     moved: dict[str, int] = {}  # of the faults that were told of so far
     step = 0
     for event in events:
         what: What
-        if event.kind == STEP:
-            step += 1
-            replay.timed &= "seconds" in event.body
-            begun = replay.seconds
-            replay.seconds += float(event.body.get("seconds") or 0.0)
-            what = _done(event.body, step, begun, replay.seconds, activity, names)
-        elif event.kind in (RESPONSE, AWAITED):
-            what = _answered(event)
-        elif event.kind == STAFF:
-            what = Noted(str(event.body["what"]), str(event.body["by"]))
-        elif event.kind in (FAULT, RECOVERY):
-            fault = faults.get(event.body["fault"])
-            if fault is None or (event.kind == FAULT) == (fault.id in moved):
-                continue  # told of before, or done about a fault that is left out
-            replay.seconds = max(replay.seconds, float(event.body.get("seconds") or 0.0))
-            if event.kind == FAULT:
-                moved[fault.id] = 0
-                what = Diagnosed(fault)
-            else:
-                what = Moved(fault, fault.moves[moved[fault.id]])
-                moved[fault.id] += 1
-        else:
-            continue
+        match event.record:
+            case GameStep(seconds=took) as record:
+                step += 1
+                replay.timed &= took is not None
+                begun = replay.seconds
+                replay.seconds += took or 0.0
+                what = _done(record, step, begun, replay.seconds, activity, names)
+            case ResponseGiven(followed=followed, seconds=took):
+                what = _answered(event, followed, took)
+            case ResponseAwaited():
+                what = _answered(event, None, None)
+            case StaffAction(what=words, by=by):
+                what = Noted(words, by)
+            case FaultDiagnosed(fault=id, seconds=at) if id in faults and id not in moved:
+                replay.seconds = max(replay.seconds, at)
+                moved[id] = 0
+                what = Diagnosed(faults[id])
+            case FaultMove(fault=id, move=move) if id in moved:
+                replay.seconds = max(replay.seconds, move.seconds)
+                what = Moved(faults[id], faults[id].moves[moved[id]])
+                moved[id] += 1
+            case _:  # an end; or told of before, or done about a fault that is left out
+                continue
         replay.moments.append(Moment(replay.seconds, step, event.at, what))
     return replay
 
 
 def _done(
-    body: Mapping[str, Any],
+    step: GameStep,
     number: int,
     begun: float,
     over: float,
     activity: Activity | None,
     names: Mapping[str, str],
 ) -> Done:
-    state, after = _state(body["state"]), _state(body.get("after") or body["state"])
-    name, target = str(body["behaviour"]), body.get("target")
-    completed = bool(body.get("completed", True))
-    strategy = str(body.get("strategy") or "")
+    name, target, strategy = step.behaviour, step.target, step.strategy or ""
     behaviour = activity.behaviours.get(name) if activity is not None else None
-    expected = activity.expected.get(state.situation, name) if activity is not None else name
+    expected = activity.expected.get(step.state.situation, name) if activity is not None else name
     said = ""
     if activity is not None and behaviour is not None:
         speech = behaviour.speech.get(strategy or activity.plain_strategy, "")
-        numbers = tuple(n for n in body.get("numbers", ()) if n in activity.deck.numbers)
+        numbers = tuple(n for n in step.numbers if n in activity.deck.numbers)
         said = activity.fill(speech, names.get(target or "", target or ""), numbers)
     return Done(
         number=number,
         begun=begun,
         over=over,
-        state=state,
-        after=after,
+        state=step.state,
+        after=step.after or step.state,
         behaviour=name,
         target=target,
         strategy=strategy if behaviour is None or behaviour.persuades else "",
-        completed=completed,
-        right=completed and expected == name,
-        teacher=str(body.get("teacher") or ""),
+        completed=step.completed,
+        right=step.completed and expected == name,
+        teacher=step.teacher or "",
         said=said,
         draws=behaviour is not None and behaviour.effect == "draw",
     )
 
 
-def _state(body: Mapping[str, Any]) -> ActivityState:
-    return ActivityState.from_json({"closed": None, **body})
-
-
-def _answered(event: Event) -> AnsweredRequest:
-    followed, took = event.body.get("followed"), event.body.get("seconds")
-    return AnsweredRequest(
-        uuid=event.uuid,
-        person=event.person or "",
-        strategy=event.strategy or "",
-        complied=event.complied,
-        followed=None if followed is None else bool(followed),
-        took=None if took is None else float(took),
-    )
+def _answered(
+    event: Event[EventRecord], followed: bool | None, took: float | None
+) -> AnsweredRequest:
+    person, strategy = event.person or "", event.strategy or ""
+    return AnsweredRequest(event.uuid, person, strategy, event.complied, followed, took)

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.faults import Evidence, FaultBook
+from tangy_profiles.game_records import StaffAction
 from tangy_profiles.process_log import serving
 from tangy_profiles.robot import Robot
 from tangy_profiles.store import Store
@@ -26,7 +27,6 @@ from tangy_tui.monitoring import accepted
 from tangy_tui.monitoring.detection import Detector
 from tangy_tui.monitoring.fault import (
     OPEN,
-    STAFF,
     Fault,
     RecoveryEvent,
 )
@@ -268,8 +268,8 @@ class Supervision:
     def note(self, what: str, by: str) -> None:
         """Log what people did in a game beside all this: a STOP, a fault brought about."""
         if not self.over:
-            body = {"game": self.game.game, "what": what, "by": by, "seconds": self.seconds}
-            self._store.append(STAFF, body)
+            note = StaffAction(game=self.game.game, what=what, by=by, seconds=self.seconds)
+            self._store.append(note)
 
     def answer(self, behaviour: Behaviour, target: str | None, teacher: str) -> list[Event]:
         """Do what a teacher answered, and go on."""

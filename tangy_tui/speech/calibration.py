@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.people_records import MicrophoneChecked, MicrophoneForgotten
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
@@ -23,9 +24,6 @@ from tangy_tui.learning.verification import StopCommand
 from tangy_tui.speech.evidence import MODES, USUAL, AcousticEvidence, EvidenceSettings
 from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.understanding import SURE, UNSURE, understand
-
-CHECKED, FORGOTTEN = "microphone checked", "microphone check forgotten"
-"""The kinds of event; both name the microphone."""
 
 WEIGHTS = (0.1, 0.2, 0.43, 0.9, 2.0)
 """Of the garbage branch, to be tried."""
@@ -184,19 +182,16 @@ def microphone(source: str) -> str:
 
 def keep(store: Store, source: str, chosen: Chosen) -> None:
     """Store what was found for a microphone."""
-    body = {
-        "source": microphone(source),
-        "settings": {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift},
-        "figures": asdict(chosen.figures),
-    }
-    store.append(CHECKED, body)
+    settings = {"garbage": chosen.settings.garbage, "shift": chosen.settings.shift}
+    figures = asdict(chosen.figures)
+    store.append(MicrophoneChecked(source=microphone(source), settings=settings, figures=figures))
 
 
 def forget(store: Store, source: str) -> bool:
     """Go back to the usual settings for a microphone; return whether there were others."""
     if _stored(store, source) is None:
         return False
-    store.append(FORGOTTEN, {"source": microphone(source)})
+    store.append(MicrophoneForgotten(source=microphone(source)))
     return True
 
 
@@ -225,9 +220,12 @@ def settings_for(store: Store, source: str | None, mode: str = "tiers") -> Evide
 def _stored(store: Store, source: str) -> EvidenceSettings | None:
     found: EvidenceSettings | None = None
     name = microphone(source)
-    for event in store.events(CHECKED, FORGOTTEN):
-        if event.body.get("source") == name:
-            found = _read(event.body.get("settings")) if event.kind == CHECKED else None
+    for event in store.events(MicrophoneChecked, MicrophoneForgotten):
+        match event.record:
+            case MicrophoneChecked(source=of, settings=settings) if of == name:
+                found = _read(settings)
+            case MicrophoneForgotten(source=of) if of == name:
+                found = None
     return found
 
 

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.errors import TangyError
+from tangy_profiles.people_records import RecordingConsent, RecordingsForgotten
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.learning.teaching_events import Begun, Executed, StepUndone, TeachingEvent
@@ -33,9 +34,6 @@ from tangy_tui.learning.verification import (
 )
 
 FOLDER = "recordings"  # in the data folder
-CONSENT, FORGOTTEN = "consent to recordings", "recordings forgotten"
-"""The kinds of event. Consent has who (a teacher) and yes; forgetting takes back all consent."""
-
 _OURS = re.compile(r"\d{8}T\d{6}-\d+\.wav")
 
 
@@ -56,17 +54,18 @@ def consent_question(store: Store, options: str = "") -> str:
 def consented(store: Store, teacher: str) -> bool:
     """Say whether a teacher has agreed to be recorded, and nothing was forgotten since."""
     agreed = False
-    for event in store.events(CONSENT, FORGOTTEN):
-        if event.kind == FORGOTTEN:
-            agreed = False
-        elif event.body.get("who") == teacher:
-            agreed = event.body.get("yes") is True
+    for event in store.events(RecordingConsent, RecordingsForgotten):
+        match event.record:
+            case RecordingsForgotten():
+                agreed = False
+            case RecordingConsent(who=who, yes=yes) if who == teacher:
+                agreed = yes
     return agreed
 
 
 def consent(store: Store, teacher: str, yes: bool) -> None:
     """Note who agreed to be recorded, or did not."""
-    store.append(CONSENT, {"who": teacher, "yes": yes})
+    store.append(RecordingConsent(who=teacher, yes=yes))
 
 
 def forget_recordings(store: Store) -> tuple[int, int]:
@@ -81,7 +80,7 @@ def forget_recordings(store: Store) -> tuple[int, int]:
     """
     top = store.folder / FOLDER
     deleted = left = 0
-    store.append(FORGOTTEN, {})
+    store.append(RecordingsForgotten())
     if top.is_symlink() or not top.is_dir():
         return 0, int(top.is_symlink() or top.exists())
     for folder in top.iterdir():

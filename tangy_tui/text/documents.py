@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from tangy_profiles.demonstration import Demonstration
@@ -52,7 +53,7 @@ def policy_document(workspace: Workspace, policy: Policy) -> dict[str, Any]:
     )
     effects = effects_of(workspace.store, activity, policy)
     return {
-        **policy.to_json(),
+        **policy.record().body,
         "rows": [
             {
                 "stage": situation.stage,
@@ -206,7 +207,7 @@ def person_document(record: Record) -> dict[str, Any]:
         "settled": record.settled,
         "world": record.world,
         "method": {
-            **known.chosen.to_json(),
+            **asdict(known.chosen),
             "own": known.own,
             "words": known.method.words,
         },

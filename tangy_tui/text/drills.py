@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
+from tangy_profiles.drill_sheet import AnsweredRound, Sheet
 from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
-from tangy_tui.monitoring.drill_sheet import AnsweredRound, Sheet
 from tangy_tui.text.situations import counted, state_words
 
 Told = tuple[str, str]

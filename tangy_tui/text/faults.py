@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
+from tangy_profiles.game_records import MoveKind
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import DeviceProfile, Robot
@@ -51,7 +52,7 @@ DONE_REMEDIES = {
 }
 """What Tangy has done by itself, in words."""
 
-MOVES: Mapping[str, str] = {
+MOVES: Mapping[MoveKind, str] = {
     "kept": "kept for later: another fault comes first",
     "asked": "asked for help",
     "remedied": "Tangy did something about it by itself",

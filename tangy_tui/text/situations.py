@@ -9,7 +9,8 @@ from tangy_profiles.demonstration import Step
 from tangy_profiles.reading import plain
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState
-from tangy_tui.learning.conflicts import Conflict, Resolution
+from tangy_profiles.teaching_records import Deletion, Division, Merger, Restoration, Settlement
+from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.library import Edit, Library
 from tangy_tui.learning.online_learning import Lesson
 from tangy_tui.learning.policy import Policy
@@ -130,18 +131,17 @@ def conflict_lines(activity: Activity, library: Library, conflict: Conflict) -> 
 def edit_words(activity: Activity, library: Library, edit: Edit) -> str:
     """Say what a change of the library did."""
     names = ", ".join(library.name(id) for id in edit.ids)
-    made = " and ".join(library.name(str(id)) for id in edit.body.get("made", ()))
-    match edit.what:
-        case "delete":
+    match edit.done:
+        case Deletion():
             return f"{names}: deleted, and no longer learnt from."
-        case "restore":
+        case Restoration():
             return f"{names}: in use again."
-        case "merge":
-            return f"{names}: merged into {made}."
-        case "split":
-            return f"{names}: split after step {edit.body['kept']} into {made}."
-        case _:
-            said = Resolution.from_json(edit.body)
+        case Merger(made=(one,)):
+            return f"{names}: merged into {library.name(one)}."
+        case Division(kept=kept, made=(one, two)):
+            made = f"{library.name(one)} and {library.name(two)}"
+            return f"{names}: split after step {kept} into {made}."
+        case Settlement(resolution=said):
             are = "is" if len(said.right) == 1 else "are all"
             return f"{activity.in_words(said.situation)}: {', '.join(said.right)} {are} right."
 

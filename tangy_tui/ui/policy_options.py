@@ -17,11 +17,11 @@ def policy_options(store: Store, activity: Activity) -> list[Option]:
     """Return every kept policy once, the latest first."""
     found: dict[str, Option] = {}
     for kept in reversed(kept_policies(store, activity.name)):
-        digest = str(kept["digest"])
-        shown = counted(len(kept["demonstrations"]), "demonstration")
-        when = str(kept["at"])[:16].replace("T", " ")
+        digest = kept.digest
+        shown = counted(len(kept.demonstrations), "demonstration")
+        when = kept.at[:16].replace("T", " ")
         note = f"{digest[:DIGEST_SHOWN]}  {shown}  {when}"
-        found.setdefault(digest, Option(digest, str(kept["name"]), note))
+        found.setdefault(digest, Option(digest, kept.name, note))
     return list(found.values())
 
 

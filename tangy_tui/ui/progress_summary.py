@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
-from tangy_tui.monitoring.drill_sheet import last_sheet
+from tangy_tui.monitoring.drill_log import last_sheet
 from tangy_tui.text.situations import counted
 
 
@@ -24,11 +24,11 @@ def how_far(workspace: Workspace) -> Mapping[str, str]:
         "teach": counted(finished, "demonstration")
         + (f", {unfinished} unfinished" if unfinished else ""),
         "library": f"{len(shown)} in use, {away} put away" if away else "",
-        "learn": "" if kept is None else f"from {len(kept['demonstrations'])} so far",
+        "learn": "" if kept is None else f"from {len(kept.demonstrations)} so far",
         "play": "" if kept is not None else "learn first",
         "live": _robot_of(workspace) if kept is not None else "learn first",
         "rehearse": "" if sheet is None else f"last: {sheet.points} of {sheet.most} points",
-        "policy": "" if kept is None else str(kept["name"]),
+        "policy": "" if kept is None else kept.name,
         "people": people,
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from rich import box
 from rich.console import Console
@@ -15,6 +15,7 @@ from rich.text import Text
 from tangy_profiles.activity import Activity
 from tangy_profiles.beliefs import Beliefs, leading, probability_best
 from tangy_profiles.reading import plain
+from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.comparison import SituationComparison
@@ -76,12 +77,12 @@ def print_policy(activity: Activity, policy: Policy, effects: Effects, library: 
     console.print(table)
 
 
-def print_policies(kept: Sequence[Mapping[str, Any]]) -> None:
+def print_policies(kept: Sequence[PolicyLearnt]) -> None:
     """Print the policies that were learnt, the latest last."""
     table = _table("Policies", "name", "learnt", "demonstrations", "digest")
     for one in kept:
-        count = str(len(one["demonstrations"]))
-        table.add_row(Text(plain(one["name"])), local_time(one["at"]), count, one["digest"][:8])
+        count = str(len(one.demonstrations))
+        table.add_row(Text(plain(one.name)), local_time(one.at), count, one.digest[:8])
     Console(highlight=False).print(table)
 
 

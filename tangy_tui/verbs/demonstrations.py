@@ -255,14 +255,15 @@ def _change(
         print(plain(f"{before}{_edit_words(workspace, editor, edit)}"))
         if not before:
             print("`tangy demonstrations undo` takes it back.")
-        if edit.what == "resolve":
+        if edit.done.what == "resolve":
             left = len(editor.library.conflicts)
             print(f"{counted(left, 'conflict')} left; then `tangy learn`.")
 
 
 def _edit_document(edit: Edit) -> dict[str, Any]:
-    body = {key: value for key, value in edit.body.items() if key != "activity"}
-    return {"edit": edit.seq, "at": edit.at, **body}
+    from tangy_profiles.codec import written
+
+    return {"edit": edit.seq, "at": edit.at, **written(edit.done)}
 
 
 def _edit_words(workspace: Workspace, editor: Editor, edit: Edit) -> str:

@@ -43,14 +43,15 @@ def drill(
     name = teacher_name() if who is None else read_name(who, "--who: a name")
     with open_workspace(data, activity, users, write=not scores) as workspace:
         if scores:
-            from tangy_tui.monitoring.drill_sheet import read_sheets
+            from tangy_profiles.codec import written
+            from tangy_tui.monitoring.drill_log import read_sheets
             from tangy_tui.text.drills import sheets_lines
             from tangy_tui.ui.local_time import local_time
 
             only = "" if who is None else name
             if as_json:
                 sheets = read_sheets(workspace.store, only)
-                print_json([{"at": sheet.at, **sheet.to_json()} for sheet in sheets])
+                print_json([{"at": sheet.at, **written(sheet)} for sheet in sheets])
             else:
                 for line in sheets_lines(read_sheets(workspace.store), local_time, only):
                     print_line(line)
@@ -87,4 +88,6 @@ def drill(
             raise
         if not made.over:
             say_notices([left_words(made)])
-        print_json(made.sheet.to_json())
+        from tangy_profiles.codec import written
+
+        print_json(written(made.sheet))

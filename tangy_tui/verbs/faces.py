@@ -95,14 +95,13 @@ def faces_who(
 @app.command("list")
 def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> None:
     """List whose faces are known, and who agreed to it how."""
-    from tangy_hw.perception.faces.face_store import CONSENT, consented, kept_faces, read_face
+    from tangy_hw.perception.faces.face_store import consented, kept_faces, read_face
+    from tangy_profiles.people_records import FaceConsent
 
     with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE, write=False) as workspace:
         names, agreed = names_of(workspace), consented(workspace.store)
         how = {
-            event.person: event
-            for event in workspace.store.events(CONSENT)
-            if event.body.get("yes") is True
+            event.person: event for event in workspace.store.events(FaceConsent) if event.record.yes
         }
         rows: list[dict[str, Any]] = []
         for person, kind in kept_faces(workspace.store):
@@ -115,7 +114,7 @@ def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> N
                         "pictures": 0 if pictures is None else len(pictures),
                         "kind": kind,
                         "agreed": how[person].at,
-                        "how": how[person].body.get("how", ""),
+                        "how": how[person].record.how,
                     }
                 )
         if as_json:

@@ -119,7 +119,7 @@ def faces_enrol(
 
 def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
     """Find who is meant, or make a guest of somebody who is new; say whether they are."""
-    from tangy_hw.perception.faces.face_store import CONSENT
+    from tangy_profiles.people_records import FaceConsent
 
     called = wanted.strip()
     if folded(called) == FRONT:
@@ -129,7 +129,7 @@ def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
     guests = [i for i in names if i.startswith(GUEST)]
     if players or called in guests or folded(called) in {folded(names[i]) for i in guests}:
         return find_anybody(workspace, called), False
-    ids = {*names, *(event.person or "" for event in workspace.store.events(CONSENT))}
+    ids = {*names, *(event.person or "" for event in workspace.store.events(FaceConsent))}
     numbers = [int(i.removeprefix(GUEST)) for i in ids if re.fullmatch(rf"{GUEST}\d{{1,9}}", i)]
     return Person(f"{GUEST}{max(numbers, default=0) + 1}", called), True
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,6 +17,7 @@ from tangy_tui.verbs.opening import open_workspace, say_notices
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
+    from tangy_profiles.teaching_records import PolicyLearnt
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policies import Change
     from tangy_tui.learning.policy import Policy
@@ -207,12 +208,12 @@ def _tell_learnt(workspace: Workspace, policy: Policy, steps: int, left_out: int
 
 
 def _tell_changed(
-    workspace: Workspace, before: Mapping[str, Any] | None, changed: Sequence[Change]
+    workspace: Workspace, before: PolicyLearnt | None, changed: Sequence[Change]
 ) -> None:
     """Say what the new policy does otherwise than the one before."""
     if before is None:
         return
-    name = plain(str(before["name"]))
+    name = plain(before.name)
     if not changed:
         print(f"It does the same as {name!r} before it, in every situation.")
         return
@@ -255,12 +256,8 @@ def _list_policies(workspace: Workspace, as_json: bool) -> None:
 
     kept = kept_policies(workspace.store, workspace.activity.name)
     if as_json:
-        print_json(
-            [
-                {key: one[key] for key in ("name", "at", "digest", "demonstrations", "versions")}
-                for one in kept
-            ]
-        )
+        told = ("name", "at", "digest", "demonstrations", "versions")
+        print_json([{key: getattr(one, key) for key in told} for one in kept])
     else:
         reports.print_policies(kept)
 

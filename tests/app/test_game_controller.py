@@ -11,6 +11,7 @@ import pytest
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import StaffAction
 from tangy_profiles.robot import load_robot
 from tangy_profiles.room import load_room
 from tangy_tui.app.game_commands import (
@@ -39,7 +40,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Acted, GameEnded, Unsure
 from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
-from tangy_tui.monitoring.fault import STAFF, Diagnosed
+from tangy_tui.monitoring.fault import Diagnosed
 from tests.hw.links import FakeLink
 
 
@@ -76,7 +77,7 @@ class Played:
         return [e.action.behaviour.name for e in self.control.next() if isinstance(e, Acted)]
 
     def logged(self) -> list[tuple[str, str]]:
-        return [(e.body["what"], e.body["by"]) for e in self.workspace.store.events(STAFF)]
+        return [(e.body["what"], e.body["by"]) for e in self.workspace.store.events(StaffAction)]
 
 
 def kinds(told: Sequence[Told]) -> list[str]:

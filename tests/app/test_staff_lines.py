@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
 from tangy_tui.app.game_commands import GoOn, StopRobot
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
@@ -100,10 +101,10 @@ def test_a_log_that_cannot_be_written_pauses_the_game(
 ) -> None:
     real, fails = workspace.store.append, iter([True])
 
-    def append(kind: str, *body: object, **more: object) -> int:
-        if kind == "game step" and next(fails, False):
+    def append(record: EventRecord, **more: Any) -> int:
+        if record.KIND == "game step" and next(fails, False):
             raise TangyError("The disk is full.")
-        return real(kind, *body, **more)  # type: ignore[arg-type]
+        return real(record, **more)
 
     monkeypatch.setattr(workspace.store, "append", append)
     written, ended = told(workspace, "wait until paused", "go on", "wait until called", "end")

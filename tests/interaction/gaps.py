@@ -6,18 +6,26 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+)
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import EXACT, ForestSettings, Policy, learn_policy
+from tests.support.append_body import append_body
 
 
 def keep(store: Store, demonstration: Demonstration) -> None:
     """Log a demonstration as a teaching session does."""
     name = {"demonstration": demonstration.id}
-    store.append(
-        BEGUN,
+    append_body(
+        store,
+        DemonstrationBegun,
         {
             **name,
             "activity": demonstration.activity,
@@ -27,8 +35,8 @@ def keep(store: Store, demonstration: Demonstration) -> None:
         },
     )
     for step in demonstration.steps:
-        store.append(STEP, {**name, **step.to_json()})
-    store.append(FINISHED, name)
+        append_body(store, DemonstrationStep, {**name, **written(step)})
+    append_body(store, DemonstrationFinished, name)
 
 
 def without(demonstration: Demonstration, *situations: Situation) -> Demonstration:

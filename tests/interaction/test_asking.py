@@ -7,6 +7,7 @@ from copy import deepcopy
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -14,16 +15,18 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import GameEnding, GameStep
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_sim.worlds.world import SimulatedWorld
-from tangy_tui.interaction.facilitation import ENDED, STEP, Facilitation
+from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, GameEnded, GameEvent, Taught, Unsure
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.online_learning import OnlineLearning
-from tangy_tui.learning.policies import POLICY, load_policy
+from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.policy import PAPER, SURE, Policy
 from tangy_tui.learning.verification import Asked, Reply, Say, Verified
 from tests.interaction.conftest import FEW, acts
@@ -170,7 +173,7 @@ def test_the_game_goes_on_to_its_end_and_does_not_ask_twice(
     assert not any(isinstance(event, Unsure) for event in events)
     assert isinstance(events[-1], GameEnded)
     assert events[-1].stopped is None
-    steps = list(store.events(STEP))
+    steps = list(store.events(GameStep))
     assert len(steps) == len(acts(events))
     assert [bool(step.body["teacher"]) for step in steps] == [True] + [False] * (len(steps) - 1)
 
@@ -213,14 +216,14 @@ def test_leaving_ends_the_game_in_the_log(
         reply(facilitation, activity)
     (ended,) = facilitation.leave()
     assert isinstance(ended, GameEnded)
-    kept = store.last(ENDED)
+    kept = store.last(GameEnding)
     assert kept is not None
     assert kept.body["stopped"] == ended.stopped == "It was left before its end."
     assert (facilitation.over, facilitation.question) == (True, None)
     assert facilitation.leave() == facilitation.step() == []
 
 
-@pytest.mark.parametrize("fails", [STEP, POLICY, "demonstration step"])
+@pytest.mark.parametrize("fails", ["game step", "policy learnt", "demonstration step"])
 def test_an_answer_that_cannot_be_kept_loses_nothing(
     facilitation: Facilitation,
     store: Store,
@@ -233,10 +236,10 @@ def test_an_answer_that_cannot_be_kept_loses_nothing(
     events = [event.seq for event in store.events()]
     append = store.append
 
-    def refuse(kind: str, *rest: object, **more: object) -> int:
-        if kind == fails:
+    def refuse(record: EventRecord, **more: Any) -> int:
+        if fails == record.KIND:
             raise OSError("full")
-        return append(kind, *rest, **more)  # type: ignore[arg-type]
+        return append(record, **more)
 
     with monkeypatch.context() as broken:
         broken.setattr(store, "append", refuse)

@@ -12,12 +12,13 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.game_records import GameEnding
 from tangy_profiles.state import Outcome, Situation
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.interaction import facilitation as room
-from tangy_tui.interaction.facilitation import ENDED, Facilitation
+from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameBegun, GameEnded, GameEvent
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.learning.policy import Policy, learn_policy
@@ -142,7 +143,7 @@ def test_a_game_that_goes_round_in_circles_is_stopped(
     ended = play(facilitate(11, without(policy, start, behaviour="joke")))[-1]
     assert isinstance(ended, GameEnded)
     assert (ended.steps, ended.stopped) == (50, "The game did not end within 50 steps.")
-    kept = store.last(ENDED)
+    kept = store.last(GameEnding)
     assert kept is not None
     assert kept.body["stopped"] == ended.stopped
 

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
+from typing import Any
 
 import pytest
 
+from tangy_profiles.codec import written
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import GameBeginning, GameEnding, GameStep
+from tangy_profiles.people_records import ResponseGiven
 from tangy_profiles.store import Store
-from tangy_tui.interaction.facilitation import BEGUN, ENDED, RESPONSE, STEP, Facilitation
+from tangy_tui.interaction.facilitation import Facilitation
 from tangy_tui.interaction.game_events import Acted, BeliefUpdated, GameEnded
 from tangy_tui.learning.policy import Policy
 from tests.interaction.conftest import acts, play
@@ -19,8 +24,12 @@ Make = Callable[..., Facilitation]
 def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: Store) -> None:
     facilitation = facilitate(6)
     facilitation.begin()
-    kinds = {Acted: STEP, BeliefUpdated: RESPONSE, GameEnded: ENDED}
-    told: list[str] = [BEGUN]
+    kinds = {
+        Acted: GameStep.KIND,
+        BeliefUpdated: ResponseGiven.KIND,
+        GameEnded: GameEnding.KIND,
+    }
+    told: list[str] = [GameBeginning.KIND]
     while not facilitation.over:
         told += [kinds[type(event)] for event in facilitation.step()]
         assert [event.kind for event in store.events()] == told
@@ -28,16 +37,16 @@ def test_what_happens_is_in_the_log_before_it_is_told(facilitate: Make, store: S
 
 def test_the_log_tells_the_game_again(facilitate: Make, store: Store, policy: Policy) -> None:
     events = play(facilitate(7, users=2))
-    begun = store.last(BEGUN)
+    begun = store.last(GameBeginning)
     assert begun is not None
     assert begun.body["policy"] == policy.digest
     assert (begun.body["seed"], begun.body["people"]) == (7, ["user1", "user2"])
-    for act, kept in zip(acts(events), store.events(STEP), strict=True):
+    for act, kept in zip(acts(events), store.events(GameStep), strict=True):
         assert kept.body["behaviour"] == act.action.behaviour.name
         assert kept.body["target"] == act.action.target
         assert kept.body["strategy"] == act.action.strategy
         assert kept.body["numbers"] == list(act.outcome.numbers)
-        assert kept.body["state"] == act.state.to_json()
+        assert kept.body["state"] == written(act.state)
         assert (kept.body["draws"] or {}) == (dict(act.choice.draws) if act.choice else {})
 
 
@@ -57,15 +66,15 @@ def test_a_step_that_cannot_be_kept_leaves_nothing_of_it_in_the_log(
     facilitation.begin()
     append = store.append
 
-    def refuse(kind: str, *rest: object, **more: object) -> int:
-        if kind == RESPONSE:
+    def refuse(record: EventRecord, **row: Any) -> int:
+        if isinstance(record, ResponseGiven):
             raise OSError("full")
-        return append(kind, *rest, **more)  # type: ignore[arg-type]
+        return append(record, **row)
 
     monkeypatch.setattr(store, "append", refuse)
     steps, beliefs = 0, deepcopy(facilitation.persuasion.beliefs)
     with pytest.raises(OSError, match="full"):
         while steps < 1000:
             steps += len(acts(facilitation.step() or facilitation.begin()))
-    assert sum(1 for _ in store.events(STEP)) == steps
+    assert sum(1 for _ in store.events(GameStep)) == steps
     assert facilitation.persuasion.beliefs == beliefs

@@ -16,12 +16,14 @@ from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beta
 from tangy_profiles.errors import TangyError
+from tangy_profiles.people_records import ResponseAwaited
 from tangy_profiles.persuading import PAPER, PersuasionConfig
 from tangy_profiles.state import Response
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import AWAITED, Feedback
+from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.persuasion import Persuasion
+from tests.support.append_body import append_body
 
 STRATEGIES = ("plain", "warm", "brisk")
 FORGETFUL = PersuasionConfig(forgetting=0.9)
@@ -55,7 +57,7 @@ def log(tmp_path_factory: pytest.TempPathFactory, clock: Clock) -> Iterator[Stor
 
 def respond(store: Store, person: str, strategy: str, complied: bool, game: str = "g") -> int:
     body = {"game": game, "followed": True, "seconds": 5.0}
-    return store.append("response", body, person=person, strategy=strategy, complied=complied)
+    return append_body(store, "response", body, person=person, strategy=strategy, complied=complied)
 
 
 # ------------------------------------------------------------------------ the law of counts
@@ -113,7 +115,7 @@ def move(model: Model, store: Store, person: str, what: str, which: str | int, y
         seq = respond(store, person, str(which), yes)
         model.answers.append(Answer(seq, seq, str(which), yes))
     elif what == "await":
-        seq = store.append(AWAITED, {"game": "g"}, person=person, strategy=str(which))
+        seq = append_body(store, ResponseAwaited, {"game": "g"}, person=person, strategy=str(which))
         model.answers.append(Answer(seq, seq, str(which), None))
     elif what == "unasked":
         seq = feedback.give(person, str(which), yes).seq
@@ -216,7 +218,7 @@ def test_late_feedback_comes_to_the_same_in_whatever_order_it_arrives(
         for strategy, complied in told:
             clock.now += timedelta(hours=1)
             respond(log, in_time, strategy, complied)
-            seq = log.append(AWAITED, {"game": "g"}, person=late, strategy=strategy)
+            seq = log.append(ResponseAwaited(game="g"), person=late, strategy=strategy)
             waiting.append((strategy, complied, seq))
         rng.shuffle(waiting)
         for strategy, complied, seq in waiting:
@@ -257,7 +259,7 @@ def test_an_answer_that_is_wrong_is_voided_and_given_again(store: Store) -> None
 
 def test_feedback_to_another_persons_or_another_strategys_request_is_refused(store: Store) -> None:
     feedback = Feedback(store)
-    seq = store.append(AWAITED, {"game": "g"}, person="p", strategy="warm")
+    seq = append_body(store, ResponseAwaited, {"game": "g"}, person="p", strategy="warm")
     with pytest.raises(TangyError, match="was put with warm, not with brisk"):
         feedback.give("p", "brisk", True, seq)
     with pytest.raises(TangyError, match="is not a request to q"):

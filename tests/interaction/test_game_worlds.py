@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tangy_profiles.codec import written
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import (
     BENCH,
@@ -23,18 +24,19 @@ from tangy_profiles.store import Store
 from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.record import read_records
+from tests.support.append_body import append_body
 
-STATE = ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()).to_json()
+STATE = written(ActivityState(0, Situation("s", "ANR", "u"), FRONT, None, ()))
 STRATEGIES = ("praise", "neutral")
 
 
 def game(store: Store, id: str, world: GameWorld | None, complied: int, refused: int = 0) -> None:
     """Log a game with responses of one person to praise."""
     body = {"game": id, "number": 1, "activity": "a", "policy": "", "seed": 1, "people": ["p"]}
-    store.append("game begun", body if world is None else {**body, "world": world})
+    append_body(store, "game begun", body if world is None else {**body, "world": world})
     for did in [True] * complied + [False] * refused:
         told = {"game": id, "followed": did, "seconds": 1.0}
-        store.append("response", told, person="p", strategy="praise", complied=did)
+        append_body(store, "response", told, person="p", strategy="praise", complied=did)
 
 
 def believed(store: Store, world: GameWorld | None = None) -> tuple[float, float]:
@@ -144,7 +146,7 @@ def test_games_of_before_count_as_simulated_unless_a_robot_played_them(
                 "game": "old", "behaviour": "b", "target": None, "numbers": [1],
                 "seconds": seconds, "state": STATE,
             }  # fmt: skip
-            store.append("game step", body)
+            append_body(store, "game step", body)
         assert GameWorlds(store).all == {"old": world}
         game(store, "new", BENCH, 0)
         assert believed(store, world) == (2, 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from random import Random
@@ -13,6 +14,7 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beliefs, Beta, uniform_beliefs
+from tangy_profiles.codec import Unreadable, read, written
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.persuading import (
     METHODS,
@@ -294,7 +296,7 @@ def test_with_what_earlier_people_liked_it_is_at_most_half() -> None:
 )
 def test_a_method_is_chosen_by_words_in_any_order(words: str, chosen: PersuasionConfig) -> None:
     assert spoken_persuading(words.split()) == chosen
-    assert PersuasionConfig.from_json(chosen.to_json()) == chosen
+    assert read(PersuasionConfig, json.loads(json.dumps(written(chosen)))) == chosen
 
 
 @pytest.mark.parametrize(
@@ -336,5 +338,5 @@ def test_each_method_can_be_made_and_has_words_for_people() -> None:
 
 
 def test_a_method_that_is_not_known_is_refused_and_not_taken_for_another() -> None:
-    with pytest.raises(ProfileError, match="There is no method 'thomson': did you mean"):
-        PersuasionConfig.from_json({"method": "thomson"})
+    with pytest.raises(Unreadable, match=r"has 'method' that is 'thomson' .did you mean"):
+        read(PersuasionConfig, {"method": "thomson"})

@@ -24,6 +24,7 @@ from tangy_tui.interaction.record import (
     settled_of,
 )
 from tangy_tui.interaction.saying import sentence
+from tests.support.append_body import append_body
 
 NAMES = ("neutral", "praise", "suggestion", "scarcity")
 NOW = datetime(2026, 5, 22, 15, tzinfo=UTC)
@@ -40,8 +41,8 @@ def noted(tmp_path: Path) -> Callable[..., Record]:
         with Store.open(tmp_path / "data") as store:
             for strategy, (yes, no) in counts.items():
                 for complied in [True] * yes + [False] * no:
-                    store.append(
-                        "response", {}, person="user1", strategy=strategy, complied=complied
+                    append_body(
+                        store, "response", {}, person="user1", strategy=strategy, complied=complied
                     )
             memory = PersonModels(store, strategies)
             for strategy in off:

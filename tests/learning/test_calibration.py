@@ -38,6 +38,7 @@ from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings,
 from tangy_tui.speech.labels import UtteranceLabel
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.microphone_check import CheckResult, MicrophoneCheck, to_say
+from tests.support.append_body import append_body
 
 COMMAND, OTHER = (
     CalibrationPrompt("call number", UtteranceLabel("call number")),
@@ -149,7 +150,7 @@ class TestStore:
     def test_odd_settings_in_the_log_are_as_good_as_none(
         self, written: object, store: Store
     ) -> None:
-        store.append("microphone checked", {"source": "arecord", "settings": written})
+        append_body(store, "microphone checked", {"source": "arecord", "settings": written})
         assert settings_for(store, "arecord") == USUAL
 
 

@@ -14,21 +14,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import FRONT, ActivityState
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+    DemonstrationStepUndone,
+)
 from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.editing import Editor, NotPossible
-from tangy_tui.learning.library import (
-    BEGUN,
-    FINISHED,
-    STEP,
-    UNDONE,
-    Library,
-    NoDemonstration,
-    read_library,
-)
+from tangy_tui.learning.library import Library, NoDemonstration, read_library
+from tests.support.append_body import append_body
 
 BINGO = load_activity("bingo")
 
@@ -42,17 +42,18 @@ def logged(
     teacher: str = "Ada",
 ) -> None:
     """Log a demonstration in which each behaviour is the answer to the next situation."""
-    store.append(
-        BEGUN,
+    append_body(
+        store,
+        DemonstrationBegun,
         {"demonstration": id, "activity": "bingo", "teacher": teacher, "seed": 1, "people": ["a"]},
     )
     for number, behaviour in enumerate(behaviours):
         situation = BINGO.situations[number % len(BINGO.situations)]
         state = ActivityState(number, situation, FRONT, None, ())
         step = Step(behaviour, None, state, state)
-        store.append(STEP, {"demonstration": id, **step.to_json()})
+        append_body(store, DemonstrationStep, {"demonstration": id, **written(step)})
     if finished:
-        store.append(FINISHED, {"demonstration": id})
+        append_body(store, DemonstrationFinished, {"demonstration": id})
 
 
 def editor_of(store: Store) -> Editor:
@@ -118,8 +119,8 @@ def test_edits_are_undone_the_latest_first(editor: Editor) -> None:
     before = used(editor.library)
     editor.merge("1", "2")
     editor.delete("new1")
-    assert editor.undo().what == "delete"
-    assert editor.undo().what == "merge"
+    assert editor.undo().done.what == "delete"
+    assert editor.undo().done.what == "merge"
     assert used(editor.library) == before
     assert editor.library.find("new1").hidden == "undone"  # policies may rest on it
     with pytest.raises(NotPossible, match="no change"):
@@ -172,7 +173,7 @@ def test_what_was_made_of_a_demonstration_does_not_change_with_it(
 ) -> None:
     steps = used(editor.library)
     editor.split("aaa", 2)
-    store.append(UNDONE, {"demonstration": "aaa", "step": 3})
+    append_body(store, DemonstrationStepUndone, {"demonstration": "aaa", "step": 3})
     now = used(editor.library)
     assert (now["new1"], now["new2"]) == (steps["aaa"][:2], steps["aaa"][2:])
 
@@ -190,8 +191,8 @@ def test_only_one_of_two_that_show_the_same_game_is_restored(editor: Editor, sto
     editor.delete("aaa")
     body = {"activity": "bingo", "teacher": "Bea", "seed": 1, "people": ["a"]}
     again = {"demonstration": "bbb2", "origin": "again", "of": ["aaa"], "kept": 1, **body}
-    store.append(BEGUN, again)
-    store.append(FINISHED, {"demonstration": "bbb2"})
+    append_body(store, DemonstrationBegun, again)
+    append_body(store, DemonstrationFinished, {"demonstration": "bbb2"})
     with pytest.raises(NotPossible, match="was shown again: delete the new one"):
         editor.restore("aaa")
 
@@ -236,14 +237,14 @@ def test_what_is_shown_again_replaces_the_old_when_it_is_complete(store: Store) 
         "of": ["aaa"],
         "kept": 2,
     }
-    store.append(BEGUN, again)
+    append_body(store, DemonstrationBegun, again)
     library = read_library(store, "bingo")
     old, new = (library.entries[id].demonstration for id in ("aaa", "bbb"))
     assert new.steps == old.steps[:2]
     assert [s.id for s in new.steps] == [s.id for s in old.steps[:2]]
     assert used(library) == {"aaa": [s.id for s in old.steps]}
-    store.append(STEP, {"demonstration": "bbb", **old.steps[2].to_json()})
-    store.append(FINISHED, {"demonstration": "bbb"})
+    append_body(store, DemonstrationStep, {"demonstration": "bbb", **written(old.steps[2])})
+    append_body(store, DemonstrationFinished, {"demonstration": "bbb"})
     library = read_library(store, "bingo")
     assert set(used(library)) == {"bbb"}
     assert library.entries["aaa"].hidden == "shown again"

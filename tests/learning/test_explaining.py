@@ -10,18 +10,25 @@ from pathlib import Path
 import pytest
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationFinished,
+    DemonstrationStep,
+)
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import choices, compare, find_policy
 from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
 from tangy_tui.learning.explanation import explain, foresee, shown_words, why_words
-from tangy_tui.learning.library import BEGUN, FINISHED, STEP, read_library
+from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy, kept_policies
 from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
+from tests.support.append_body import append_body
 
 Demonstrate = Callable[[str, int, int], Demonstration]
 FEW = ForestSettings(trees=5)
@@ -39,13 +46,14 @@ def shown(demonstrate: Demonstrate) -> list[Demonstration]:
 def log(store: Store, shown: Demonstration, teacher: str) -> None:
     """Log a demonstration as a teaching session does."""
     name = {"demonstration": shown.id}
-    store.append(
-        BEGUN,
+    append_body(
+        store,
+        DemonstrationBegun,
         {**name, "activity": shown.activity, "teacher": teacher, "seed": 1, "people": ["user1"]},
     )
     for step in shown.steps:
-        store.append(STEP, {**name, **step.to_json()})
-    store.append(FINISHED, name)
+        append_body(store, DemonstrationStep, {**name, **written(step)})
+    append_body(store, DemonstrationFinished, name)
 
 
 def without(shown: Demonstration, situation: Situation) -> Demonstration:
@@ -221,11 +229,11 @@ def test_a_house_opens_all_of_it_by_name(taught: Path) -> None:
     try:
         store, activity = workspace.store, workspace.activity
         (kept,) = kept_policies(store, activity.name)
-        assert choices(store, activity) == [kept["name"], "scripted"]
+        assert choices(store, activity) == [kept.name, "scripted"]
         found = {name: find_policy(store, activity, name) for name in choices(store, activity)}
         assert [notices for _, notices in found.values()] == [[], []]
         learnt, shown = (policy for policy, _ in found.values())
-        assert (learnt.name, learnt.digest) == (kept["name"], kept["digest"])
+        assert (learnt.name, learnt.digest) == (kept.name, kept.digest)
         assert (shown.name, len(shown.demonstrations)) == ("scripted", 3)
         assert all(row.same for row in compare(activity, learnt, shown))
         assert learnt.exact(activity)

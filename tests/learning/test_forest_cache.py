@@ -68,7 +68,7 @@ def test_what_was_tampered_with_is_found_out_and_put_right(taught: Path) -> None
         told["votes"] = [[["joke", 1.0]] for _ in told["votes"]]
         file.write_text(json.dumps(told))
         assert load_policy(store, activity) == (right, [])
-        assert right.digest == need_policy(store, activity)["digest"]
+        assert right.digest == need_policy(store, activity).digest
         assert json.loads(file.read_text())["votes"] != told["votes"]
 
 

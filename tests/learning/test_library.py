@@ -9,20 +9,22 @@ from typing import Any
 import pytest
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
-from tangy_tui.learning.library import (
-    FINISHED,
-    STEP,
-    UNDONE,
-    read_demonstrations,
+from tangy_profiles.teaching_records import (
+    DemonstrationFinished,
+    DemonstrationStep,
+    DemonstrationStepUndone,
+    LearntRow,
+    PolicyLearnt,
 )
+from tangy_tui.learning.library import read_demonstrations
 from tangy_tui.learning.policies import (
     ASKS,
     GONE,
-    POLICY,
     Change,
     NoPolicy,
     changes,
@@ -33,6 +35,7 @@ from tangy_tui.learning.policies import (
 )
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 from tests.shown import log_demonstration
+from tests.support.append_body import append_body
 
 Demonstrate = Callable[[str, int, int], Demonstration]
 FEW = ForestSettings(trees=5)
@@ -55,9 +58,9 @@ def learnt(activity: Activity, shown: list[Demonstration], store: Store) -> Poli
 
 def with_kept(store: Store, change: Mapping[str, Any]) -> None:
     """Log the last policy once more, as if it had come out differently."""
-    kept = store.last(POLICY)
+    kept = store.last(PolicyLearnt)
     assert kept is not None
-    store.append(POLICY, {**kept.body, **change})
+    append_body(store, PolicyLearnt, {**kept.body, **change})
 
 
 # ------------------------------------------------------------------------------ demonstrations
@@ -76,7 +79,7 @@ def test_demonstrations_that_interleave_are_kept_apart(
     one, other = demonstrate("bingo", 1, 4), demonstrate("bingo", 2, 4)
     log_demonstration(store, replace(one, steps=one.steps[:3], finished=False))
     log_demonstration(store, other)
-    store.append(STEP, {"demonstration": one.id, **one.steps[3].to_json()})
+    append_body(store, DemonstrationStep, {"demonstration": one.id, **written(one.steps[3])})
     found = read_demonstrations(store, "bingo")
     assert found == [replace(one, steps=one.steps[:4], finished=False), other]
 
@@ -84,15 +87,17 @@ def test_demonstrations_that_interleave_are_kept_apart(
 def test_an_undone_step_is_gone_and_its_demonstration_no_longer_finished(
     store: Store, shown: list[Demonstration]
 ) -> None:
-    store.append(UNDONE, {"demonstration": shown[0].id, "step": len(shown[0].steps)})
+    append_body(
+        store, DemonstrationStepUndone, {"demonstration": shown[0].id, "step": len(shown[0].steps)}
+    )
     assert read_demonstrations(store, "bingo")[0] == shown[0].without_last()
 
 
 def test_steps_of_unknown_demonstrations_are_passed_over(
     store: Store, shown: list[Demonstration]
 ) -> None:
-    for kind in (STEP, UNDONE, FINISHED):
-        store.append(kind, {"demonstration": "nobody's", **shown[0].steps[0].to_json()})
+    for kind in (DemonstrationStep, DemonstrationStepUndone, DemonstrationFinished):
+        append_body(store, kind, {"demonstration": "nobody's", **written(shown[0].steps[0])})
     assert read_demonstrations(store, "bingo") == shown
 
 
@@ -162,7 +167,7 @@ def test_a_decision_that_changed_is_said_row_by_row(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learnt(activity, shown, store)
-    rows = [list(row) for row in policy.to_json()["rows"]]
+    rows = policy.record().body["rows"]
     where, was = Situation(*rows[0][:3]), rows[0][3]
     rows[0][3] = "juggle"
     with_kept(store, {"digest": "other", "rows": rows})
@@ -175,7 +180,9 @@ def test_a_step_undone_after_learning_is_said(
     store: Store, activity: Activity, shown: list[Demonstration]
 ) -> None:
     learnt(activity, shown, store)
-    store.append(UNDONE, {"demonstration": shown[0].id, "step": len(shown[0].steps)})
+    append_body(
+        store, DemonstrationStepUndone, {"demonstration": shown[0].id, "step": len(shown[0].steps)}
+    )
     _, notices = load_policy(store, activity)
     assert "its demonstrations have changed since" in notices[0]
 
@@ -184,23 +191,22 @@ def test_policies_are_compared_by_what_they_do(
     activity: Activity, shown: list[Demonstration]
 ) -> None:
     policy = learn_policy(activity, shown, settings=FEW)
-    kept = policy.to_json()
+    kept = policy.record()
     assert changes(kept, policy) == []
-    gone = ["nowhere", "AR", "odd", "joke", 1.0]
-    (change,) = changes({**kept, "rows": [*kept["rows"], gone]}, policy)
+    gone = LearntRow("nowhere", "AR", "odd", "joke", 1.0)
+    (change,) = changes(replace(kept, rows=(*kept.rows, gone)), policy)
     assert change == Change(Situation("nowhere", "AR", "odd"), "joke", GONE)
     start = activity.situations[0]
-    assert changes({**kept, "asks": [list(start)]}, policy) == [Change(start, ASKS, "greeting")]
-    fewer = [row for row in kept["rows"] if row[0] != "start"]
-    assert changes({**kept, "rows": fewer}, policy) == [Change(start, ASKS, "greeting")]
-    older = {key: value for key, value in kept.items() if key != "asks"}
-    assert changes(older, policy) == []
+    assert changes(replace(kept, asks=(start,)), policy) == [Change(start, ASKS, "greeting")]
+    fewer = tuple(row for row in kept.rows if row.stage != "start")
+    assert changes(replace(kept, rows=fewer), policy) == [Change(start, ASKS, "greeting")]
+    assert changes(replace(kept, asks=None), policy) == []
 
 
 def test_a_row_that_becomes_contested_is_a_difference(
     activity: Activity, shown: list[Demonstration]
 ) -> None:
-    kept = learn_policy(activity, shown, settings=FEW).to_json()
+    kept = learn_policy(activity, shown, settings=FEW).record()
     first = shown[0].steps[0]
     stray = replace(shown[0], steps=(replace(first, behaviour="joke"), *shown[0].steps))
     now = learn_policy(activity, [stray, *shown[1:]], settings=FEW)

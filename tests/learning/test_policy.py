@@ -14,6 +14,7 @@ from math import isclose
 import pytest
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import FRONT, ActivityState, Situation
 from tangy_tui.learning.conflicts import find_conflicts, training_rows
@@ -137,13 +138,14 @@ def test_another_process_learns_the_same_bit_for_bit(
     code = (
         "import sys, json\n"
         "from tangy_profiles.activity import load_activity\n"
+        "from tangy_profiles.codec import read\n"
         "from tangy_profiles.demonstration import Demonstration, Step\n"
         "from tangy_tui.learning.policy import PAPER, learn_policy\n"
-        "steps = tuple(map(Step.from_json, json.load(sys.stdin)))\n"
+        "steps = tuple(read(Step, one) for one in json.load(sys.stdin))\n"
         "shown = Demonstration('x', 'bingo', 'test', 0, (), steps)\n"
         "print(learn_policy(load_activity('bingo'), [shown], settings=PAPER).digest)\n"
     )
-    told = json.dumps([step.to_json() for step in shown.steps])
+    told = json.dumps([written(step) for step in shown.steps])
     done = subprocess.run(  # noqa: S603 - this Python
         [sys.executable, "-c", code],
         input=told, capture_output=True, text=True, check=True,
@@ -225,7 +227,7 @@ def test_nothing_is_outvoted_until_a_teacher_says_what_is_right(
 
 
 def test_what_is_kept_of_a_policy_is_plain_json(covered: Policy) -> None:
-    kept = covered.to_json()
+    kept = covered.record().body
     assert json.loads(json.dumps(kept)) == kept
     assert kept["digest"] == covered.digest
     assert kept["forest"] == {"trees": 5, "bootstrap": False, "min_samples_leaf": 1, "seed": 0}

@@ -9,13 +9,21 @@ from dataclasses import replace
 import pytest
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.store import Store
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationStep,
+    DemonstrationStepUndone,
+    Merger,
+)
 from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.editing import Editor
-from tangy_tui.learning.library import BEGUN, STEP, UNDONE, Library, read_library
+from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.quality import quality_notes
 from tests.shown import answering, log_demonstration
+from tests.support.append_body import append_body
 
 Demonstrate = Callable[[str, int, int], Demonstration]
 WRONG = "incorrectly marked"
@@ -57,7 +65,7 @@ def test_steps_taken_back_are_counted(
 ) -> None:
     log_demonstration(store, replace(good[0], steps=good[0].steps[:3], finished=False))
     for _ in range(2):
-        store.append(UNDONE, {"demonstration": good[0].id, "step": 3})
+        append_body(store, DemonstrationStepUndone, {"demonstration": good[0].id, "step": 3})
     library = read_library(store, "bingo")
     assert notes(activity, library, 1) == ["not finished", "2 steps taken back"]
 
@@ -139,8 +147,9 @@ def test_one_that_was_shown_again_names_the_step(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     log_demonstration(store, good[0])
-    store.append(
-        BEGUN,
+    append_body(
+        store,
+        DemonstrationBegun,
         {
             "demonstration": "again",
             "activity": "bingo",
@@ -152,7 +161,7 @@ def test_one_that_was_shown_again_names_the_step(
             "kept": 6,
         },
     )
-    store.append(STEP, {"demonstration": "again", **good[0].steps[6].to_json()})
+    append_body(store, DemonstrationStep, {"demonstration": "again", **written(good[0].steps[6])})
     said = notes(activity, read_library(store, "bingo"), 2)
     assert "shown again from step 7 of demonstration 1" in said
 
@@ -161,7 +170,9 @@ def test_a_number_stays_when_more_is_shown(
     activity: Activity, store: Store, good: list[Demonstration]
 ) -> None:
     library_of(store, *good[:2])
-    made = Editor(store, activity).merge("1", "2").body["made"][0]
+    merged = Editor(store, activity).merge("1", "2").done
+    assert isinstance(merged, Merger)
+    (made,) = merged.made
     assert read_library(store, "bingo").number(made) == 3
     library = library_of(store, good[2])
     assert library.number(made) == 3
@@ -189,7 +200,9 @@ def test_the_words_that_were_heard_are_found_by_step(
     store: Store, good: list[Demonstration]
 ) -> None:
     log_demonstration(store, replace(good[0], steps=good[0].steps[:1], finished=False))
-    second = good[0].steps[1].to_json()
-    store.append(STEP, {"demonstration": good[0].id, **second, "heard": "next number"})
+    second = written(good[0].steps[1])
+    append_body(
+        store, DemonstrationStep, {"demonstration": good[0].id, **second, "heard": "next number"}
+    )
     shown = read_library(store, "bingo").find("1").demonstration
     assert heard_words(store, shown) == {2: "next number"}

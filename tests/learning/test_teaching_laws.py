@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -14,8 +15,10 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
+from tangy_profiles.codec import read, written
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.errors import StoreError
+from tangy_profiles.events import EventRecord
 from tangy_profiles.person import load_people
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
@@ -159,10 +162,10 @@ def test_there_is_nothing_to_undo_before_the_first_step(store: Store) -> None:
 def failing(monkeypatch: pytest.MonkeyPatch, store: Store, kind: str) -> None:
     append = store.append
 
-    def refuse(what: str, body: dict[str, object]) -> int:
-        if what == kind:
+    def refuse(record: EventRecord) -> int:
+        if kind == record.KIND:
             raise StoreError("the disk is full")
-        return append(what, body)
+        return append(record)
 
     monkeypatch.setattr(store, "append", refuse)
 
@@ -207,4 +210,4 @@ def test_every_step_survives_the_log_as_it_was(
     demonstrate: Callable[[str, int, int], Demonstration],
 ) -> None:
     for step in demonstrate("bingo", 1, 8).steps:
-        assert Step.from_json(step.to_json()) == step
+        assert read(Step, json.loads(json.dumps(written(step)))) == step

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
 from tangy_profiles.errors import TangyError
-from tangy_profiles.events import BODIES
+from tangy_profiles.events import KINDS
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.doctor import examine
@@ -28,7 +28,7 @@ from tangy_tui.learning.demonstration_rows import heard_words, list_rows
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import changes, kept_policies, load_policy
 from tangy_tui.monitoring.accepted import expected_effects, read_accepted
-from tangy_tui.monitoring.drill_sheet import last_sheet, read_sheets
+from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.games import read_games, uncleared
 from tangy_tui.monitoring.log_check import log_problems
 from tangy_tui.monitoring.replay import read_replays
@@ -37,6 +37,7 @@ from tangy_tui.pages.session import session_page
 from tangy_tui.text.documents import entry_document, library_document, person_document
 from tangy_tui.text.log import replay_lines, session_lines
 from tangy_tui.text.situations import edit_words
+from tests.support.append_body import append_body
 from tests.support.every_kind import write_every_kind
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -143,7 +144,7 @@ def _is_list(value: Any) -> bool:
 @st.composite
 def damages(draw: st.DrawFn) -> Callable[[sqlite3.Connection], None]:
     """Draw something that can happen to one row."""
-    kind, place = draw(st.sampled_from(sorted(BODIES))), draw(st.integers(0, 10**6))
+    kind, place = draw(st.sampled_from(sorted(KINDS))), draw(st.integers(0, 10**6))
     how = draw(st.sampled_from(["inside", "inside", "inside", "body", "column"]))
     value, gone = draw(ODD), draw(st.booleans())
     broken, column = draw(BROKEN), draw(COLUMNS)
@@ -339,9 +340,11 @@ def test_a_row_far_beyond_all_others_keeps_nobody_waiting(every_kind: Path) -> N
 def test_what_cannot_be_read_back_is_not_written(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         with pytest.raises(ValueError, match="has no 'seed'"):
-            store.append(
-                "demonstration begun", {"demonstration": "a", "activity": "bingo", "teacher": "b"}
+            append_body(
+                store,
+                "demonstration begun",
+                {"demonstration": "a", "activity": "bingo", "teacher": "b"},
             )
         with pytest.raises(ValueError, match="whom it is about"):
-            store.append("renamed", {})
+            append_body(store, "renamed", {})
         assert list(store.events()) == []

@@ -10,9 +10,12 @@ from typing import Any
 import pytest
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.codec import written
+from tangy_profiles.drill_sheet import NOTHING_WRONG, AnsweredRound, Sheet
 from tangy_profiles.errors import TangyError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import RECOVERIES
+from tangy_profiles.game_records import DrillHeld
 from tangy_profiles.person import Person
 from tangy_profiles.robot import load_robot
 from tangy_profiles.store import Store
@@ -20,6 +23,7 @@ from tangy_tui.console.drills import drill_by_lines
 from tangy_tui.learning.policies import keep_policy
 from tangy_tui.monitoring import drill_policy, drill_rounds
 from tangy_tui.monitoring.drill import NOTHING, Drill
+from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.drill_policy import DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import (
     CHOICES,
@@ -31,16 +35,9 @@ from tangy_tui.monitoring.drill_rounds import (
     draw_rounds,
     round_kinds,
 )
-from tangy_tui.monitoring.drill_sheet import (
-    DRILL,
-    NOTHING_WRONG,
-    AnsweredRound,
-    Sheet,
-    last_sheet,
-    read_sheets,
-)
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.drills import device_words, round_parts, sheet_lines, sheets_lines, told_lines
+from tests.support.append_body import append_body
 
 BOOK = load_faults(load_robot())
 KINDS = round_kinds(BOOK)
@@ -279,7 +276,7 @@ def test_right_answers_get_every_point_and_only_the_sheet_is_logged(
     assert sheet.median == 3.0
     assert sheet.again == ()
     (event,) = store.events()
-    assert (event.kind, event.person) == (DRILL, None)
+    assert (event.kind, event.person) == (DrillHeld.KIND, None)
     assert [replace(kept, at="") for kept in read_sheets(store)] == [sheet]
     assert drill.next() is None
     drill.leave()
@@ -420,11 +417,11 @@ def test_the_sheet_is_a_table_that_fits(width: int) -> None:
 
 
 def test_a_sheet_survives_the_log(store: Store) -> None:
-    store.append(DRILL, SHEET.to_json())
+    append_body(store, DrillHeld, written(SHEET))
     (kept,) = read_sheets(store, "ADA")
     assert replace(kept, at=SHEET.at) == SHEET
     assert read_sheets(store, "bea") == []
-    assert SHEET.to_json()["classes"] == {"expert": [1, 3], NOTHING_WRONG: [2, 2]}
+    assert written(SHEET)["classes"] == {"expert": [1, 3], NOTHING_WRONG: [2, 2]}
     (head, line) = sheets_lines([SHEET], lambda at: at[:10])
     assert head.startswith("When")
     assert " ".join(line.split()) == "2026-03-01 ada 2 of 2 3 of 5 6 Neither voice nor screen"

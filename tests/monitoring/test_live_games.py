@@ -6,10 +6,10 @@ from typing import cast
 
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import StaffAction
 from tangy_tui.app.live_games import LiveGames
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.monitoring.supervision import Event
 from tests.hw.links import FakeLink, LaidCard
 
@@ -78,7 +78,7 @@ def test_what_is_not_judged_is_said_logged_and_counted(
     played.play(range(1), expert=False, tell=tell)
     told = [line for line in lines if "two cards in front of User 2: 7 and 9" in line]
     assert len(told) == 1
-    notes = [event.body["what"] for event in workspace.store.events(STAFF)]
+    notes = [event.body["what"] for event in workspace.store.events(StaffAction)]
     assert notes[:2] == ["cards: user2 has 7", "several cards before user2: 7, 9; not judged"]
     (doubt,) = played.document()["card_doubts"]
     assert (doubt["game"], doubt["person"], doubt["cards"]) == (1, "user2", [7, 9])

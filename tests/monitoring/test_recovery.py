@@ -10,15 +10,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangy_profiles.game_records import (
+    EffectAccepted,
+    FaultDiagnosed,
+    FaultMove,
+    GameBeginning,
+    GameEnding,
+    GameStep,
+)
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import BEGUN, ENDED, STEP
 from tangy_tui.interaction.game_events import Taught
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
-from tangy_tui.monitoring.fault import ACCEPTED, ENDINGS, FAULT, OVER, RECOVERY, read_faults
+from tangy_tui.monitoring.fault import ENDINGS, OVER, read_faults
 from tangy_tui.monitoring.supervision import Supervision
 from tests.monitoring.conftest import (
     Supervise,
@@ -241,7 +248,7 @@ def test_a_teacher_says_that_it_is_all_right_and_it_is_expected_from_then_on(
     assert moves(game.accept("Ada")) == ["accepted"]
     assert game.question is None
     assert game.policy.digest == learnt.digest
-    assert next(workspace.store.events(ACCEPTED)).body["by"] == "Ada"
+    assert next(workspace.store.events(EffectAccepted)).body["by"] == "Ada"
     again = workspace.supervision(learnt, 4, asks=True, injections=["no-effect@1"])
     assert not codes(play(again))
 
@@ -261,21 +268,21 @@ def check_log(store: Store) -> None:
     """Between a halt and what ends it nothing is executed; every game ends; attempts are few."""
     halted: set[str] = set()
     going: set[str] = set()
-    for event in store.events(BEGUN, STEP, ENDED, FAULT, RECOVERY):
+    for event in store.events(GameBeginning, GameStep, GameEnding, FaultDiagnosed, FaultMove):
         game = event.body["game"]
-        if event.kind == BEGUN:
+        if event.kind == GameBeginning.KIND:
             going.add(game)
         else:
             assert game in going, "something was logged of a game after its end"
-        if event.kind == ENDED:
+        if event.kind == GameEnding.KIND:
             going.discard(game)
             halted.discard(game)
-        elif event.kind == STEP:
+        elif event.kind == GameStep.KIND:
             assert game in going
             assert game not in halted, "a step after a halt that nobody cleared"
-        elif event.kind == RECOVERY and event.body["kind"] == "halted":
+        elif event.kind == FaultMove.KIND and event.body["kind"] == "halted":
             halted.add(game)
-        elif event.kind == RECOVERY and event.body["kind"] == "cleared":
+        elif event.kind == FaultMove.KIND and event.body["kind"] == "cleared":
             halted.discard(game)
     assert not going
     for fault in read_faults(store):

@@ -11,10 +11,10 @@ from xml.etree import ElementTree
 import pytest
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.people_records import ResponseAwaited
 from tangy_profiles.store import Store
 from tangy_sim.worlds import faulty_world
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import Diagnosed, Moved, read_faults
@@ -25,6 +25,7 @@ from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
 from tests.monitoring.conftest import Supervise, acts, play
+from tests.support.append_body import append_body
 
 FAULTS = ("laser-disconnected@6", "path-blocked", "voice-dead@9", "request-stuck", "no-effect@20")
 
@@ -162,10 +163,14 @@ def test_who_was_asked_and_has_not_answered_is_told_so_and_not_as_a_no(
     play(supervise())
     (game,) = read_games(workspace.store)
     (end,) = workspace.store.events("game ended")
-    workspace.store.append(
-        AWAITED, {"game": game.id}, person=workspace.people[0].id, strategy="neutral"
+    append_body(
+        workspace.store,
+        ResponseAwaited,
+        {"game": game.id},
+        person=workspace.people[0].id,
+        strategy="neutral",
     )
-    workspace.store.append("game ended", {**end.body})
+    append_body(workspace.store, "game ended", {**end.body})
     session = told(workspace)
     person = session.people[0]
     assert person.total("awaited") == 1
@@ -241,8 +246,8 @@ def test_games_of_an_older_tangy_are_told_too(workspace: Workspace, supervise: S
                 body = without(body, "seconds", "share", "draws", "teacher", "completed")
                 body["state"] = without(body["state"], "closed")
                 body["after"] = without(body["after"], "closed")
-            old.append(
-                event.kind, body, person=event.person, strategy=event.strategy,
+            append_body(
+                old, event.kind, body, person=event.person, strategy=event.strategy,
                 complied=event.complied,
             )  # fmt: skip
         games = read_games(old)

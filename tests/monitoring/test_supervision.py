@@ -10,12 +10,12 @@ import pytest
 from tangy_profiles.errors import StoreError, TangyError
 from tangy_profiles.fault_file import load_faults
 from tangy_profiles.faults import Remedy
+from tangy_profiles.game_records import GameEnding
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds import faulty_world
 from tangy_sim.worlds.devices import WELL
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.interaction.game_events import DoneOnce
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import read_accepted, take_back
@@ -177,7 +177,7 @@ def test_nothing_is_logged_of_a_game_after_its_end(
     length = len(acts(play(supervise(seed=3))))
     play(supervise(f"camera-frozen@{length}", f"voice-dead@{length}", seed=3))
     last = list(workspace.store.events())[-1]
-    assert last.kind == ENDED
+    assert last.kind == GameEnding.KIND
 
 
 @pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.stops))

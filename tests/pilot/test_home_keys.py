@@ -20,6 +20,7 @@ from tangy_tui.ui.screens.live import LiveScreen
 from tangy_tui.ui.screens.teach import TeachScreen
 from tests.pilot.conftest import Run, StillClock, screen_text
 from tests.pilot.live_games import HeldLink, live, live_world
+from tests.support.append_body import append_body
 from tests.support.waiting import until_shown
 
 
@@ -100,7 +101,7 @@ async def test_v_needs_something_that_was_learnt(run: Run, workspace: Workspace)
 
 async def test_home_says_what_is_left_out_of_the_log(run: Run, workspace: Workspace) -> None:
     store = workspace.store
-    store.append("policy learnt", {**POLICY_BODY, "name": "lost"})
+    append_body(store, "policy learnt", {**POLICY_BODY, "name": "lost"})
     db = store._file.db
     assert db is not None
     db.executescript("DROP TRIGGER unchanged; UPDATE event SET body = '{'")

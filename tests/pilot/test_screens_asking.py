@@ -11,9 +11,10 @@ from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
+from tangy_profiles.game_records import GameEnding
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.facilitation import ENDED
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -236,7 +237,7 @@ async def test_the_game_is_given_up_on_purpose(
         await pilot.press("y")
         await over(pilot, screen)
         assert not screen.query(AskingPanel)
-        ended = workspace.store.last(ENDED)
+        ended = workspace.store.last(GameEnding)
         assert ended is not None
         assert "Nobody has shown Tangy" in str(ended.body["stopped"])
         await pilot.press("escape")
@@ -342,10 +343,10 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 ) -> None:
     append = workspace.store.append
 
-    def refuse(kind: str, *rest: object, **more: object) -> int:
-        if kind == "policy learnt":
+    def refuse(record: EventRecord, **more: Any) -> int:
+        if record.KIND == "policy learnt":
             raise TangyError("The log cannot be written: the disk is full.")
-        return append(kind, *rest, **more)  # type: ignore[arg-type]
+        return append(record, **more)
 
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
@@ -374,7 +375,7 @@ async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(
     async with run(app=playing(workspace, gappy)) as pilot:
         await asked(pilot)
         await pilot.press("ctrl+q")
-    ended = workspace.store.last(ENDED)
+    ended = workspace.store.last(GameEnding)
     assert ended is not None
     assert ended.body["stopped"] == "It was left before its end."
 

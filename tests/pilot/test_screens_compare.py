@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,9 @@ from textual.app import App
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.state import Situation
+from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.policies import POLICY, keep_policy, last_policy
+from tangy_tui.learning.policies import keep_policy, last_policy
 from tangy_tui.learning.policy import ForestSettings
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.dialogs.difference import DifferenceDialog
@@ -107,8 +109,9 @@ async def test_the_policy_screen_tells_why_and_says_what_is_contested(
     async with run(app=Program(workspace, clock=StillClock()), size=LARGE) as pilot:
         await pilot.press("o")
         screen = await shown(pilot, PolicyScreen)
-        digest = str((last_policy(workspace.store, workspace.activity.name) or {})["digest"])
-        assert digest[:8] in screen_text(pilot.app)
+        kept = last_policy(workspace.store, workspace.activity.name)
+        assert kept is not None
+        assert kept.digest[:8] in screen_text(pilot.app)
         assert "1 contested" in screen_text(pilot.app)
         assert "contested" in [row.behaviour for row in screen.query_one("#policy").rows]
         await pilot.press("down", "down", "enter")
@@ -149,11 +152,11 @@ async def test_an_earlier_policy_can_be_looked_at(run: Run, workspace: Workspace
 
 def spoil(workspace: Workspace) -> None:
     """Keep the last policy as another version would have learnt it."""
-    kept = dict(last_policy(workspace.store, workspace.activity.name) or {})
-    rows = [list(row) for row in kept["rows"]]
-    rows[0][3] = "something else"
-    versions = {**kept["versions"], "scikit-learn": "0.1"}
-    workspace.store.append(POLICY, {**kept, "digest": "0" * 64, "rows": rows, "versions": versions})
+    kept = last_policy(workspace.store, workspace.activity.name)
+    assert kept is not None
+    rows = (kept.rows[0]._replace(behaviour="something else"), *kept.rows[1:])
+    versions = {**kept.versions, "scikit-learn": "0.1"}
+    workspace.store.append(replace(kept, digest="0" * 64, rows=rows, versions=versions))
 
 
 @pytest.mark.parametrize(("key", "used", "kept"), [("n", 0, 0), ("y", 1, 0), ("k", 1, 1)])
@@ -161,7 +164,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
     run: Run, workspace: Workspace, key: str, used: int, kept: int
 ) -> None:
     spoil(workspace)
-    before = sum(1 for _ in workspace.store.events(POLICY))
+    before = sum(1 for _ in workspace.store.events(PolicyLearnt))
     async with run(app=Program(workspace, clock=StillClock())) as pilot:
         await pilot.press("o")
         dialog = await shown(pilot, DifferenceDialog)
@@ -176,7 +179,7 @@ async def test_a_digest_that_does_not_match_is_looked_at_before_it_is_used(
         assert pilot.app.screen is dialog
         await pilot.press(key)
         await shown(pilot, PolicyScreen if used else HomeScreen)
-        assert sum(1 for _ in workspace.store.events(POLICY)) == before + kept
+        assert sum(1 for _ in workspace.store.events(PolicyLearnt)) == before + kept
 
 
 @pytest.mark.parametrize("size", [SMALL, LARGE], ids=["small", "large"])

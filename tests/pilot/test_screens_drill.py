@@ -14,9 +14,9 @@ from tangy_profiles.faults import FaultBook
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.drill import Drill
+from tangy_tui.monitoring.drill_log import last_sheet, read_sheets
 from tangy_tui.monitoring.drill_policy import DrillPolicy, policy_for_drill
 from tangy_tui.monitoring.drill_rounds import Tabletop
-from tangy_tui.monitoring.drill_sheet import last_sheet, read_sheets
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.drill import DrillScreen

@@ -9,6 +9,7 @@ import pytest
 from textual.app import App
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.events import EventRecord
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE, Diagnosed
@@ -71,10 +72,10 @@ async def test_a_log_that_cannot_be_written_while_looking_stands_still_and_is_tr
 ) -> None:
     append = workspace.store.append
 
-    def refuse(kind: str, *rest: object, **more: object) -> int:
-        if kind == "fault":
+    def refuse(record: EventRecord, **more: Any) -> int:
+        if record.KIND == "fault":
             raise TangyError("The log cannot be written: the disk is full.")
-        return append(kind, *rest, **more)  # type: ignore[arg-type]
+        return append(record, **more)
 
     async with run(app=playing(workspace, policy)) as pilot:
         screen, _, world = game_of(pilot)

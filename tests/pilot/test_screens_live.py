@@ -13,12 +13,12 @@ from textual.app import App
 
 from tangy_hw.device_protocols import Pose
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import StaffAction
 from tangy_profiles.health import OK, Reading
 from tangy_tui.app.game_commands import GoOn
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.learning.verification import StopCommand
-from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.program import Program
@@ -178,7 +178,7 @@ async def test_each_stop_is_logged_once_and_told_once(
         for count in (1, 2):
             await pilot.press("ctrl+x")
             await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
-            noted = [event.body["what"] for event in workspace.store.events(STAFF)]
+            noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
             assert noted.count("the robot was stopped") == count
             await pilot.press("p")
             await until_shown(pilot, lambda: "STOPPED" not in screen_text(pilot.app))
@@ -340,7 +340,7 @@ async def test_a_robot_that_was_frozen_is_told_of_once_and_noted(
         link.state = replace(link.state, frozen=5.0)
         await until_shown(pilot, lambda: "was frozen for 5 s" in screen_text(pilot.app))
         await pilot.pause(0.5)
-        noted = [event.body["what"] for event in workspace.store.events(STAFF)]
+        noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
         assert noted.count("the robot process was frozen for 5.0 s") == 1
 
 
@@ -376,7 +376,7 @@ async def test_a_call_is_said_again_and_taken_back(
         await until_shown(pilot, lambda: f"Take {label} back?" in screen_text(pilot.app))
         await pilot.press("y")
         await until_shown(pilot, lambda: len(world.called) == count - 1)
-        noted = [event.body["what"] for event in workspace.store.events(STAFF)]
+        noted = [event.body["what"] for event in workspace.store.events(StaffAction)]
         again = "staff had the last number called again"
         assert noted == [again, f"staff took a call back: {label}"]
 

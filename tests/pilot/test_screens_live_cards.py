@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tangy_hw.robot_client.live_world import LiveWorld
+from tangy_profiles.game_records import StaffAction
 from tangy_tui.app.game_commands import GoOn, Pause
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tangy_tui.monitoring.fault import STAFF
 from tangy_tui.ui.dialogs.choose import ChooseDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.widgets.log_view import LogView
@@ -43,7 +43,7 @@ def told(pilot: TangyPilot) -> str:
 
 
 def notes(workspace: Workspace) -> list[str]:
-    return [event.body["what"] for event in workspace.store.events(STAFF)]
+    return [event.body["what"] for event in workspace.store.events(StaffAction)]
 
 
 async def shown(pilot: TangyPilot, text: str) -> None:

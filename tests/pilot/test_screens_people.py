@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from textual.app import App
 
+from tangy_profiles.people_records import ResponseAwaited
 from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.feedback import AWAITED, Feedback
+from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodDialog
@@ -23,6 +24,7 @@ from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import LIGHT
 from tangy_tui.ui.widgets.choice_list import ChoiceList
 from tests.pilot.conftest import LARGE, SMALL, Run, TangyPilot
+from tests.support.append_body import append_body
 
 NOW = datetime(2026, 5, 22, 15, tzinfo=UTC)
 
@@ -45,7 +47,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Works
         store.rename("user1", "Rosa")
         for number, (days, people) in enumerate(GAMES):
             at[0] = NOW - timedelta(days=days, minutes=60 * number)
-            store.append("game begun", {"game": f"g{number}", "people": list(people)})
+            append_body(store, "game begun", {"game": f"g{number}", "people": list(people)})
             for person, told in people.items():
                 for one in told.split():
                     at[0] += timedelta(minutes=7)
@@ -58,9 +60,9 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Works
 
 
 def put(store: Store, game: str, person: str, strategy: str, came: str) -> None:
-    kind = AWAITED if came == "?" else "response"
+    kind = ResponseAwaited if came == "?" else "response"
     complied = {"+": True, "-": False, "?": None}[came]
-    store.append(kind, {"game": game}, person=person, strategy=strategy, complied=complied)
+    append_body(store, kind, {"game": game}, person=person, strategy=strategy, complied=complied)
 
 
 def complied(workspace: Workspace, person: str, strategy: str) -> tuple[int, int]:

@@ -3,116 +3,272 @@
 from __future__ import annotations
 
 import ast
-import importlib
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import is_dataclass
 from pathlib import Path
-from typing import Any
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tangy_profiles import events
-from tangy_profiles.events import ABOUT_PEOPLE, BODIES, MOVES, WITH_STRATEGY, wrong_with
+from tangy_profiles import codec, events, records
+from tangy_profiles.codec import Unreadable, fields_of, written
+from tangy_profiles.events import KINDS, EventRecord, Unknown, read_record
+from tangy_profiles.game_records import MoveKind
+from tangy_profiles.health import Fact
+from tangy_profiles.persuading import METHODS, PERIODS, PRIORS
+from tangy_profiles.records import kind
+from tangy_profiles.state import ActivityState, Request, Situation, UserState
 from tangy_tui.text import faults
 
 ROOT = Path(__file__).parents[2]
-FLOORS = {"tangy_tui": ROOT, "tangy_hw": ROOT / "hw", "tangy_sim": ROOT / "sim"}
-FLOORS["tangy_profiles"] = ROOT / "profiles"
+CODE = [ROOT / top for top in ("tangy_tui", "hw/tangy_hw", "sim/tangy_sim", "profiles")]
+NOT_READ = {
+    "EventsLost": "it is for people who look at the log",
+    "Renamed": "names stand in a table",
+    "SpeechNoted": "how people are spoken to stands in a table",
+    "PersonForgotten": "it is for people who look at the log",
+}
+"""The records that the program writes and never reads, and why."""
+
+# ------------------------------------------------------------------ every place of every kind
 
 
-def kinds_written() -> dict[str, set[str]]:
-    """Return the kinds of event that the program's code appends, and where."""
-    found: dict[str, set[str]] = {}
-    for package, above in FLOORS.items():
-        for path in sorted((above / package).rglob("*.py")):
-            text = path.read_text()
-            if "store" not in text.casefold():
-                continue
-            module = ".".join(path.relative_to(above).with_suffix("").parts)
-            for call in ast.walk(ast.parse(text)):
-                if isinstance(call, ast.Call) and _appends(call, module):
-                    for kind in _named(call.args[0], module):
-                        found.setdefault(kind, set()).add(module)
-    return found
+def places() -> tuple[set[str], set[str]]:
+    """Return the records that the program's code makes, and those that it reads."""
+    made, named = set[str](), set[str]()
+    for path in (path for top in CODE for path in sorted(top.rglob("*.py"))):
+        tree = ast.parse(path.read_text())
+        calls = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
+        patterns = [node.cls for node in ast.walk(tree) if isinstance(node, ast.MatchClass)]
+        made |= {call.id for call in calls if isinstance(call, ast.Name)}
+        makers = [call.value for call in calls if isinstance(call, ast.Attribute)]
+        made |= {maker.id for maker in makers if isinstance(maker, ast.Name)}
+        called = {id(node) for node in [*calls, *(p for p in patterns if p in calls)]}
+        if path.name not in ("people_records.py", "teaching_records.py", "game_records.py"):
+            named |= {
+                node.id
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Name) and id(node) not in called
+            }
+    return made, named
 
 
-def _appends(call: ast.Call, module: str) -> bool:
-    if not isinstance(call.func, ast.Attribute) or call.func.attr != "append":
-        return False
-    receiver = ast.unparse(call.func.value)
-    return len(call.args) == 2 and (
-        receiver.endswith("store") or (receiver == "self" and module.endswith(".store"))
+MADE, READ = places()
+
+
+@pytest.mark.parametrize("of", sorted(KINDS))
+def test_a_kind_is_written_by_the_program_and_read_by_it(of: str) -> None:
+    record: type[EventRecord] = KINDS[of]
+    name = record.__name__
+    assert name in MADE, f"{name} ({record.KIND!r}): nothing in the program writes it"
+    assert name in READ or name in NOT_READ, (
+        f"{name} ({record.KIND!r}): nothing in the program reads it; read it, or say in NOT_READ "
+        f"of {Path(__file__).name} why it is only kept"
     )
 
 
-def _named(kind: ast.expr, module: str) -> list[str]:
-    if isinstance(kind, ast.Constant):
-        return [str(kind.value)]
-    assert isinstance(kind, ast.Name), f"{module}: name the kind by a constant"
-    return [str(getattr(importlib.import_module(module), kind.id))]
+def test_every_record_stands_in_a_module_that_events_knows() -> None:
+    known = {module.__name__ for module in events.MODULES}
+    strange = {r.__name__: r.__module__ for r in KINDS.values() if r.__module__ not in known}
+    assert strange == {}, "name their modules in MODULES of tangy_profiles.events"
 
 
-def test_every_kind_that_is_written_has_a_body_that_is_known_and_none_is_left_over() -> None:
-    written = kinds_written()
-    assert {kind: where for kind, where in written.items() if kind not in BODIES} == {}
-    assert BODIES.keys() - written.keys() == set()
+def test_no_event_is_read_by_the_keys_of_its_body() -> None:
+    reads = [
+        f"{path.relative_to(ROOT)}:{number}"
+        for top in CODE
+        for path in sorted(top.rglob("*.py"))
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if ".body[" in line or ".body.get(" in line
+    ]
+    assert reads == []
 
 
-def test_what_is_about_people_and_strategies_are_kinds() -> None:
-    assert WITH_STRATEGY < ABOUT_PEOPLE < BODIES.keys()
+def test_a_kind_has_one_record() -> None:
+    with pytest.raises(TypeError, match="GameStep is the record of 'game step' already"):
+        kind("game step")(type("Other", (EventRecord,), {"__annotations__": {}}))
 
 
-def test_what_can_be_done_about_a_fault_is_said_in_words_and_taken_from_the_log() -> None:
-    assert set(MOVES) == set(faults.MOVES)
+def test_what_can_be_done_about_a_fault_is_said_in_words() -> None:
+    assert set(get_args(MoveKind)) == set(faults.MOVES)
 
 
-@pytest.mark.parametrize("kind", sorted(BODIES.keys() - ABOUT_PEOPLE))
-def test_a_body_of_nothing_is_that_of_a_kind_only_where_nothing_is_needed(kind: str) -> None:
-    empty = wrong_with(kind, None, None, {})
-    assert (empty == "") == (kind == "recordings forgotten")
-    assert wrong_with(kind, None, None, []) != ""  # type: ignore[arg-type]
+# ------------------------------------------------------------------------------- round trips
+
+WORDS = st.text(max_size=8)
+COUNTS = st.integers(0, 10**9)
+NUMBERS = st.integers(-(10**9), 10**9) | st.floats(-1e9, 1e9)
+OF_FIELDS: dict[str, st.SearchStrategy[Any]] = {
+    "method": st.sampled_from(METHODS),
+    "prior": st.sampled_from(PRIORS),
+    "forgetting": st.floats(0.5, 1),
+    "forgetting_per": st.sampled_from(PERIODS),
+}
 
 
-ODD: Any = st.sampled_from(["user1", "AR", "x", "", 1, -1, 10**13, True, None, [], {}, ["AR"], 1.5])
-USERS: Any = st.lists(
-    st.lists(st.sampled_from(["user1", "user2", "AR", "ANR", 3, None, []]), max_size=4)
-    | st.tuples(st.sampled_from(["a", "b"]), st.just("x"), st.sampled_from(["AR", "ANR"])).map(list)
-    | ODD,
-    max_size=3,
-)
-STATES = st.fixed_dictionaries(
-    {"step": ODD | st.just(3), "users": USERS | ODD, "attended": ODD | st.just("a")},
-    optional={
-        "situation": st.just(["help", "AR", "x"]) | st.lists(ODD, max_size=4) | ODD,
-        "place": ODD | st.just("front"),
-        "closed": ODD | st.none(),
-    },
-)
+@st.composite
+def states(draw: st.DrawFn) -> ActivityState:
+    ids, request = ("user1", "user2"), st.sampled_from(get_args(Request))
+    return ActivityState(
+        draw(COUNTS),
+        Situation(draw(WORDS), draw(request), draw(WORDS)),
+        draw(WORDS),
+        draw(st.none() | st.sampled_from(ids)),
+        tuple(UserState(id, draw(WORDS), draw(request)) for id in ids),
+        draw(st.none() | WORDS),
+    )
 
 
-@settings(max_examples=300, deadline=None)
-@given(STATES)
-def test_what_is_a_state_at_a_glance_is_one_looked_at_closely(state: dict[str, Any]) -> None:
+def records_of(kind: Any) -> st.SearchStrategy[Any]:
+    """Return a strategy of records, made from what their fields hold."""
+    hints = get_type_hints(kind, include_extras=True)
+    names = [field.name for field in fields_of(kind)]
+    made = {n: OF_FIELDS[n] if n in OF_FIELDS else values(hints[n]) for n in names}
+    return st.builds(kind, **made).filter(lambda one: not getattr(one, "misfit", str)())
+
+
+def values(hint: Any) -> st.SearchStrategy[Any]:
+    """Return a strategy of what stands for a type."""
+    origin, args = get_origin(hint), get_args(hint)
+    if hint is Any:
+        return st.none() | WORDS
+    if hint == Fact:
+        return st.booleans() | WORDS | NUMBERS
+    if hint is float:
+        return NUMBERS
+    if hint is ActivityState:
+        return states()
+    if origin is Annotated:
+        return COUNTS if args[0] is int else values(args[0]).filter(lambda one: one != ())
+    if origin in (Union, UnionType):
+        return st.one_of([st.none() if one is NoneType else values(one) for one in args])
+    if origin is tuple:
+        if args[-1] is ...:
+            return st.lists(values(args[0]), max_size=3).map(tuple)
+        return st.tuples(*map(values, args))
+    if origin is Mapping:
+        return st.dictionaries(WORDS, values(args[1]), max_size=3)
+    if hasattr(hint, "_fields"):
+        return st.builds(hint, *map(values, get_type_hints(hint).values()))
+    return records_of(hint) if is_dataclass(hint) else st.from_type(hint)
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_a_record_is_read_as_it_was_written(name: str) -> None:
+    @settings(max_examples=30, deadline=None)
+    @given(records_of(KINDS[name]))
+    def goes_round(record: EventRecord) -> None:
+        text = json.dumps(record.body, allow_nan=False)
+        assert read_record(name, "p", "s", json.loads(text)) == record
+
+    goes_round()
+
+
+@given(states(), st.data())
+def test_a_state_at_a_glance_is_one_looked_at_closely(state: ActivityState, data: Any) -> None:
+    table = json.loads(json.dumps(written(state)))
+    assert ActivityState.glance(table) == state
+    spoilt = data.draw(st.sampled_from(sorted(table)))
+    table[spoilt] = data.draw(ODD)
+    glance = ActivityState.glance(table)
     with pytest.MonkeyPatch.context() as patch:
-        glance = events._plainly_a_state(state)
-        patch.setattr(events, "_plainly_a_state", lambda _: False)
-        closely = events._state(closed=True)(state)
-    assert not glance or closely == ""
+        patch.setattr(ActivityState, "glance", lambda _: None)
+        closely = codec.reader.__wrapped__(ActivityState)
+        assert glance is None or closely(table) == glance
 
 
-def test_a_state_as_the_program_writes_it_is_one_at_a_glance() -> None:
-    users = [["user1", "occluded", "AR"], ["user2", "occluded", "ANR"]]
-    state = {"step": 3, "situation": ["help", "AR", "occluded"], "place": "user1"}
-    assert events._plainly_a_state({**state, "attended": "user1", "users": users, "closed": None})
+ODD: Any = st.recursive(
+    st.sampled_from(["user1", "AR", "", 1, -1, 10**13, True, None, 1.5]),
+    lambda one: st.lists(one, max_size=4) | st.dictionaries(WORDS, one, max_size=2),
+    max_leaves=6,
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.sampled_from(sorted(KINDS)), st.data())
+def test_a_body_that_is_spoilt_is_read_as_what_it_says_or_refused_in_words(
+    name: str, data: Any
+) -> None:
+    body = json.loads(json.dumps(data.draw(records_of(KINDS[name])).body))
+    key = data.draw(st.sampled_from(sorted(body) or ["of"]))
+    if data.draw(st.booleans()):
+        body.pop(key, None)
+    else:
+        body[key] = data.draw(ODD)
+    try:
+        record = read_record(name, "p", "s", body)
+    except Unreadable as why:
+        assert str(why).split()[0] in ("has", "is", "holds")
+    else:
+        again = read_record(name, "p", "s", json.loads(json.dumps(record.body)))
+        assert again == record
+
+
+# ------------------------------------------------------------------------ versions and refusals
+
+
+@pytest.fixture
+def renamed(monkeypatch: pytest.MonkeyPatch) -> Iterator[type[EventRecord]]:
+    """A kind of event whose second version has another key."""
+    monkeypatch.setattr(records, "KINDS", dict(KINDS))
+
+    def older(version: int, body: dict[str, Any]) -> dict[str, Any]:
+        return {"after": body["before"]}
+
+    @kind("renamed key", version=2, older=older)
+    class RenamedKey(EventRecord):
+        after: str
+
+    yield RenamedKey
+
+
+def test_a_body_of_an_earlier_version_is_read_as_one_of_this(renamed: Any) -> None:
+    new = renamed(after="x")
+    assert new.body == {"v": 2, "after": "x"}
+    assert read_record("renamed key", None, None, {"before": "x"}) == new
+    assert read_record("renamed key", None, None, new.body) == new
+
+
+@pytest.mark.parametrize("version", [3, 0, -1, "2", None, True])
+def test_a_body_of_a_version_that_is_not_known_is_refused(renamed: Any, version: Any) -> None:
+    with pytest.raises(Unreadable, match="is of version"):
+        read_record("renamed key", None, None, {"v": version, "after": "x"})
+
+
+def test_a_kind_that_is_not_known_is_never_taken_for_another() -> None:
+    assert isinstance(read_record("drlll", None, None, {"seed": 1}), Unknown)
+
+
+WHY = [
+    ("game ended", {"steps": 3, "stopped": None}, "has no 'game'"),
+    ("game ended", {"game": "g", "steps": -1, "stopped": None}, "has 'steps' that is not a count"),
+    ("game ended", {"game": 4, "steps": 1, "stopped": None}, "has 'game' that is not text"),
+    ("game begun", {"game": "g", "people": [1]}, "has 'people' that holds one that is not text"),
+    ("game world set", {"game": "g", "world": "lve"}, "has 'world' that is 'lve' (did you"),
+    ("strategy switched", {"on": 1}, "has 'on' that is neither yes nor no"),
+    ("demonstrations edited", {"activity": "a", "what": "x"}, "has 'what' that is 'x'"),
+    ("demonstrations edited", {"activity": "a", "what": "delete", "ids": []}, "is too short"),
+    ("method chosen", {"chosen": {"forgetting": 0.1}}, "is not a share that can be kept"),
+    ("recordings forgotten", [], "is not a table"),
+]
+
+
+@pytest.mark.parametrize(("name", "body", "words"), WHY)
+def test_a_body_that_is_refused_says_where_and_why(name: str, body: Any, words: str) -> None:
+    with pytest.raises(Unreadable) as refused:
+        read_record(name, "p", "s", body)
+    assert words in str(refused.value)
 
 
 @pytest.mark.parametrize("measured", [0, -2.5, 1.7e18, 10**30, True, "STALE"])
 def test_whatever_a_device_measures_can_be_kept_with_its_fault(measured: float | str) -> None:
-    assert events.BODIES["fault"]({**FAULT, "evidence": {"laser.stamp": measured}}) == ""
-
-
-FAULT: dict[str, Any] = {
-    **dict.fromkeys(("game", "fault", "code", "name", "recovery", "behaviour", "console"), "x"),
-    **{"why": "", "criticality": "critical", "step": 3, "seconds": 4.5},
-    **{"mismatches": [], "advice": ["look"], "evidence": {}},
-}
+    words = ("game", "fault", "code", "name", "recovery", "behaviour", "console", "why")
+    fault = {**dict.fromkeys(words, "x"), "criticality": "critical", "step": 3, "seconds": 4.5}
+    lists = {"mismatches": [], "advice": ["look"], "evidence": {"laser.stamp": measured}}
+    assert read_record("fault", None, None, {**fault, **lists}).body["evidence"] == {
+        "laser.stamp": measured
+    }

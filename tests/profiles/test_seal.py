@@ -12,8 +12,10 @@ from random import Random
 
 import pytest
 
+from tangy_profiles.people_records import EventsLost
 from tangy_profiles.seal import Seal
-from tangy_profiles.store import LOST, Store
+from tangy_profiles.store import Store
+from tests.support.append_body import append_body
 
 NOON = datetime(2026, 3, 4, 12, tzinfo=UTC)
 
@@ -46,17 +48,17 @@ def said(folder: Path) -> list[str]:
 
 def test_a_program_that_was_killed_leaves_nothing_to_say(store: Store, tmp_path: Path) -> None:
     for number in range(1, 8):
-        store.append("joke", {"n": number})
+        append_body(store, "joke", {"n": number})
         folder = killed(store, tmp_path / f"after-{number}")
         assert said(folder) == []
         with Store.open(folder) as again:
-            assert (again.notices, again.append("joke", {})) == ([], number + 1)
+            assert (again.notices, append_body(again, "joke", {})) == ([], number + 1)
 
 
 def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path) -> None:
     """Damage that leaves all events says nothing; each that takes some says which."""
     for number in range(40):
-        store.append("joke", {"n": number, "text": "x" * 300})
+        append_body(store, "joke", {"n": number, "text": "x" * 300})
     random, lost = Random(5), 0
     for number in range(80):
         folder = killed(store, tmp_path / "damaged")
@@ -83,34 +85,34 @@ def test_a_lost_tail_is_said_whatever_became_of_it(store: Store, tmp_path: Path)
 
 def test_a_tail_that_was_deleted_is_said_once_and_noted(store: Store, tmp_path: Path) -> None:
     Store.open(tmp_path / "first").close()
-    store.append("joke", {})
+    append_body(store, "joke", {})
     store._file.reading()
     assert store._file.db is not None
     store._file.db.execute("PRAGMA wal_checkpoint").fetchall()
     for _ in range(3):
-        store.append("joke", {})
+        append_body(store, "joke", {})
     folder = killed(store, tmp_path / "killed", but="tangy.db-wal")
     for _ in range(2):
         assert "events 2 to 4 had been kept and are gone" in said(folder)[0]
     with Store.open(folder) as again:
         assert "events 2 to 4" in again.notices[0]
-        (noted,) = again.events(LOST)
+        (noted,) = again.events(EventsLost)
         assert noted.body == {"first": 2, "last": 4}
     with Store.open(folder) as again:
         assert (again.notices, again.check()) == ([], [])
 
 
 def test_a_copy_made_while_tangy_writes_says_what_it_lacks(store: Store, tmp_path: Path) -> None:
-    store.append("joke", {})
+    append_body(store, "joke", {})
     folder = killed(store, tmp_path / "copy")
-    store.append("joke", {})
+    append_body(store, "joke", {})
     shutil.copy(store.folder / "tangy.seal", folder / "tangy.seal")  # the last one to be copied
     assert "event 2 had been kept and is gone" in said(folder)[0]
     assert "a copy that was made while Tangy was writing" in said(folder)[0]
 
 
 def test_a_copy_of_a_closed_folder_has_all(store: Store, tmp_path: Path) -> None:
-    store.append("joke", {})
+    append_body(store, "joke", {})
     store.close()
     shutil.copytree(store.folder, tmp_path / "copy")
     assert said(tmp_path / "copy") == []
@@ -119,9 +121,9 @@ def test_a_copy_of_a_closed_folder_has_all(store: Store, tmp_path: Path) -> None
 @pytest.mark.parametrize("kept", ["", "none", "lagging", "torn", "bits", "folder"])
 def test_a_count_that_says_nothing_sure_gives_no_alarm(store: Store, kept: str) -> None:
     seal = store.folder / "tangy.seal"
-    store.append("joke", {})
+    append_body(store, "joke", {})
     early = seal.read_bytes()
-    store.append("joke", {})
+    append_body(store, "joke", {})
     store.close()
     late = seal.read_bytes()
     seal.unlink()
@@ -133,13 +135,13 @@ def test_a_count_that_says_nothing_sure_gives_no_alarm(store: Store, kept: str) 
         assert kept != "bits" or seal.read_bytes() != late
     assert said(store.folder) == []
     with Store.open(store.folder) as again:
-        assert (again.notices, again.append("joke", {})) == ([], 3)
+        assert (again.notices, append_body(again, "joke", {})) == ([], 3)
     assert said(store.folder) == []
 
 
 def test_the_count_of_another_log_is_not_taken_for_this_one(store: Store, tmp_path: Path) -> None:
     for _ in range(5):
-        store.append("joke", {})
+        append_body(store, "joke", {})
     other = tmp_path / "other"
     Store.open(other).close()
     shutil.copy(store.folder / "tangy.seal", other / "tangy.seal")
@@ -148,7 +150,7 @@ def test_the_count_of_another_log_is_not_taken_for_this_one(store: Store, tmp_pa
 
 def test_a_damaged_log_that_is_set_aside_is_said_once(store: Store) -> None:
     for number in range(50):
-        store.append("joke", {"n": number, "text": "x" * 500})
+        append_body(store, "joke", {"n": number, "text": "x" * 500})
     store.close()
     log = store.folder / "tangy.db"
     log.write_bytes(log.read_bytes()[:8192] + b"\xff" * 4096)
@@ -158,9 +160,9 @@ def test_a_damaged_log_that_is_set_aside_is_said_once(store: Store) -> None:
 
 
 def test_what_was_taken_back_is_not_counted(store: Store, tmp_path: Path) -> None:
-    store.append("joke", {})
+    append_body(store, "joke", {})
     with suppress(Mishap), store.transaction():
-        store.append("joke", {})
+        append_body(store, "joke", {})
         raise Mishap
     assert said(killed(store, tmp_path / "killed")) == []
 
@@ -170,7 +172,7 @@ def test_a_console_beside_a_busy_writer_is_never_alarmed(store: Store) -> None:
 
     def write() -> None:
         while not done.is_set():
-            store.append("joke", {})
+            append_body(store, "joke", {})
 
     writer = threading.Thread(target=write)
     writer.start()
@@ -186,7 +188,7 @@ def test_a_console_beside_a_busy_writer_is_never_alarmed(store: Store) -> None:
 def test_a_clock_that_goes_back_changes_nothing(tmp_path: Path) -> None:
     for days in (0, -400, 400):
         with Store.open(tmp_path, now=lambda days=days: NOON + timedelta(days)) as store:  # type: ignore[misc]
-            store.append("joke", {})
+            append_body(store, "joke", {})
             assert store.notices == []
 
 
@@ -195,6 +197,6 @@ def test_the_count_never_leads(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         seal = Seal(tmp_path)
         with store.transaction():
-            store.append("joke", {})
+            append_body(store, "joke", {})
             assert seal.read() is None
         assert seal.read() == (store._robot, 1)

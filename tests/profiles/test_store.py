@@ -22,7 +22,9 @@ from hypothesis import strategies as st
 from tangy_profiles import log_file
 from tangy_profiles import store as store_module
 from tangy_profiles.errors import StoreBusy, StoreError, TangyError
+from tangy_profiles.people_records import ResponseGiven
 from tangy_profiles.store import Event, Store
+from tests.support.append_body import append_body
 
 NOON = datetime(2026, 3, 4, 12, 0, 0, 250, tzinfo=UTC)
 
@@ -89,7 +91,7 @@ stories = st.lists(appends | blocks | st.just(("reopen",)), max_size=12)
 def perform(store: Store, deed: Any) -> None:
     """Append, or run a block that may fail at its end; a failing part is caught where it stands."""
     if deed[0] == "append":
-        store.append(**deed[1])
+        append_body(store, **deed[1])
         return
     with suppress(Mishap, StoreError), store.transaction():
         for part in deed[1]:
@@ -148,17 +150,19 @@ def test_what_was_committed_reads_back_in_order_and_nothing_else(story: list[Any
 def test_an_event_says_when_in_utc_who_and_which_robot(tmp_path: Path) -> None:
     toronto = timezone(timedelta(hours=-5))
     with Store.open(tmp_path, now=lambda: NOON.astimezone(toronto)) as store:
-        seq = store.append(
-            "response", {"é": [1, None]}, person="p1", strategy="praise", complied=False
+        seq = append_body(
+            store, "response", {"é": [1, None]}, person="p1", strategy="praise", complied=False
         )
-        event = store.last("response")
+        event = store.last(ResponseGiven)
     assert event is not None
     robot = event.robot
     noon = "2026-03-04T12:00:00.000250+00:00"
     body = {"é": [1, None]}
-    assert event == Event(seq, event.uuid, robot, noon, "response", "p1", "praise", False, body)
+    assert event == Event(
+        seq, event.uuid, robot, noon, "response", "p1", "praise", False, body, event.record
+    )
     with Store.open(tmp_path) as store:
-        store.append("later", {})
+        append_body(store, "later", {})
         assert {event.robot for event in store.events()} == {robot}
 
 
@@ -166,7 +170,7 @@ def test_two_folders_are_two_robots(tmp_path: Path) -> None:
     robots = set()
     for name in ("one", "two"):
         with Store.open(tmp_path / name) as store:
-            store.append("greeting", {})
+            append_body(store, "greeting", {})
             robots |= {event.robot for event in store.events()}
     assert len(robots) == 2
 
@@ -174,7 +178,7 @@ def test_two_folders_are_two_robots(tmp_path: Path) -> None:
 def test_last_is_the_newest_of_its_kind(store: Store) -> None:
     assert store.last("joke") is None
     for kind in ("joke", "joke", "call number"):
-        store.append(kind, {})
+        append_body(store, kind, {})
     joke = store.last("joke")
     assert joke is not None and joke.seq == 2
 
@@ -182,7 +186,7 @@ def test_last_is_the_newest_of_its_kind(store: Store) -> None:
 def test_reading_goes_on_after_a_seq_and_while_appending(store: Store) -> None:
     with store.transaction():
         for number in range(store_module.WINDOW * 2 + 5):
-            store.append("odd" if number % 2 else "even", {"n": number})
+            append_body(store, "odd" if number % 2 else "even", {"n": number})
     total = store_module.WINDOW * 2 + 5
     assert [event.seq for event in store.events(after=total - 2)] == [total - 1, total]
     assert [event.seq for event in store.events("odd", after=total - 4)] == [total - 3, total - 1]
@@ -191,17 +195,17 @@ def test_reading_goes_on_after_a_seq_and_while_appending(store: Store) -> None:
     for _ in store.events():
         seen += 1
         if seen % 1000 == 0:
-            store.append("meanwhile", {})
+            append_body(store, "meanwhile", {})
     assert seen == total
 
 
 def test_a_reader_that_stops_midway_keeps_nobody_from_writing(store: Store) -> None:
     for number in range(3):
-        store.append("call number", {"n": number})
+        append_body(store, "call number", {"n": number})
     with Store.open(store.folder, write=False) as console:
         waiting = islice(console.events(), 1)
         next(waiting)
-        assert store.append("call number", {}) == 4
+        assert append_body(store, "call number", {}) == 4
 
 
 @pytest.mark.parametrize(
@@ -209,7 +213,7 @@ def test_a_reader_that_stops_midway_keeps_nobody_from_writing(store: Store) -> N
 )
 def test_a_body_that_is_not_json_is_refused_and_nothing_is_kept(store: Store, body: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
-        store.append("state", body)
+        append_body(store, "state", body)
     assert list(store.events()) == []
 
 
@@ -218,19 +222,19 @@ def test_a_body_without_end_is_refused(store: Store) -> None:
     for _ in range(100_000):
         deep = [deep]
     with pytest.raises(ValueError, match="deep"):
-        store.append("state", {"x": deep})
+        append_body(store, "state", {"x": deep})
 
 
 def test_a_response_needs_a_person_and_a_strategy(store: Store) -> None:
     with pytest.raises(ValueError):
-        store.append("response", {}, person="p1", complied=True)
+        append_body(store, "response", {}, person="p1", complied=True)
     with pytest.raises(ValueError):
-        store.append("", {})
+        append_body(store, "", {})
 
 
 @pytest.mark.parametrize("change", ["UPDATE event SET body = '{}'", "DELETE FROM event"])
 def test_not_even_sqlite_changes_an_event(store: Store, change: str) -> None:
-    store.append("greeting", {"to": "all"})
+    append_body(store, "greeting", {"to": "all"})
     store.close()
     with pytest.raises(sqlite3.IntegrityError, match="append only"):
         rebuild(store.folder, change)
@@ -242,8 +246,8 @@ def test_threads_append_without_losing_or_mixing(store: Store) -> None:
     def work(name: str) -> None:
         for number in range(25):
             with store.transaction():
-                store.append(name, {"n": number})
-                store.append(name, {"n": number})
+                append_body(store, name, {"n": number})
+                append_body(store, name, {"n": number})
 
     threads = [threading.Thread(target=work, args=(name,)) for name in ("a", "b", "c", "d")]
     for thread in threads:
@@ -260,7 +264,7 @@ def test_another_thread_sees_nothing_of_an_open_transaction(store: Store) -> Non
     seen: list[int] = []
     reader = threading.Thread(target=lambda: seen.append(len(list(store.events()))))
     with suppress(Mishap), store.transaction():
-        store.append("greeting", {})
+        append_body(store, "greeting", {})
         reader.start()
         raise Mishap
     reader.join()
@@ -275,7 +279,7 @@ def test_names_stand_apart_from_the_events(store: Store) -> None:
     store.rename("p1", "  Zoë-Ann Ωmega ")
     assert store.names() == {"p1": "Zoë-Ann Ωmega"}
     assert [event.person for event in store.events()] == ["p1", "p1"]
-    assert "Z" not in json.dumps(list(store.events()))
+    assert "Z" not in json.dumps([event.body for event in store.events()])
 
 
 def test_an_old_name_is_nowhere_in_the_folder_after_closing(store: Store) -> None:
@@ -307,7 +311,7 @@ def test_nobody_else_can_look_whatever_the_umask(tmp_path: Path, umask: int) -> 
     before = os.umask(umask)
     try:
         with Store.open(folder) as store:
-            store.append("greeting", {})
+            append_body(store, "greeting", {})
             assert mode_of(folder) == 0o700
             assert {path.name: mode_of(path) for path in folder.iterdir()} == dict.fromkeys(
                 ["tangy.db", "tangy.db-wal", "tangy.db-shm", "tangy.lock", "tangy.seal"], 0o600
@@ -320,7 +324,7 @@ def test_a_log_that_others_could_read_is_closed_to_them(tmp_path: Path) -> None:
     fill(tmp_path, 3)
     log_of(tmp_path).chmod(0o644)
     with Store.open(tmp_path) as store:
-        store.append("greeting", {})
+        append_body(store, "greeting", {})
         assert {mode_of(path) for path in tmp_path.iterdir()} == {0o600}
 
 
@@ -328,29 +332,29 @@ def test_a_second_writer_is_told_which_process_to_close(store: Store) -> None:
     with pytest.raises(StoreBusy) as caught:
         Store.open(store.folder)
     assert f"process {os.getpid()} " in str(caught.value) and "--data" in str(caught.value)
-    assert store.append("still", {}) == 1
+    assert append_body(store, "still", {}) == 1
     store.close()
     with Store.open(store.folder) as next_one:
-        assert next_one.append("mine", {}) == 2
+        assert append_body(next_one, "mine", {}) == 2
 
 
 def test_a_forgotten_store_lets_the_folder_go(tmp_path: Path) -> None:
-    Store.open(tmp_path).append("greeting", {})
+    append_body(Store.open(tmp_path), "greeting", {})
     with Store.open(tmp_path) as store:
-        assert store.append("greeting", {}) == 2
+        assert append_body(store, "greeting", {}) == 2
         assert store.notices == []
 
 
 def test_a_console_reads_beside_the_writer_and_writes_nothing(store: Store) -> None:
-    store.append("greeting", {})
+    append_body(store, "greeting", {})
     with Store.open(store.folder, write=False) as console:
         assert not console.writable and store.writable
-        store.append("joke", {})
+        append_body(store, "joke", {})
         assert [event.kind for event in console.events()] == ["greeting", "joke"]
-        for deed in (lambda: console.append("x", {}), lambda: console.rename("p1", "Ann")):
+        for deed in (lambda: append_body(console, "x", {}), lambda: console.rename("p1", "Ann")):
             with pytest.raises(StoreError, match="reading only"):
                 deed()
-    assert store.append("celebrate", {}) == 3
+    assert append_body(store, "celebrate", {}) == 3
 
 
 def test_a_console_without_a_log_is_empty_and_makes_nothing(tmp_path: Path) -> None:
@@ -361,14 +365,14 @@ def test_a_console_without_a_log_is_empty_and_makes_nothing(tmp_path: Path) -> N
         assert (console.responses(), console.names(), console.check()) == ({}, {}, [])
         assert not folder.exists()
         with Store.open(folder) as store:
-            store.append("greeting", {})
+            append_body(store, "greeting", {})
             assert [event.kind for event in console.events()] == ["greeting"]
 
 
 def test_a_closed_store_says_so(store: Store) -> None:
     store.close()
     store.close()
-    for deed in (lambda: store.append("x", {}), store.names, lambda: list(store.events())):
+    for deed in (lambda: append_body(store, "x", {}), store.names, lambda: list(store.events())):
         with pytest.raises(StoreError, match="is closed"):
             deed()
 
@@ -400,6 +404,7 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing_acknowledged(tmp_path: Pa
 import resource, sys
 from pathlib import Path
 from tangy_profiles.errors import StoreError
+from tangy_profiles.events import Unknown
 from tangy_profiles.store import Store
 with Store.open(Path(sys.argv[1])) as store:
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
@@ -409,7 +414,7 @@ with Store.open(Path(sys.argv[1])) as store:
             with store.transaction():
                 for part in range(3):
                     try:
-                        kept = store.append("state", {"x": "x" * 3000})
+                        kept = store.append(Unknown("state", {"x": "x" * 3000}))
                     except StoreError:
                         pass
             print(kept, flush=True)
@@ -429,7 +434,7 @@ with Store.open(Path(sys.argv[1])) as store:
 def test_a_folder_may_have_any_name(tmp_path: Path) -> None:
     folder = tmp_path / "Ägypten ?mode=memory#%41 100%"
     with Store.open(folder) as store:
-        store.append("greeting", {})
+        append_body(store, "greeting", {})
     assert log_of(folder).stat().st_size > 0
 
 
@@ -439,7 +444,7 @@ def test_a_folder_may_have_any_name(tmp_path: Path) -> None:
 def fill(folder: Path, events: int = 500) -> None:
     with Store.open(folder) as store, store.transaction():
         for number in range(events):
-            store.append("state", {"n": number, "text": "words " * 20})
+            append_body(store, "state", {"n": number, "text": "words " * 20})
 
 
 def scribble(path: Path) -> bytes:
@@ -462,7 +467,7 @@ def test_a_damaged_log_is_set_aside_and_a_new_one_begun(
         with Store.open(tmp_path, now=lambda: NOON) as store:
             (notice,) = store.notices
             assert list(store.events()) == []
-            assert store.append("greeting", {}) == 1
+            assert append_body(store, "greeting", {}) == 1
         aside = sorted(tmp_path.glob("tangy.db.damaged-20260304T120000Z*"))
         assert len(aside) == round_
         assert str(aside[-1]) in notice and notice.endswith(".")
@@ -485,7 +490,7 @@ def test_what_is_no_log_is_set_aside(tmp_path: Path, content: bytes) -> None:
 def test_a_tail_whose_log_is_gone_is_set_aside(tmp_path: Path) -> None:
     tail = tmp_path / "tangy.db-wal"
     with Store.open(tmp_path) as store:
-        store.append("greeting", {})
+        append_body(store, "greeting", {})
         content = tail.read_bytes()
     log_of(tmp_path).write_bytes(b"")
     tail.write_bytes(content)
@@ -544,7 +549,7 @@ def fill_first_version(folder: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         with Store.open(folder) as store:
-            store.append("greeting", {})
+            append_body(store, "greeting", {})
             store._write("INSERT INTO name VALUES ('user1', 'Rosalind')")
 
 
@@ -616,7 +621,7 @@ def test_an_older_log_is_copied_and_brought_up_to_date(
         assert len(list(store.events())) == 3
         assert store.notices == []
     with Store.open(tmp_path, now=lambda: NOON) as store:
-        assert store.append("state", {}) == 4
+        assert append_body(store, "state", {}) == 4
     now = len(later) - 1
     copy = tmp_path / f"tangy.db.version-{now}-20260304T120000Z"
     assert mode_of(copy) == 0o600
@@ -631,7 +636,7 @@ def test_an_older_log_is_copied_and_brought_up_to_date(
 def test_a_log_of_version_0_keeps_what_is_in_it(tmp_path: Path) -> None:
     rebuild(tmp_path, "CREATE TABLE note (x); INSERT INTO note VALUES ('kept');")
     with Store.open(tmp_path) as store:
-        assert store.append("greeting", {}) == 1
+        assert append_body(store, "greeting", {}) == 1
     for path in (log_of(tmp_path), *tmp_path.glob("tangy.db.version-0-*")):
         with closing(sqlite3.connect(path)) as db:
             assert db.execute("SELECT x FROM note").fetchall() == [("kept",)]

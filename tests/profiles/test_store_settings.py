@@ -11,6 +11,7 @@ import pytest
 from tangy_profiles import log_file
 from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
+from tests.support.append_body import append_body
 
 connect = sqlite3.connect
 
@@ -61,7 +62,9 @@ def test_a_log_that_sqlite_will_not_keep_as_promised_is_refused(
     assert str(tmp_path) in said and setting in said and "--data" in said
     monkeypatch.undo()
     with Store.open(tmp_path) as store:
-        assert (store.append("greeting", {}), store.notices) == (1, []), "nothing was left behind"
+        assert (append_body(store, "greeting", {}), store.notices) == (1, []), (
+            "nothing was left behind"
+        )
 
 
 def test_a_disk_that_cannot_hold_a_tail_beside_the_log_is_refused_in_a_sentence(
@@ -105,7 +108,7 @@ def test_a_log_that_a_reader_brought_up_to_date_is_vouched_for(
     with monkeypatch.context() as older:
         older.setattr(log_file, "MIGRATIONS", log_file.MIGRATIONS[:1])
         with Store.open(tmp_path) as store:
-            store.append("greeting", {})
+            append_body(store, "greeting", {})
     Store.open(tmp_path, write=False).close()
     read: list[str] = []
 
@@ -117,7 +120,7 @@ def test_a_log_that_a_reader_brought_up_to_date_is_vouched_for(
     monkeypatch.setattr(log_file, "ALWAYS_CHECKED", 1000)
     monkeypatch.setattr(sqlite3, "connect", watched)
     with Store.open(tmp_path) as store:
-        assert store.append("joke", {}) == 2
+        assert append_body(store, "joke", {}) == 2
     assert read and not any("quick_check" in sql for sql in read)
     with closing(connect(tmp_path / "tangy.db")) as db:
         assert db.execute("PRAGMA user_version").fetchone() == (len(log_file.MIGRATIONS),)

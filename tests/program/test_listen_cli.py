@@ -25,6 +25,7 @@ from tangy_tui.speech.recordings import consent, consented
 from tangy_tui.verbs import hearing, mic_check
 from tangy_tui.verbs.mic_check import ALONE
 from tests.hw.sounds import pcm, tone, wav
+from tests.support.append_body import append_body
 
 Tangy = Callable[..., CompletedProcess[str]]
 Tell = Callable[[int, list[dict[str, Any]]], None]
@@ -164,7 +165,7 @@ def test_settings_of_a_microphone_that_was_never_checked_are_said_to_be_the_usua
     assert not tangy("listen", "a.wav", "--data", folder).stderr
     with Store.open(folder) as store:
         body = {"source": "arecord", "settings": {"garbage": 0.9, "shift": 0.5}}
-        store.append("microphone checked", body)
+        append_body(store, "microphone checked", body)
     assert not tangy("listen", "a.wav", "--mic", "arecord", "--data", folder).stderr
     assert (
         "socket was never" in tangy("listen", "a.wav", "--mic", "socket", "--data", folder).stderr
@@ -317,7 +318,7 @@ class TestCheckingAMicrophone:
         assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
         with Store.open(folder) as store:
             body = {"source": "socket", "settings": {"garbage": 0.9, "shift": 0.5}}
-            store.append("microphone checked", body)
+            append_body(store, "microphone checked", body)
         assert tangy(*arguments).stdout == "socket: forgotten.\n"
         assert tangy(*arguments).stdout == "socket: nothing was stored.\n"
 

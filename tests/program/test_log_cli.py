@@ -16,6 +16,7 @@ from tangy_profiles.store import Store
 from tangy_tui.monitoring.fault_table import ROWS
 from tangy_tui.monitoring.games import Game
 from tangy_tui.ui.log_report import print_games
+from tests.support.append_body import append_body
 
 Tangy = Callable[..., CompletedProcess[str]]
 FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
@@ -178,7 +179,7 @@ def test_a_game_of_an_activity_that_is_gone_is_still_listed(
 ) -> None:
     with Store.open(played) as store:
         begun = next(store.events("game begun")).body
-        store.append("game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
+        append_body(store, "game begun", {**begun, "game": "feedfacefeed", "activity": "whist"})
     assert "whist" in tangy("log", "list", "--data", played).stdout
     done = tangy("log", "show", "last", "--data", played)
     assert (done.returncode, "There is no activity 'whist' here" in done.stderr) == (0, True)

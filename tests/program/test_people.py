@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 from tangy_profiles.beliefs import Beta
+from tangy_profiles.people_records import ResponseAwaited
 from tangy_profiles.store import Store
-from tangy_tui.interaction.feedback import AWAITED
 from tangy_tui.interaction.saying import ago
+from tests.support.append_body import append_body
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -28,13 +29,15 @@ def data(tmp_path: Path) -> Path:
     then = datetime.now(UTC) - timedelta(days=23)
     with Store.open(tmp_path / "mine", now=lambda: then) as store:
         store.rename("user1", "Rosa")
-        store.append("game begun", {"game": "g", "people": ["user1", "user2"]})
+        append_body(store, "game begun", {"game": "g", "people": ["user1", "user2"]})
         told = [("praise", n < 7) for n in range(9)] + [("neutral", False)] * 3
         told += [("suggestion", False)] * 2
         for strategy, complied in [*told, ("scarcity", False), ("scarcity", False)]:
             body = {"game": "g", "followed": True, "seconds": 5.0}
-            store.append("response", body, person="user1", strategy=strategy, complied=complied)
-        store.append(AWAITED, {"game": "g"}, person="user1", strategy="suggestion")
+            append_body(
+                store, "response", body, person="user1", strategy=strategy, complied=complied
+            )
+        append_body(store, ResponseAwaited, {"game": "g"}, person="user1", strategy="suggestion")
     return tmp_path / "mine"
 
 

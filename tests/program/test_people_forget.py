@@ -19,6 +19,7 @@ from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Reply, Say
+from tests.support.append_body import append_body
 
 Tangy = Callable[..., CompletedProcess[str]]
 
@@ -46,12 +47,16 @@ def data(tmp_path: Path) -> Path:
         store.rename("user2", NAME)
         store.pronounce("user2", "Z AE N TH IH P IY")
         store.rename("user3", "Xanthippe Rose")
-        answered = store.append(
-            "response", {"game": None}, person="user2", strategy="praise", complied=True
+        answered = append_body(
+            store, "response", {"game": None}, person="user2", strategy="praise", complied=True
         )
         of = next(e.uuid for e in store.events() if e.seq == answered)
-        store.append(
-            "void", {"of": of, "why": f"{NAME} was asleep"}, person="user2", strategy="praise"
+        append_body(
+            store,
+            "void",
+            {"of": of, "why": f"{NAME} was asleep"},
+            person="user2",
+            strategy="praise",
         )
     teach(folder, "greet everyone", "go to XANTHIPPE", "go to xanthippe rose")
     (folder / "report.html").write_text(f"<p title='{NAME}'>{NAME}'s card, xanthippean</p>")
@@ -126,7 +131,7 @@ def test_somebody_called_mark_takes_no_word_along(tangy: Tangy, tmp_path: Path) 
         step = store.last("demonstration step")
         assert step is not None
         again = {**step.body, "behaviour": "mark numbers", "heard": "mark numbers"}
-        store.append("demonstration step", again)
+        append_body(store, "demonstration step", again)
     assert tangy("people", "forget", "Mark", "--yes", "--data", tmp_path).returncode == 0
     with Store.open(tmp_path, write=False) as store:
         heard = [e.body["heard"] for e in store.events("demonstration step")]

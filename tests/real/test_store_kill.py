@@ -9,6 +9,7 @@ import pytest
 
 from tangy_profiles.errors import StoreBusy
 from tangy_profiles.store import Store
+from tests.support.append_body import append_body
 
 KILLS = 15
 
@@ -20,9 +21,9 @@ store = Store.open(Path(sys.argv[1]))
 print("open", flush=True)
 while True:
     with store.transaction():
-        first = store.append("first", {"filling": "words " * 200})
-        store.append("second", {"of": first})
-        third = store.append("third", {"of": first}, person="p", strategy="s", complied=True)
+        first = append_body(store, "first", {"filling": "words " * 200})
+        append_body(store, "second", {"of": first})
+        third = append_body(store, "third", {"of": first}, person="p", strategy="s", complied=True)
     print(third, flush=True)
 """
 
@@ -31,7 +32,7 @@ import sys
 from pathlib import Path
 from tangy_profiles.store import Store
 with Store.open(Path(sys.argv[1])) as store:
-    store.append("greeting", {})
+    append_body(store, "greeting", {})
     print("open", flush=True)
     sys.stdin.read()
 """
@@ -81,7 +82,7 @@ def test_a_second_process_is_refused_until_the_first_one_ends(tmp_path: Path) ->
         child.stdin.close()
         assert child.wait(30) == 0
     with Store.open(tmp_path) as store:
-        assert store.append("mine", {}) == 2
+        assert append_body(store, "mine", {}) == 2
 
 
 def test_a_killed_process_holds_nothing(tmp_path: Path) -> None:
@@ -90,4 +91,4 @@ def test_a_killed_process_holds_nothing(tmp_path: Path) -> None:
         child.kill()
         assert child.wait(30) != 0
     with Store.open(tmp_path) as store:
-        assert store.append("mine", {}) == 2
+        assert append_body(store, "mine", {}) == 2

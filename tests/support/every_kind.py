@@ -5,14 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 from tangy_hw.perception.faces import face_store
-from tangy_profiles.events import BODIES
+from tangy_profiles.drill_sheet import AnsweredRound, Sheet
+from tangy_profiles.events import KINDS
+from tangy_profiles.game_records import DrillHeld, EffectAccepted, FaultDiagnosed
 from tangy_profiles.game_world import BENCH
+from tangy_profiles.people_records import (
+    EventsLost,
+    MicrophoneChecked,
+    MicrophoneForgotten,
+    ResponseAwaited,
+)
 from tangy_profiles.persuading import PersuasionConfig
-from tangy_profiles.store import LOST, Store
+from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction.feedback import AWAITED, Feedback
+from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.game_worlds import GameWorlds
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.editing import Editor
@@ -20,9 +28,8 @@ from tangy_tui.learning.policies import load_policy
 from tangy_tui.learning.scripted_teacher import ScriptedTeacher
 from tangy_tui.learning.teaching_events import Next, Redo, Undo
 from tangy_tui.monitoring.accepted import read_accepted, take_back
-from tangy_tui.monitoring.drill_sheet import DRILL, AnsweredRound, Sheet
-from tangy_tui.monitoring.fault import ACCEPTED, FAULT
-from tangy_tui.speech import calibration, recordings
+from tangy_tui.speech import recordings
+from tests.support.append_body import append_body
 
 
 def write_every_kind(folder: Path) -> None:
@@ -35,7 +42,7 @@ def write_every_kind(folder: Path) -> None:
             _play(workspace)
             _tell_of_people(workspace)
             _rehearse(workspace)
-        missing = BODIES.keys() - workspace.store.kinds().keys()
+        missing = KINDS.keys() - workspace.store.kinds().keys()
         assert not missing, f"write_every_kind writes none of {sorted(missing)}"
         assert workspace.store.check() == []
     finally:
@@ -78,16 +85,16 @@ def _play(workspace: Workspace) -> None:
         while not game.over:
             go_on_by_script(control, expert=True)
             game.note("stopped the robot", "Ada") if game.steps == 5 else None
-    fault = workspace.store.last(FAULT)
+    fault = workspace.store.last(FaultDiagnosed)
     step = next(workspace.store.events("demonstration step"))
     assert fault is not None
     about = {"activity": "bingo", "game": fault.body["game"], "by": "Ada"}
     kept = {key: step.body[key] for key in ("behaviour", "target", "state", "after", "completed")}
-    workspace.store.append(ACCEPTED, {**about, "fault": fault.body["fault"], **kept})
+    append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
     assert read_accepted(workspace.store, "bingo")
     take_back(workspace.store, "bingo", 1)
     GameWorlds(workspace.store).set(fault.body["game"], BENCH, "Ada")
-    workspace.store.append(ACCEPTED, {**about, "fault": fault.body["fault"], **kept})
+    append_body(workspace.store, EffectAccepted, {**about, "fault": fault.body["fault"], **kept})
 
 
 def _tell_of_people(workspace: Workspace) -> None:
@@ -98,7 +105,7 @@ def _tell_of_people(workspace: Workspace) -> None:
     workspace.pronounce(rosa, "R OW Z AH")
     workspace.prefer_voice(rosa, VoicePreference(110))
     strategy, other, *_ = workspace.activity.strategies
-    seq = store.append(AWAITED, {"game": None}, person=rosa.id, strategy=strategy)
+    seq = append_body(store, ResponseAwaited, {"game": None}, person=rosa.id, strategy=strategy)
     feedback.give(rosa.id, strategy, True, of=seq)
     entry = feedback.give(rosa.id, strategy, False)
     feedback.void(rosa.id, entry.seq, "not heard")
@@ -117,14 +124,16 @@ def _tell_of_people(workspace: Workspace) -> None:
 
 def _rehearse(workspace: Workspace) -> None:
     store: Store = workspace.store
-    store.append(LOST, {"first": 1, "last": 1})
+    append_body(store, EventsLost, {"first": 1, "last": 1})
     rounds = (
         AnsweredRound(
             1, "voice-dead", "no voice", "go on", ("a",), "voice-dead", "go on", 3.0, None, None
         ),
         AnsweredRound(2, "", "", "continue", (), "", "continue", 2.0, None, None),
     )
-    store.append(DRILL, Sheet("Ada", "bingo", 1, 2, rounds).to_json())
+    store.append(DrillHeld(sheet=Sheet("Ada", "bingo", 1, 2, rounds)))
     settings = {"garbage": 1.0, "shift": 0.0}
-    store.append(calibration.CHECKED, {"source": "arecord", "settings": settings, "figures": {}})
-    store.append(calibration.FORGOTTEN, {"source": "arecord"})
+    append_body(
+        store, MicrophoneChecked, {"source": "arecord", "settings": settings, "figures": {}}
+    )
+    append_body(store, MicrophoneForgotten, {"source": "arecord"})

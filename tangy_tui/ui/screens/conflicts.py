@@ -12,6 +12,7 @@ from textual.containers import Grid
 from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
+from tangy_profiles.teaching_records import Settlement
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
@@ -134,7 +135,7 @@ class ConflictsScreen(TangyScreen[bool]):
             return
         self._answered.append(edit)
         words = edit_words(self._workspace.activity, self._library, edit)
-        aside = len(edit.body["wrong"])
+        aside = len(edit.done.resolution.wrong) if isinstance(edit.done, Settlement) else 0
         put = f" {counted(aside, 'step')} set aside." if aside else ""
         self._log.write(f"{words}{put}", "good")
         await self._show()

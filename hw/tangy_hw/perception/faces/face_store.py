@@ -15,12 +15,11 @@ from typing import Any
 from urllib.parse import quote, unquote
 
 from tangy_hw.perception.faces.face_detector import FaceError
+from tangy_profiles.people_records import FaceConsent, FaceForgotten
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 
 FOLDER = "faces"  # in the data folder
-CONSENT, FORGOTTEN = "consent to face", "face forgotten"
-"""The kinds of event. Consent has yes and how; forgetting takes it back."""
 ENDING = ".face"
 FORMAT = 1
 LARGEST_ROWS, LARGEST_COLUMNS = 1000, 100_000
@@ -33,10 +32,10 @@ class NoConsent(FaceError):
 def consented(store: Store) -> frozenset[str]:
     """Return who has agreed that their face is known, and has not taken that back since."""
     agreed: set[str] = set()
-    for event in store.events(CONSENT, FORGOTTEN):
+    for event in store.events(FaceConsent, FaceForgotten):
         if event.person is None:
             continue
-        if event.kind == CONSENT and event.body.get("yes") is True:
+        if isinstance(event.record, FaceConsent) and event.record.yes:
             agreed.add(event.person)
         else:
             agreed.discard(event.person)
@@ -45,7 +44,7 @@ def consented(store: Store) -> frozenset[str]:
 
 def consent(store: Store, person: str, yes: bool, how: str) -> None:
     """Note whether a person agreed, and how; after a no nothing of their face is kept."""
-    store.append(CONSENT, {"yes": yes, "how": plain(how)}, person=person)
+    store.append(FaceConsent(yes=yes, how=plain(how)), person=person)
     if not yes:
         _delete(store, person)
 
@@ -131,7 +130,7 @@ def forget_face(store: Store, person: str) -> bool:
         FaceError: a file cannot be deleted.
     """
     if person in consented(store):
-        store.append(FORGOTTEN, {}, person=person)
+        store.append(FaceForgotten(), person=person)
     return _delete(store, person)
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, ClassVar
 
+from tangy_profiles.codec import Count, Key, Unlogged
 from tangy_profiles.faults import URGENCY
-from tangy_profiles.store import Store
 
-DRILL = "drill"
 NOTHING_WRONG = "none"
 """The class of rounds in which nothing was wrong."""
 
@@ -25,8 +24,8 @@ class AnsweredRound:
     given one where it was asked whether Tangy may be cleared. `seconds` is how long all took.
     """
 
-    number: int
-    code: str
+    number: Annotated[Count, Key("round")]
+    code: Annotated[str, Key("fault")]
     name: str
     recovery: str
     advice: tuple[str, ...]
@@ -35,6 +34,9 @@ class AnsweredRound:
     seconds: float
     may_clear: bool | None = None
     cleared: bool | None = None
+    DERIVED: ClassVar[Mapping[str, str]] = {
+        key: key for key in ("named_right", "acted_right", "cleared_right", "points", "most")
+    }
 
     @property
     def kind(self) -> str:
@@ -66,42 +68,6 @@ class AnsweredRound:
         """The points that could be had."""
         return 2 if self.may_clear is None else 3
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the round as log and `--json` have it."""
-        return {
-            "round": self.number,
-            "fault": self.code,
-            "name": self.name,
-            "recovery": self.recovery,
-            "named": self.named,
-            "named_right": self.named_right,
-            "acted": self.acted,
-            "acted_right": self.acted_right,
-            "may_clear": self.may_clear,
-            "cleared": self.cleared,
-            "cleared_right": self.cleared_right,
-            "points": self.points,
-            "most": self.most,
-            "seconds": self.seconds,
-            "advice": list(self.advice),
-        }
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> AnsweredRound:
-        """Read a round that `to_json` wrote."""
-        return cls(
-            int(body["round"]),
-            body["fault"],
-            body["name"],
-            body["recovery"],
-            tuple(body["advice"]),
-            body["named"],
-            body["acted"],
-            float(body["seconds"]),
-            body["may_clear"],
-            body["cleared"],
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
@@ -110,10 +76,18 @@ class Sheet:
     who: str
     activity: str
     seed: int
-    rounds: int
-    answered: tuple[AnsweredRound, ...]
-    at: str = ""
+    rounds: Count
+    answered: Annotated[tuple[AnsweredRound, ...], Key("answers")]
+    at: Unlogged[str] = ""
     """When it was logged (ISO 8601, UTC)."""
+    DERIVED: ClassVar[Mapping[str, str]] = {
+        "finished": "finished",
+        "points": "points",
+        "most": "most",
+        "median_seconds": "median",
+        "classes": "by_class",
+        "again": "codes",
+    }
 
     def by(self, who: str) -> bool:
         """Say whether it is somebody's, however the name is written."""
@@ -157,42 +131,7 @@ class Sheet:
         wrong = {one.code: one for one in self.answered if one.points < one.most}
         return tuple(wrong.values())
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the sheet as log and `--json` have it."""
-        return {
-            "who": self.who,
-            "activity": self.activity,
-            "seed": self.seed,
-            "rounds": self.rounds,
-            "finished": self.finished,
-            "points": self.points,
-            "most": self.most,
-            "median_seconds": self.median,
-            "classes": {kind: list(points) for kind, points in self.by_class.items()},
-            "again": [one.code or NOTHING_WRONG for one in self.again],
-            "answers": [one.to_json() for one in self.answered],
-        }
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any], at: str = "") -> Sheet:
-        """Read a sheet that `to_json` wrote."""
-        return cls(
-            body["who"],
-            body["activity"],
-            int(body["seed"]),
-            int(body["rounds"]),
-            tuple(AnsweredRound.from_json(one) for one in body["answers"]),
-            at,
-        )
-
-
-def read_sheets(store: Store, who: str = "") -> list[Sheet]:
-    """Read the sheets that were kept (of one person), the oldest first."""
-    sheets = [Sheet.from_json(event.body, event.at) for event in store.events(DRILL)]
-    return [sheet for sheet in sheets if not who or sheet.by(who)]
-
-
-def last_sheet(store: Store) -> Sheet | None:
-    """Return the newest sheet, or None."""
-    event = store.last(DRILL)
-    return None if event is None else Sheet.from_json(event.body, event.at)
+    @property
+    def codes(self) -> tuple[str, ...]:
+        """The faults to rehearse again."""
+        return tuple(one.code or NOTHING_WRONG for one in self.again)

@@ -1,0 +1,214 @@
+"""The events of games: what was done and seen in them, their faults, and drills."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal, TypeAlias
+
+from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
+from tangy_profiles.demonstration import Step, not_the_same
+from tangy_profiles.drill_sheet import Sheet
+from tangy_profiles.game_world import GameWorld
+from tangy_profiles.health import Fact
+from tangy_profiles.records import EventRecord, kind
+from tangy_profiles.state import ActivityState, Variable
+
+
+@kind("game begun")
+class GameBeginning(EventRecord):
+    """A game begins, by the policy of that digest. The first logs do not name the `world`."""
+
+    game: str
+    number: Count = 0
+    activity: str = ""
+    policy: str = ""
+    seed: int = 0
+    people: tuple[str, ...]
+    world: Sparse[GameWorld | None] = None
+
+
+@kind("game world set")
+class GameWorldSet(EventRecord):
+    """Staff said in which world a game was played."""
+
+    game: str
+    world: GameWorld
+    by: str = ""
+
+
+def _state_of_a_game(value: Any) -> ActivityState:
+    """Read a state; the first games were logged without who was `closed`."""
+    return read(ActivityState, {"closed": None, **value} if isinstance(value, dict) else value)
+
+
+GameState: TypeAlias = Annotated[ActivityState, By(_state_of_a_game)]
+
+
+@kind("game step")
+class GameStep(EventRecord):
+    """A behaviour was executed: how it was chosen, and what was seen before and `after`.
+
+    `seconds` is None in games of before that was logged.
+    """
+
+    game: str
+    behaviour: str
+    target: str | None
+    strategy: str | None = None
+    share: float | None = None
+    teacher: str | None = None
+    draws: Mapping[str, float] | None = None
+    numbers: tuple[int, ...] = ()
+    completed: bool = True
+    seconds: float | None = None
+    state: GameState
+    after: GameState | None = None
+
+    def misfit(self) -> str:
+        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        return not_the_same(self.state, self.after)
+
+
+@kind("game ended")
+class GameEnding(EventRecord):
+    """A game ended; `stopped` says why before its end, if it was."""
+
+    game: str
+    steps: Count
+    stopped: str | None
+
+
+Criticality = Literal["critical", "non-critical"]
+Measurement: TypeAlias = Annotated[Fact, By(measurement)]
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """A variable that took a value which no demonstration showed after this behaviour."""
+
+    behaviour: str
+    variable: Variable
+    expected: tuple[str, ...]
+    seen: str
+
+    def __str__(self) -> str:
+        wanted = " or ".join(self.expected) if self.expected else "nothing known"
+        return f"{self.behaviour}: {self.variable} should be {wanted}, is {self.seen}"
+
+
+@kind("fault")
+class FaultDiagnosed(EventRecord):
+    """A fault was diagnosed; its texts hold a slot where the name of a person stands."""
+
+    game: str
+    fault: str
+    code: str
+    name: str
+    criticality: Criticality
+    recovery: str
+    step: Count
+    seconds: float
+    behaviour: str
+    console: str
+    why: str
+    evidence: Mapping[str, Measurement]
+    mismatches: tuple[Mismatch, ...]
+    advice: tuple[str, ...]
+
+
+MoveKind = Literal[
+    "kept",
+    "asked",
+    "remedied",
+    "teacher asked",
+    "halted",
+    "acknowledged",
+    "expert called",
+    "still there",
+    "escalated",
+    "went on",
+    "recovered",
+    "taught",
+    "accepted",
+    "cleared",
+    "ended",
+    "left",
+    "given up",
+    "left open",
+]
+"""What can be done about a fault."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecoveryEvent:
+    """One step of a recovery: what, the how-manieth time, by whom, what was said, when (s)."""
+
+    kind: MoveKind
+    seconds: float
+    attempt: Sparse[Count] = 0
+    by: Sparse[str] = ""
+    to: Sparse[str] = ""
+    speech: Sparse[str] = ""
+    image: Sparse[str] = ""
+    remedy: Sparse[str] = ""
+
+    def called(self, name: str) -> RecoveryEvent:
+        """Return the move with the person's name where the log only has a slot for it."""
+        return replace(self, speech=named(self.speech, name), image=named(self.image, name))
+
+
+NAME = "{name}"
+"""What stands for a person's name in the log, from which names can be forgotten."""
+
+
+def named(text: str, name: str) -> str:
+    """Return a text of a fault with the person's name in its slot."""
+    return text.replace(NAME, name)
+
+
+@kind("recovery")
+class FaultMove(EventRecord):
+    """Something was done about a fault, or happened to it."""
+
+    game: str
+    fault: str
+    move: Flat[RecoveryEvent]
+
+
+@kind("effect accepted")
+class EffectAccepted(EventRecord):
+    """A teacher said that what followed a behaviour is all right."""
+
+    activity: str
+    game: str
+    fault: str
+    by: str
+    step: Flat[Step]
+
+
+@kind("acceptance taken back")
+class AcceptanceTakenBack(EventRecord):
+    """What was accepted by the event of that seq is a fault again."""
+
+    number: int
+
+
+@kind("staff action")
+class StaffAction(EventRecord):
+    """Staff did what is neither a behaviour nor a move: stopped the robot, brought a fault about.
+
+    `seconds` is the time in the game.
+    """
+
+    game: str
+    what: str
+    by: str
+    seconds: float | None = None
+
+
+@kind("drill")
+class DrillHeld(EventRecord):
+    """A drill was held, with this score sheet."""
+
+    sheet: Flat[Sheet]

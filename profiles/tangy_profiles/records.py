@@ -1,0 +1,118 @@
+"""What a kind of event in the log is: a record with a name, a version, and whom it is about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, TypeAlias, TypeVar, dataclass_transform
+
+from tangy_profiles import codec
+from tangy_profiles.codec import Unreadable
+
+About: TypeAlias = Literal["nobody", "person", "strategy"]
+"""Whom an event's row names: nobody, or a person, or a person and a strategy."""
+Older: TypeAlias = Callable[[int, dict[str, Any]], dict[str, Any]]
+"""Returns the body of an earlier version as one of the present version."""
+
+VERSION_KEY = "v"
+"""The key of a body that says of which version it is; without it, it is the first."""
+
+
+class EventRecord:
+    """The body of one kind of event, typed and frozen. Make one with `@kind`."""
+
+    __slots__ = ()
+    KIND: ClassVar[str]
+    VERSION: ClassVar[int]
+    ABOUT: ClassVar[About]
+    OLDER: ClassVar[Older]
+
+    @property
+    def body(self) -> dict[str, Any]:
+        """The body as the log keeps it."""
+        table: dict[str, Any] = codec.written(self)
+        return table if self.VERSION == 1 else {VERSION_KEY: self.VERSION, **table}
+
+
+R = TypeVar("R", bound=EventRecord)
+
+KINDS: dict[str, type[EventRecord]] = {}
+"""The record of each kind; `events` has them all."""
+
+
+class Unknown(EventRecord):
+    """An event of a kind that this Tangy does not know: it has a body, and means nothing."""
+
+    __slots__ = ("KIND", "_body")
+    VERSION, ABOUT = 1, "nobody"
+
+    def __init__(self, kind: str = "", body: Mapping[str, Any] | None = None) -> None:
+        self.KIND = kind  # type: ignore[misc]  # each its own
+        self._body = dict(body or {})
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Unknown) and (self.KIND, self.body) == (other.KIND, other.body)
+
+    __hash__ = None  # type: ignore[assignment]  # a body is a table
+
+    @property
+    def body(self) -> dict[str, Any]:
+        """The body as it stands in the log."""
+        return self._body
+
+
+def _as_it_is(version: int, body: dict[str, Any]) -> dict[str, Any]:
+    return body
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def kind(
+    name: str, *, about: About = "nobody", version: int = 1, older: Older = _as_it_is
+) -> Callable[[type[R]], type[R]]:
+    """Make a class the record of a kind of event.
+
+    Args:
+        name: the kind, as it stands in the log.
+        about: whom its row names.
+        version: counts up where a body of before would be read otherwise than it was meant.
+        older: makes bodies of this version from those of earlier ones.
+    """
+
+    def make(cls: type[R]) -> type[R]:
+        if name in KINDS:
+            raise TypeError(f"{KINDS[name].__name__} is the record of {name!r} already.")
+        made = dataclass(frozen=True, slots=True, kw_only=True)(cls)
+        made.KIND, made.VERSION, made.ABOUT = name, version, about
+        made.OLDER = staticmethod(older)
+        KINDS[name] = made
+        return made
+
+    return make
+
+
+def name_of(kind: type[EventRecord] | str) -> str:
+    """Return the name of a kind of event in the log."""
+    return kind if isinstance(kind, str) else kind.KIND
+
+
+def read_record(
+    name: str, person: str | None, strategy: str | None, body: Mapping[str, Any]
+) -> EventRecord:
+    """Return the record of an event.
+
+    Raises:
+        Unreadable: the event is not one as Tangy writes them; the text is the tail of a sentence.
+    """
+    known = KINDS.get(name)
+    if known is None:
+        return Unknown(name, body)
+    if known.ABOUT != "nobody" and person is None:
+        raise Unreadable("says of nobody whom it is about")
+    if known.ABOUT == "strategy" and strategy is None:
+        raise Unreadable("has no strategy")
+    version = body.get(VERSION_KEY, 1) if isinstance(body, dict) else 1
+    if version != known.VERSION:
+        if type(version) is not int or not 1 <= version < known.VERSION:
+            raise Unreadable(f"is of version {str(version)[:20]!r}, and this Tangy knows none such")
+        body = known.OLDER(version, dict(body))
+    return codec.read(known, body)

@@ -1,0 +1,186 @@
+"""The events of teaching: what was demonstrated, what became of it, and the policies learnt."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, NamedTuple, Self, TypeAlias
+
+from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least
+from tangy_profiles.demonstration import Demonstration, Origin, Resolution, Step
+from tangy_profiles.records import EventRecord, kind
+from tangy_profiles.state import Request, Situation
+
+Ids: TypeAlias = Annotated[tuple[str, ...], at_least(1)]
+
+
+@kind("demonstration begun")
+class DemonstrationBegun(EventRecord):
+    """A demonstration begins; `kept` are the first steps of the one `of` which it shows again."""
+
+    demonstration: str
+    activity: str
+    teacher: str
+    seed: int
+    people: tuple[str, ...]
+    guided: bool = False
+    origin: Origin = "shown"
+    of: tuple[str, ...] = ()
+    kept: Sparse[Count | None] = None
+
+    @classmethod
+    def of_shown(cls, shown: Demonstration, kept: int | None = None) -> Self:
+        """Return what the log keeps of a demonstration that begins, with so many steps `kept`."""
+        own = ("activity", "teacher", "seed", "people", "guided", "origin", "of")
+        about: dict[str, Any] = {name: getattr(shown, name) for name in own}
+        return cls(demonstration=shown.id, kept=kept, **about)
+
+    def misfit(self) -> str:
+        """Say what does not fit together, as the tail of a sentence ("": nothing)."""
+        lacks = self.origin == "again" and (not self.of or self.kept is None)
+        return "has no 'of' or 'kept'" if lacks else ""
+
+
+@kind("demonstration step")
+class DemonstrationStep(EventRecord):
+    """A step was shown; `heard` and `confidence` tell how it was understood."""
+
+    demonstration: str
+    step: Flat[Step]
+    heard: str | None = None
+    confidence: float | None = None
+
+
+@kind("demonstration step undone")
+class DemonstrationStepUndone(EventRecord):
+    """The last step was taken back; `step` is its number, which the first logs do not tell."""
+
+    demonstration: str
+    step: Sparse[Count | None] = None
+
+
+@kind("demonstration step redone")
+class DemonstrationStepRedone(EventRecord):
+    """The step that was taken back last was shown again."""
+
+    demonstration: str
+
+
+@kind("demonstration finished")
+class DemonstrationFinished(EventRecord):
+    """A demonstration is complete."""
+
+    demonstration: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deletion:
+    """Demonstrations are left out."""
+
+    what: Literal["delete"] = "delete"
+    ids: Ids
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Restoration:
+    """Demonstrations are taken in again."""
+
+    what: Literal["restore"] = "restore"
+    ids: Ids
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settlement:
+    """A conflict is settled."""
+
+    what: Literal["resolve"] = "resolve"
+    resolution: Flat[Resolution]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Merger:
+    """Demonstrations are put together to one: `made`."""
+
+    what: Literal["merge"] = "merge"
+    ids: Ids
+    made: tuple[str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Division:
+    """A demonstration is divided in two, `made`, after `kept` steps."""
+
+    what: Literal["split"] = "split"
+    ids: tuple[str]
+    made: tuple[str, str]
+    kept: Count
+
+
+EditDone: TypeAlias = Deletion | Restoration | Settlement | Merger | Division
+
+
+@kind("demonstrations edited")
+class DemonstrationsEdited(EventRecord):
+    """Something was done to whole demonstrations of an activity."""
+
+    activity: str
+    edit: Flat[EditDone]
+
+
+@kind("demonstrations edit undone")
+class DemonstrationsEditUndone(EventRecord):
+    """An edit was taken back, by its seq."""
+
+    activity: str
+    edit: int
+
+
+@kind("demonstrations edit redone")
+class DemonstrationsEditRedone(EventRecord):
+    """An edit that was taken back holds again, by its seq."""
+
+    activity: str
+    edit: int
+
+
+@dataclass(frozen=True, slots=True)
+class ForestSettings:
+    """How the forest is grown: see scikit-learn's RandomForestClassifier."""
+
+    trees: Count = 100
+    bootstrap: bool = False
+    min_samples_leaf: Count = 1
+    seed: int = 0
+
+
+class LearntRow(NamedTuple):
+    """What a policy does in a situation that was shown, and the share of the votes for it."""
+
+    stage: str
+    request: Request
+    user_state: str
+    behaviour: str
+    share: float
+
+    @property
+    def situation(self) -> Situation:
+        """The situation."""
+        return Situation(self.stage, self.request, self.user_state)
+
+
+@kind("policy learnt")
+class PolicyLearnt(EventRecord):
+    """A policy was kept: how to learn it again, and what that must give."""
+
+    name: str
+    activity: str
+    demonstrations: tuple[str, ...]
+    forest: ForestSettings
+    versions: Mapping[str, str]
+    digest: str
+    resolved: tuple[Resolution, ...] = ()
+    rows: tuple[LearntRow, ...]
+    asks: Sparse[tuple[Situation, ...] | None] = None
+    """Where it asks, which the first logs do not tell."""
+    at: Unlogged[str] = ""
+    """When it was logged (ISO 8601, UTC)."""
