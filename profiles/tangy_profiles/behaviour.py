@@ -11,25 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from string import Formatter
 from types import MappingProxyType
-from typing import Literal, cast, get_args
+from typing import cast
 
+from tangy_profiles.effects import EFFECTS, Effect
 from tangy_profiles.reading import Table, nearest
-
-Effect = Literal[
-    "none",  # something is said or shown
-    "draw",  # the next number is called
-    "clear wrong marks",  # the attended person is asked to take markers off
-    "set missing marks",  # the attended person is asked to mark called numbers
-    "bring card closer",  # the attended person is asked to move the card into view
-    "go to user",
-    "go to front",
-    "finish",  # the activity is over
-]
-"""What a behaviour does to the world: a closed set, among which an activity chooses.
-
-Each world matches every one of them, so that mypy names the places where a new one is forgotten.
-"""
-EFFECTS: tuple[Effect, ...] = get_args(Effect)
 
 CLOSINGS = ("never", "always", "when correct")
 PLACES = ("front", "attended", "here")

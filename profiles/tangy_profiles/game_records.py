@@ -39,7 +39,9 @@ class GameWorldSet(EventRecord):
 
 def _state_of_a_game(value: Any) -> ActivityState:
     """Read a state; the first games were logged without who was `closed`."""
-    return read(ActivityState, {"closed": None, **value} if isinstance(value, dict) else value)
+    if isinstance(value, dict) and "closed" not in value:
+        value = {**value, "closed": None}
+    return read(ActivityState, value)
 
 
 GameState: TypeAlias = Annotated[ActivityState, By(_state_of_a_game)]

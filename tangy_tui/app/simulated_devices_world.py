@@ -16,8 +16,9 @@ from random import Random
 from typing import Any
 
 from tangy_hw.device_protocols import DeviceError
-from tangy_hw.robot_client.live_world import DRIVES, LiveWorld
+from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.behaviour import Action
+from tangy_profiles.effects import CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import BENCH, GameWorld
 from tangy_profiles.health import OK
@@ -28,7 +29,6 @@ from tangy_sim.worlds.injection import KINDS, Injection, Kind
 from tangy_sim.worlds.pending_injections import ToCome
 from tangy_tui.app.device_simulator import BenchError, DeviceSimulator
 
-MARKED = ("clear wrong marks", "set missing marks")
 EXPERT_SECONDS = 60.0  # that an expert takes on the bench
 NOTICED_SECONDS = 12.0  # of real time, in which devices that real time passes for show a fault
 
@@ -186,16 +186,16 @@ class BenchedWorld(LiveWorld):
             case injection.LOOKING:
                 if tracker.seen is None:
                     return beside and behaviour.effect == "bring card closer"
-                return behaviour.effect in MARKED
+                return behaviour.effect in CORRECTS
             case injection.ASKING:
-                return beside and behaviour.effect in MARKED and tracker.allows(behaviour)
+                return beside and behaviour.effect in CORRECTS and tracker.allows(behaviour)
             case injection.CLOSING:
                 settled = self.activity.card_states[-1].name
                 return beside and behaviour.closes == "always" and tracker.seen == settled
             case injection.WAITING:
                 return len(tracker.queue) > 1
             case injection.MOVING_ON:
-                return beside and behaviour.effect in MARKED
+                return beside and behaviour.effect in CORRECTS
             case _:
                 return True
 

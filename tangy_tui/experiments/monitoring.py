@@ -11,6 +11,7 @@ from random import Random
 from typing import Any
 
 from tangy_profiles.behaviour import Action
+from tangy_profiles.effects import DRIVES
 from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
@@ -27,7 +28,6 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 REQUESTS = 20
 """Behaviours within which a person who follows nothing was asked often enough to be told of."""
 
-DRIVES = ("go to user", "go to front")
 """The effects of behaviours for which the robot drives."""
 
 TURNS = ("asked", "remedied", "teacher asked", "halted")

@@ -9,7 +9,7 @@ from tangy_profiles.health import STALE, Fact
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
 
-_STATES = {
+STATES = {
     "OK": "all is well",
     "STALE": "nothing came from it",
     "ERROR": "it reports an error",
@@ -43,7 +43,7 @@ def evidence_words(
         elif fact == "state":
             age = evidence.get(f"{head}.age")
             since = f" for {age:.2g} s" if value == STALE and isinstance(age, float) else ""
-            parts.append(f"{device.label}: {_STATES.get(str(value), str(value))}{since}")
+            parts.append(f"{device.label}: {STATES.get(str(value), str(value))}{since}")
         elif fact == "age" and f"{head}.state" in evidence:
             continue  # it was said with the state
         else:

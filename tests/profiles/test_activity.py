@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity, read_activity, shipped_activities
-from tangy_profiles.behaviour import EFFECTS, SLOTS
+from tangy_profiles.behaviour import SLOTS
+from tangy_profiles.effects import EFFECTS
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.state import Situation
 

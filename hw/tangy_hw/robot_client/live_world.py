@@ -25,6 +25,7 @@ from tangy_hw.robot_process.drive_monitor import LOST_SPREAD
 from tangy_hw.robot_process.stop_latch import Preempted
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.effects import DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.game_world import LIVE, GameWorld
 from tangy_profiles.health import OK, Health
@@ -36,7 +37,6 @@ from tangy_profiles.tracker import Tracker
 
 PACE_SECONDS = 30.0
 """From one call to the next at least, so that all can look and mark; about as in the paper."""
-DRIVES = ("go to user", "go to front")
 LAST_CALLS = 5  # that the chest screen shows
 FACING = pi / 2  # the heading at which the robot faces the people
 
@@ -170,7 +170,10 @@ class LiveWorld:
                 return tuple(self._numbers[len(self.called) : len(self.called) + 1])
             case "clear wrong marks" | "set missing marks":
                 return self.cards.asked_about(action.behaviour)
-        return ()
+            case "none" | "bring card closer" | "go to user" | "go to front" | "finish":
+                return ()
+            case forgotten:
+                assert_never(forgotten)
 
     def _carry_out(self, action: Action, numbers: tuple[int, ...]) -> tuple[Response | None, bool]:
         """Do it; return what a person did about it, and whether the robot has done its part."""

@@ -18,6 +18,7 @@ from typing import assert_never
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Behaviour
 from tangy_profiles.card_face import LAST_CARD, USUAL_SEED, numbers_of
+from tangy_profiles.effects import ABOUT_CARD, CORRECTS
 from tangy_profiles.person import Person
 from tangy_profiles.state import FRONT, Response
 from tangy_sim.device_simulator.agenda import Agenda
@@ -36,8 +37,6 @@ CLEAR = 1.0  # s: nobody does anything so near a window's end that one could not
 GIVES_UP = 3  # times that somebody who does not comply is asked, until the sign comes down
 HIDES = ("away", "edge", "sheet")
 """How a card is out of view: not there, mostly beyond the picture's edge, under a sheet."""
-
-_CORRECTS = ("clear wrong marks", "set missing marks")
 
 
 @dataclass
@@ -285,11 +284,11 @@ class People:
         """Let somebody do what they were asked, in time or late, or not at all."""
         patience = self.activity.patience
         response = respond(self.preferences, sitter.id, heard.strategy, patience, self._compliance)
-        asked = behaviour.effect in (*_CORRECTS, "bring card closer")
+        asked = behaviour.effect in ABOUT_CARD
         if asked and self._faults.concerns("never-complies", sitter.id):
             self._refuses(sitter, response)
             return
-        vain = behaviour.effect in _CORRECTS and "no-effect" in self._faults
+        vain = behaviour.effect in CORRECTS and "no-effect" in self._faults
         seconds = _shown(response.seconds, response.complied, patience)
         self.game.responses.append(response._replace(seconds=seconds))
         self._agenda.at(self.now + seconds, partial(self._does, sitter, behaviour, heard, vain))
@@ -319,8 +318,10 @@ class People:
             case "set missing marks":
                 player.marked |= named
                 others = player.marked & player.called & ~named & ~self.activity.deck.free
-            case _:
+            case "none" | "draw" | "go to user" | "go to front" | "finish":
                 others = 0
+            case forgotten:
+                assert_never(forgotten)
         if vain and "no-effect" in self._faults and self._spoils(sitter, others, judged):
             self._faults.lift("no-effect")
         if behaviour.closes == "always":

@@ -12,6 +12,7 @@ from random import Random
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.behaviour import Action, Behaviour
+from tangy_profiles.effects import ABOUT_CARD, CORRECTS, DRIVES
 from tangy_profiles.faults import Remedy
 from tangy_profiles.health import Health
 from tangy_profiles.state import FRONT, ActivityState, Outcome, Response
@@ -110,13 +111,13 @@ class FaultyWorld(SimulatedWorld):
         asked = tracker.place in tracker.queue
         match kind.shows:
             case injection.DRIVING:
-                return behaviour.effect in ("go to user", "go to front")
+                return behaviour.effect in DRIVES
             case injection.LOOKING:
                 if tracker.seen is None:
                     return asked and behaviour.effect == "bring card closer"
-                return behaviour.effect in ("clear wrong marks", "set missing marks")
+                return behaviour.effect in CORRECTS
             case injection.ASKING:
-                return asked and behaviour.effect in _ASKED_FOR and tracker.allows(behaviour)
+                return asked and behaviour.effect in ABOUT_CARD and tracker.allows(behaviour)
             case injection.CLOSING:
                 return asked and tracker.seen is not None and self._closes(behaviour)
             case injection.MOVING_ON:
@@ -141,7 +142,7 @@ class FaultyWorld(SimulatedWorld):
     def _moves_on(self, behaviour: Behaviour) -> bool:
         """Say whether it is seen by the stage, the place or the request if it comes to nothing."""
         tracker = self.tracker
-        if behaviour.effect in ("go to user", "go to front"):
+        if behaviour.effect in DRIVES:
             return True
         if tracker.place in tracker.queue and tracker.seen is not None and behaviour.attends:
             # With nothing left to mend it would look like a request that stays open.
@@ -194,7 +195,7 @@ class FaultyWorld(SimulatedWorld):
         vain = present.get("no-effect")
         if any(fault.kind.stops for name, fault in present.items() if name not in known):
             outcome = self._in_vain(action, completed=False, seconds=NOTICED)
-        elif mute and action.behaviour.effect not in ("go to user", "go to front"):
+        elif mute and action.behaviour.effect not in DRIVES:
             outcome = self._in_vain(action, completed=False)
         elif vain is not None and self.can_show(vain.kind, action):
             outcome = self._in_vain(action, completed=True)
@@ -283,7 +284,7 @@ class FaultyWorld(SimulatedWorld):
         if response is not None and self._refused:
             late = 2 * self.activity.patience
             return response._replace(followed=False, complied=False, seconds=late)
-        if self.tracker.seen is None and action.behaviour.effect in _ASKED_FOR:
+        if self.tracker.seen is None and action.behaviour.effect in ABOUT_CARD:
             return None  # what the person did cannot be seen
         return response
 
@@ -378,5 +379,4 @@ class FaultyWorld(SimulatedWorld):
             self.tracker.seen = None
 
 
-_ASKED_FOR = ("bring card closer", "clear wrong marks", "set missing marks")
 _MUTE = ("voice-dead", "screen-dead")

@@ -1,0 +1,73 @@
+"""Effects, methods and states of devices are closed sets: a place that forgets one is named."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from tangy_profiles.effects import EFFECTS
+from tangy_profiles.health import STATES, DeviceState
+from tangy_profiles.persuading import METHODS, PersuasionConfig
+from tangy_tui.interaction.methods import method_of
+from tangy_tui.monitoring import evidence
+from tangy_tui.text import sensors
+from tangy_tui.ui.dialogs import method
+
+ROOT = Path(__file__).parents[2]
+WORLDS = (
+    "sim/tangy_sim/worlds/world.py",
+    "sim/tangy_sim/device_simulator/people.py",
+    "hw/tangy_hw/robot_client/live_world.py",
+)
+"""The modules that say what an effect does to a world."""
+
+
+def places(attribute: str) -> Iterator[tuple[str, int, set[str]]]:
+    """Yield where the program matches an attribute, and the words that the cases name."""
+    tops = [ROOT / top for top in ("hw", "profiles", "sim", "tangy_tui")]
+    for path in sorted(path for top in tops for path in top.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Match) and getattr(node.subject, "attr", "") == attribute:
+                parts = [part for case in node.cases for part in ast.walk(case.pattern)]
+                words = [part.value for part in parts if isinstance(part, ast.MatchValue)]
+                found = {word.value for word in words if isinstance(word, ast.Constant)}
+                yield path.relative_to(ROOT).as_posix(), node.lineno, set(map(str, found))
+
+
+MATCHES = list(places("effect"))
+
+
+def missing(place: str, known: Collection[str], told: Collection[str]) -> str:
+    return ", ".join(f"{place} says nothing of {one!r}" for one in known if one not in told)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_an_effect_is_filled_by_both_worlds_and_by_people_on_the_bench(effect: str) -> None:
+    assert {path for path, _, _ in MATCHES} >= set(WORLDS)
+    forgotten = [missing(f"{path}:{line}", [effect], told) for path, line, told in MATCHES]
+    assert not any(forgotten), "; ".join(filter(None, forgotten))
+
+
+def test_no_world_fills_an_effect_that_there_is_not() -> None:
+    assert {word for _, _, told in MATCHES for word in told} == set(EFFECTS)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_method_of_persuasion_can_be_made_and_is_said_in_words(name: str) -> None:
+    assert method_of(PersuasionConfig(name)).words
+    assert name in method.METHODS, f"METHODS of {method.__name__} has no words for {name!r}"
+
+
+def test_the_state_of_a_device_is_ranked_and_said_in_words() -> None:
+    states = get_args(DeviceState)
+    told: dict[str, Collection[str]] = {
+        "STATES of tangy_profiles.health": STATES,
+        "DEVICE_STATES of tangy_tui.text.sensors": sensors.DEVICE_STATES,
+        "STATES of tangy_tui.monitoring.evidence": evidence.STATES,
+    }
+    forgotten = [missing(place, states, words) for place, words in told.items()]
+    assert not any(forgotten), "; ".join(filter(None, forgotten))
