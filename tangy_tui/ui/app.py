@@ -32,17 +32,21 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, ClassVar
 
+from textual import events
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.css.query import NoMatches
 from textual.notifications import SeverityLevel
 from textual.screen import Screen
+from textual.widgets import Input
 
+from tangy_tui.language.stop_sentence import stops
 from tangy_tui.ui.clean_output import CleanOutput, clean
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
+from tangy_tui.ui.typed_stop import Taken, TypedStop
 
 HANGUP_CODE = 129
 TERMINATED_CODE = 143
@@ -103,6 +107,26 @@ class TangyApp(App[None]):
         self._first = first
         self._pictures = pictures
         self._leaving = False
+        self._typed_stop = TypedStop()
+
+    async def on_event(self, event: events.Event) -> None:
+        """Stop where the word is typed or pasted among keys, and let the rest of it be no keys."""
+        pressed = isinstance(event, events.Key | events.Paste)
+        if not (pressed and not isinstance(self.focused, Input) and self._says_stop(event)):
+            await super().on_event(event)
+
+    def _says_stop(self, event: events.Event) -> bool:
+        """Stop if the word is there now; say whether the event is no key, but belongs to it."""
+        if isinstance(event, events.Paste):
+            taken: Taken = "stop" if stops(event.text) else "key"
+        elif isinstance(event, events.Key):
+            known = event.character if event.is_printable else None
+            taken = self._typed_stop.take("\n" if event.key == "enter" else known, self.clock())
+        else:
+            taken = "key"
+        if taken == "stop":
+            self.action_stop()
+        return taken != "key"
 
     def get_default_screen(self) -> Screen[Any]:
         """Begin with the screen that was asked for."""

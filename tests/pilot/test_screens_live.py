@@ -298,6 +298,18 @@ async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
         assert "Tangy goes on by itself." in screen_text(pilot.app)
 
 
+async def test_stop_typed_where_letters_are_keys_stops_and_the_rest_is_no_keys(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program) as pilot:
+        await paused_after(pilot, link, 2)
+        await pilot.press("p")
+        pilot.type(*"stop the robot", "enter")
+        await until_shown(pilot, lambda: live(pilot).control.stopped)
+        assert live(pilot).is_current, "no dialog was opened by the rest"
+        assert "stop: staff stopped it" in link.told
+
+
 async def test_staff_can_drive_by_keys(run: Run, program: Program, link: HeldLink) -> None:
     async with run(app=program) as pilot:
         await paused_after(pilot, link, 2)
