@@ -111,6 +111,7 @@ MEANINGS: tuple[tuple[str, str], ...] = (
 )
 """What help lists."""
 
+NEAR = 0.75  # likeness from which a word may have been meant: some of them move the robot
 _AGAIN = re.compile(r"(?:show )?again(?: from)?(?: step)?(?: (\d{1,6}|n))?")
 _DRIVE = re.compile(r"drive (\w+)(?: (?:for )?(\d{1,3}(?:\.\d{1,2})?)(?: ?s| seconds?)?)?")
 _ABOUT = re.compile(r"(ask for|help for|void|void the response of) (.+)", re.I)
@@ -159,7 +160,8 @@ def read_command(
 
 def nearest_command(text: str) -> str:
     """Return the command that words come nearest to, "" if none is near."""
-    close = get_close_matches(text.casefold().strip(), [*FIXED, "stop", "autonomy", "drive"], 1)
+    words = text.casefold().strip()
+    close = get_close_matches(words, [*FIXED, "stop", "autonomy", "drive"], 1, NEAR)
     return close[0] if close else ""
 
 

@@ -159,7 +159,7 @@ GameCommand: TypeAlias = (
     | EndGame
 )
 
-AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor)
+AT_ONCE = (StopRobot, Pause, GoOn, OneStep, TakeOver, GiveBack, SetAutonomy, AskFor, Confirm)
 """What does not wait for its turn."""
 
 

@@ -62,6 +62,11 @@ class RobotControls:
         """Whether its control stood still, and staff have not let it go on since."""
         return self._robot is not None and bool(self._robot.link.state.frozen)
 
+    @property
+    def going(self) -> str:
+        """Where it is driving to now, a person's id or the front; "" where it drives nowhere."""
+        return "" if self._robot is None else self._robot.link.state.going
+
     def rests(self, decision: Decision) -> bool:
         """Say whether it is too early for the next call."""
         if self._robot is None or not (self.paced and decision.sure):

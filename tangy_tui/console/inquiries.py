@@ -5,6 +5,7 @@ from __future__ import annotations
 from tangy_tui.app.command_grammar import ANSWERS, MEANINGS, read_inquiry
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.learning.verification import NO_QUESTION, answer_help
+from tangy_tui.text.control import going_words
 from tangy_tui.text.faults import advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.situations import Name, state_words
@@ -58,4 +59,5 @@ class Inquiries:
         state = world.observe()
         seen = state_words(world.activity, state, world.scene(), self._name)
         now = world.activity.in_words(state.situation)
-        return f"Now: {now}. {seen} ({self._controller.phase})"
+        going = going_words(self._controller.robot.going, self._name)
+        return " ".join(filter(None, (f"Now: {now}.", going, f"{seen} ({self._controller.phase})")))

@@ -49,7 +49,7 @@ from tangy_tui.learning.verification import (
     Verified,
 )
 from tangy_tui.monitoring.supervision import Event
-from tangy_tui.text.control import noted_words, proposal_words
+from tangy_tui.text.control import going_words, noted_words, proposal_words
 from tangy_tui.text.faults import HALTED, expert_line
 from tangy_tui.text.games import belief_lines, game_lines
 from tangy_tui.text.situations import Name, verification_lines
@@ -107,6 +107,7 @@ class StaffLines:
         self._prompted = ""
         self._calls = 0
         self._alone = self._stopped = self._ended = self._by_turns = False
+        self._going = ""
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
         self._tasks: queue.Queue[Callable[[], Sequence[Told]] | None] = queue.Queue()
@@ -249,11 +250,13 @@ class StaffLines:
     def _take_lines(self, playing: threading.Thread) -> None:
         """Take lines while a game is played. Until it has begun, only a STOP does not wait.
 
-        In a script that waits for something a STOP comes after that, as it is written.
+        In a script that waits for something a STOP comes after that, as it is written. What Tangy
+        is to do next is kept until it asks for that.
         """
         early: deque[str] = deque()
         while playing.is_alive():
-            if early and self._begun.is_set():
+            self._tell_where_it_goes()
+            if early and self._begun.is_set() and not self._controller.taking_over:
                 self._take_or_wait(early.popleft(), playing)
                 continue
             if self._alone:
@@ -269,13 +272,31 @@ class StaffLines:
                 self._alone = not early
                 if early:  # they come first
                     self._lines.put(None)
+                    time.sleep(LOOK_SECONDS)
                 elif self._controller.phase in ("idle", "running"):
                     self._write(NO_MORE)
                 self._controller.nudge.set()
-            elif self._begun.is_set() or (not waits and self._needs_no_game(line)):
+            elif self._is_due(line, early) or (not waits and self._needs_no_game(line)):
                 self._take_or_wait(line.strip(), playing)
             else:
                 early.append(line.strip())
+
+    def _tell_where_it_goes(self) -> None:
+        """Say that the robot begins to drive: who reads lines does not see it."""
+        going = self._controller.robot.going
+        if going != self._going:
+            self._going = going
+            if words := going_words(going, self._name):
+                self._write(words)
+
+    def _is_due(self, line: str, early: deque[str]) -> bool:
+        """Say whether a line may be taken now: a game has begun, and no earlier line waits."""
+        if not self._begun.is_set() or not self._controller.taking_over:
+            return self._begun.is_set() and not early
+        try:  # until Tangy asks what to do next, commands alone are taken
+            return read_command(line, self._find_person, self._title) is not None
+        except TangyError:
+            return True
 
     def _needs_no_game(self, line: str) -> bool:
         """Say whether a line is a STOP, or goes on or ends after one."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import assert_never
 
+from tangy_profiles.state import FRONT
 from tangy_tui.app.game_commands import Autonomy, NoteKind, Proposal, StaffNote
 
 HELD = {
@@ -25,6 +26,13 @@ def autonomy_words(level: Autonomy) -> str:
             return "asks before everything it does"
         case forgotten:
             assert_never(forgotten)
+
+
+def going_words(going: str, name: Callable[[str], str]) -> str:
+    """Say where the robot is driving to; "" where it drives nowhere."""
+    if not going:
+        return ""
+    return f"Tangy drives to {'the front' if going == FRONT else name(going)}."
 
 
 def proposal_words(proposal: Proposal, name: Callable[[str], str]) -> str:

@@ -49,9 +49,10 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
                 what = "complied"
             profile = supervision.persuasion.beliefs[response.person]
             best = max(profile, key=lambda strategy: profile[strategy].mean)
+            worked = f"; best so far: {best}" if profile[best].complied else ""
             return [
                 f"   {name(response.person)} {what} ({response.strategy} now "
-                f"{belief.complied} of {belief.trials}; best so far: {best})."
+                f"{belief.complied} of {belief.trials}{worked})."
             ]
         case Unsure(_, _, reason):
             return [f"Tangy asks. {reason} What should it do?"]

@@ -174,7 +174,7 @@ def live(
         from tangy_tui.app.switching_on import switched_on
 
         with switched_on(opening, stepped=bench and not plain_lines) as world:
-            if not (as_json or bench) and world.link.tablet:
+            if not as_json and (plain_lines or not bench) and world.link.tablet:
                 print(plain(world.link.tablet), file=sys.stderr)
             asks = plain_lines or who == SCRIPTED
             supervision = workspace.supervision(learnt, number, asks=asks, world=world)

