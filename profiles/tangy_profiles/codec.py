@@ -115,7 +115,7 @@ def fields_of(kind: Any) -> tuple[Field, ...]:
     """Return the fields of a record that its table has; a named tuple needs each of its keys."""
     tuples = dict.fromkeys(getattr(kind, "_fields", ()), MISSING)
     hints, found = get_type_hints(kind, include_extras=True), []
-    for name, default in (tuples or {one.name: one.default for one in fields(kind)}).items():
+    for name, default in (tuples or {one.name: _default(one) for one in fields(kind)}).items():
         hint, marks = _unpacked(hints[name])
         key = next((mark for mark in marks if isinstance(mark, Key)), Key())
         others = tuple(mark for mark in marks if not isinstance(mark, Key))
@@ -123,6 +123,10 @@ def fields_of(kind: Any) -> tuple[Field, ...]:
             hint = Annotated[(hint, *others)] if others else hint
             found.append(Field(name, key._replace(name=key.name or name), hint, default))
     return tuple(found)
+
+
+def _default(field: Any) -> Any:
+    return field.default if field.default_factory is MISSING else field.default_factory
 
 
 def _derived(kind: Any) -> Mapping[str, str]:
@@ -284,6 +288,7 @@ def _table_of(inner: Reader) -> Reader:
 def _record(kind: Any) -> Reader:
     """Return what reads the table of a record; what it says of itself as a whole counts too."""
     parts = [(*field, reader(field.hint)) for field in fields_of(kind)]
+    only = keys_of(kind) if getattr(kind, "ONLY", False) else None  # other keys may be there
     misfit, glance = getattr(kind, "misfit", None), getattr(kind, "glance", None)
 
     def take(value: Any) -> Any:
@@ -295,6 +300,8 @@ def _record(kind: Any) -> Reader:
                 found[name] = inner(value)
             elif key.name in _table(value) or default is MISSING:
                 found[name] = _of_key(key.name, inner, value)
+        if only is not None and (others := _table(value).keys() - only):
+            raise Unreadable(f"has {min(others)[:40]!r}, which is not known")
         _table(value)
         made = kind(**found)
         if misfit is not None and (why := misfit(made)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from tangy_profiles.codec import By, Count, Flat, Sparse, measurement, read
 from tangy_profiles.demonstration import Step, not_the_same
@@ -89,6 +89,7 @@ Measurement: TypeAlias = Annotated[Fact, By(measurement)]
 class Mismatch:
     """A variable that took a value which no demonstration showed after this behaviour."""
 
+    ONLY: ClassVar[bool] = True
     behaviour: str
     variable: Variable
     expected: tuple[str, ...]

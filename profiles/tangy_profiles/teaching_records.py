@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, NamedTuple, Self, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
 
 from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least
 from tangy_profiles.demonstration import Demonstration, Origin, Resolution, Step
@@ -146,6 +146,8 @@ class DemonstrationsEditRedone(EventRecord):
 @dataclass(frozen=True, slots=True)
 class ForestSettings:
     """How the forest is grown: see scikit-learn's RandomForestClassifier."""
+
+    ONLY: ClassVar[bool] = True
 
     trees: Count = 100
     bootstrap: bool = False

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 from tangy_hw.audio.wav import RATE
 from tangy_profiles.activity import LISTENING
@@ -34,6 +34,7 @@ class EvidenceSettings:
     the commands; `shift` is added to what is demanded of the sound: above 0 is stricter.
     """
 
+    ONLY: ClassVar[bool] = True
     mode: str = "tiers"
     garbage: float = 0.43
     shift: float = 0.0
@@ -55,32 +56,6 @@ class Wanted:
     urgent: tuple[str, ...] = ()
     pronunciations: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     settings: EvidenceSettings = USUAL
-
-    def to_json(self) -> dict[str, Any]:
-        """Write it for the worker."""
-        return {
-            "phrases": list(self.phrases),
-            "answers": list(self.answers),
-            "urgent": list(self.urgent),
-            "pronunciations": {w: list(ways) for w, ways in self.pronunciations.items()},
-            "settings": asdict(self.settings),
-        }
-
-    @classmethod
-    def from_json(cls, written: Mapping[str, Any]) -> Wanted:
-        """Read what `to_json` wrote.
-
-        Raises:
-            KeyError, TypeError, ValueError: it was written by something else.
-        """
-        ways = written.get("pronunciations", {})
-        return cls(
-            tuple(map(str, written["phrases"])),
-            tuple(map(str, written.get("answers", ()))),
-            tuple(map(str, written.get("urgent", ()))),
-            {str(word): tuple(map(str, some)) for word, some in ways.items()},
-            EvidenceSettings(**written.get("settings", {})),
-        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,8 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any, get_args
 
+from tangy_profiles import codec
+from tangy_profiles.codec import Unreadable
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, requests
 from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
@@ -110,14 +112,14 @@ class Worker:
         from tangy_tui.speech.decoder import Unspeakable, make_decoder
 
         try:
-            read = Wanted.from_json(wanted)
+            read = codec.read(Wanted, wanted)
             if self._decoder is not None:
                 self._decoder.close()
             self._decoder = make_decoder(read)
         except Unspeakable as reason:
             raise RequestRefused(str(reason)) from None
-        except (KeyError, TypeError) as error:
-            raise RequestRefused(f"What is wanted cannot be read: {error}.") from None
+        except Unreadable as why:
+            raise RequestRefused(f"What is wanted cannot be read: it {why}.") from None
         self._urgent = frozenset(read.urgent)
         return list(self._decoder.left_out)
 

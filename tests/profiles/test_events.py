@@ -243,6 +243,7 @@ def test_a_kind_that_is_not_known_is_never_taken_for_another() -> None:
     assert isinstance(read_record("drlll", None, None, {"seed": 1}), Unknown)
 
 
+POLICY: dict[str, Any] = {"name": "x", "activity": "a", "demonstrations": []}
 WHY = [
     ("game ended", {"steps": 3, "stopped": None}, "has no 'game'"),
     ("game ended", {"game": "g", "steps": -1, "stopped": None}, "has 'steps' that is not a count"),
@@ -254,6 +255,11 @@ WHY = [
     ("demonstrations edited", {"activity": "a", "what": "delete", "ids": []}, "is too short"),
     ("method chosen", {"chosen": {"forgetting": 0.1}}, "is not a share that can be kept"),
     ("recordings forgotten", [], "is not a table"),
+    (
+        "policy learnt",
+        {**POLICY, "forest": {"depth": 3}},
+        "'forest' that has 'depth', which is not",
+    ),
 ]
 
 

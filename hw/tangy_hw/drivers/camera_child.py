@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangy_hw.drivers.camera_grabber import Gone, Grabber, Over, make_grabber
 from tangy_hw.drivers.camera_source import CameraSource
+from tangy_profiles.codec import Unreadable, read
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, requests
 
@@ -79,9 +80,9 @@ class Child:
         match request:
             case {"source": dict(source), "first": int(first)} if not self._begun:
                 try:
-                    reads = CameraSource.from_json(source)
-                except (KeyError, TypeError, ValueError) as error:
-                    self._answers.refuse(f"That is no source ({error!r:.100}).")
+                    reads = read(CameraSource, source)
+                except Unreadable as why:
+                    self._answers.refuse(f"That is no source: it {why}.")
                     return
                 self._begun = True
                 Thread(target=self._reads, args=(reads, first), daemon=True).start()

@@ -9,10 +9,9 @@ DIR, FILE.png          a folder of pictures in the order of their names, or one 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 from urllib.parse import urlsplit
 
 from tangy_profiles.errors import TangyError
@@ -55,15 +54,6 @@ class CameraSource:
     def live(self) -> bool:
         """Whether it shows what is there now, and so is waited for when it has gone."""
         return self.kind in ("device", "stream")
-
-    def to_json(self) -> dict[str, Any]:
-        """Return it as the camera's process is told of it."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, body: Mapping[str, Any]) -> CameraSource:
-        """Read what `to_json` wrote."""
-        return cls(**body)
 
 
 def find_camera(
