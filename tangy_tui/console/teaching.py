@@ -37,7 +37,8 @@ from tangy_tui.learning.verification import (
     answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
-from tangy_tui.text.situations import counted, state_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
 
 Read = Callable[[], str | None]

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+from tangy_tui.text.numbers import counted, number, percent
+
 SURE = 2.0
 """Standard errors beyond which a difference is not put down to chance."""
 
@@ -54,35 +56,11 @@ def compare(document: Document) -> list[ComparisonRow]:
     return {1: _learning, 2: _persuasion, 3: _recovery}[document["experiment"]](document)
 
 
-def number(value: float | None, digits: int = 2) -> str:
-    """Write a number, or a dash for none."""
-    return "\N{EN DASH}" if value is None else f"{value:.{digits}f}"
-
-
-def percent(share: float | None) -> str:
-    """Write a share as a percentage with one decimal at most, or a dash for none.
-
-    What is nearly nothing or nearly everything is not rounded to it.
-    """
-    if share is None:
-        return "\N{EN DASH}"
-    if 0 < share < 0.001:
-        return "<0.1%"
-    if 0.999 < share < 1:
-        return ">99.9%"
-    return f"{100 * share:.1f}".removesuffix(".0") + "%"
-
-
 def of_all(share: float | None, n: int) -> str:
     """Write how many of n a share is, and the percentage where there are enough for one."""
     if share is None:
         return "\N{EN DASH}"
     return f"{round(share * n)} of {n}" + (f" ({percent(share)})" if n >= ENOUGH else "")
-
-
-def many(n: int, what: str, whats: str = "") -> str:
-    """Write a number of things: "1 sequence", "5 sequences"."""
-    return f"{n:,} {what if n == 1 else whats or what + 's'}"
 
 
 def _mean(summary: Mapping[str, Any]) -> str:
@@ -126,7 +104,7 @@ def _chosen(document: Document) -> str:
     if not others:
         return f"{used}."
     low, high = number(min(others), 1), number(max(others), 1)
-    return f"{used}: {many(len(others), 'other choice')} gave {low} to {high}."
+    return f"{used}: {counted(len(others), 'other choice')} gave {low} to {high}."
 
 
 def _varies(deviation: float, runs: int) -> str:
@@ -157,14 +135,14 @@ def _learning(document: Document) -> list[ComparisonRow]:
         return percent(share) if seeds >= ENOUGH else str(round(share * seeds))
 
     def people(count: str) -> str:
-        return many(int(count), "person", "people")
+        return counted(int(count), "person", "people")
 
     return [
         ComparisonRow(
             "Demonstrations needed, games by chance",
             f"{three} (one teacher, one sequence of games)",
             f"exact after 1, 2, 3, 4: {', '.join(some(within[n]) for n in sorted(within))} "
-            f"of {many(seeds, 'sequence')}",
+            f"of {counted(seeds, 'sequence')}",
             f"Sequences in which {three} are enough: {of_all(within[three], seeds)}; in which one "
             f"alone is: {of_all(within['1'], seeds)}. How many it takes is a matter of luck with "
             "the games, so one sequence cannot say.",
@@ -245,7 +223,7 @@ def _persuasion(document: Document) -> list[ComparisonRow]:
         ComparisonRow(
             "Interactions of a user in a game",
             str(asked),
-            f"{number(rate, 3)} ({many(document['games'], 'game')})",
+            f"{number(rate, 3)} ({counted(document['games'], 'game')})",
             f"{abs(rate / asked - 1):.1%} {'more' if rate > asked else 'fewer'}; a mean over "
             f"twenty games {_varies(document['interactions_sd_of_twenty_games'], four['n'])}. "
             "The rates of the simulated people were fitted to the twenty "
@@ -258,8 +236,8 @@ def _persuasion(document: Document) -> list[ComparisonRow]:
             f"{', '.join(percent(share) for share in last)} at interaction "
             f"{max(len(user['optimal_share']) for user in document['users'])}, by user",
             f"{_rising(document['users'])} The paper draws one run of each user; here it is the "
-            f"share of {many(document['groups'], 'run')}. Thompson sampling never stops exploring "
-            "altogether, so the share comes near to 100% and does not stay there.",
+            f"share of {counted(document['groups'], 'run')}. Thompson sampling never stops "
+            "exploring altogether, so the share comes near to 100% and does not stay there.",
         ),
     ]
 
@@ -303,7 +281,7 @@ def _recovery(document: Document) -> list[ComparisonRow]:
         ComparisonRow(
             "Faults that were missed, and false alarms",
             "not said",
-            f"{missed} of {document['induced']} missed; {many(alarms, 'false alarm')}",
+            f"{missed} of {document['induced']} missed; {counted(alarms, 'false alarm')}",
             SIMULATED if document["simulated"] else BENCHED,
         ),
         ComparisonRow(
@@ -330,7 +308,7 @@ def _recovery(document: Document) -> list[ComparisonRow]:
 
 def _recovered(row: Mapping[str, Any], asked: float) -> str:
     """Say how many were induced, and how instances and these differ."""
-    words = [f"{many(row['induced'], 'fault')} induced, a number that was chosen"]
+    words = [f"{counted(row['induced'], 'fault')} induced, a number that was chosen"]
     if row["again"]:
         words.append(f"{row['again']} of them diagnosed once more")
     if row["missed"]:

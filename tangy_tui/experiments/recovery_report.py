@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tangy_tui.experiments import figures
-from tangy_tui.experiments.comparison import RECOVERIES, TO_ITS_END, many, number, percent
+from tangy_tui.experiments.comparison import RECOVERIES, TO_ITS_END
 from tangy_tui.pages.page import figure, heading, paragraph, table
+from tangy_tui.text.numbers import counted, number, percent
 
 Document = Mapping[str, Any]
 
@@ -44,8 +45,8 @@ def recovery(document: Document) -> Iterator[str]:
     words = f"the first {len(drawn)} of " if len(drawn) < len(games) else ""
     yield figure(
         figures.faults_by_game(drawn, WHO),
-        f"A line for each game ({words}{many(len(games), 'game')}), as long as it had behaviours; "
-        "a mark where a fault was diagnosed, by the recovery that was chosen first.",
+        f"A line for each game ({words}{counted(len(games), 'game')}), as long as it had "
+        "behaviours; a mark where a fault was diagnosed, by the recovery that was chosen first.",
     )
     yield table(
         ("", "induced", "instances", "recovered", "again", "missed", "escalated",
@@ -68,8 +69,8 @@ def recovery(document: Document) -> Iterator[str]:
     yield paragraph(
         "An instance is a diagnosis of something that was induced; it is recovered from if the "
         "right class of recovery was chosen for it, and it was over in the end, or borne where "
-        f"that was planned. There were {many(document['false_alarms'], 'false alarm')}: diagnoses "
-        "of something that was not induced."
+        f"that was planned. There were {counted(document['false_alarms'], 'false alarm')}: "
+        "diagnoses of something that was not induced."
     )
     yield from _others(document)
     yield heading("Time to recover")
@@ -102,7 +103,7 @@ def _others(document: Document) -> Iterator[str]:
         )
     for reason, count in document["ended"].items():
         if reason != TO_ITS_END:
-            yield paragraph(f"Stopped before the end, {many(count, 'game')}: {reason}")
+            yield paragraph(f"Stopped before the end, {counted(count, 'game')}: {reason}")
 
 
 def _behaviours(document: Document) -> Iterator[str]:

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tangy_tui.experiments import figures
-from tangy_tui.experiments.comparison import SOURCES, compare, many, number, percent
+from tangy_tui.experiments.comparison import SOURCES, compare
 from tangy_tui.experiments.recovery_report import recovery
 from tangy_tui.pages.page import document as page
 from tangy_tui.pages.page import figure, heading, paragraph, table
+from tangy_tui.text.numbers import counted, number, percent
 
 Document = Mapping[str, Any]
 
@@ -62,7 +63,7 @@ def _learning(document: Document) -> Iterator[str]:
     yield heading("How many demonstrations")
     yield figure(
         figures.demonstrations(document),
-        f"{many(seeds, 'sequence')} of games; the bars of uncertainty are 95% intervals.",
+        f"{counted(seeds, 'sequence')} of games; the bars of uncertainty are 95% intervals.",
     )
     yield paragraph(
         "A policy counts as exact when it does what is expected in every joint state that can "
@@ -89,9 +90,9 @@ def _learning(document: Document) -> Iterator[str]:
 def _teachers(teachers: Document) -> Iterator[str]:
     yield heading("Different teachers")
     yield paragraph(
-        f"{many(teachers['groups'], 'group')} of {teachers['count']} simulated teachers, each with "
-        "games of their own. They go on after the third while a situation was not shown yet, and "
-        "then say of each conflict which answer is right."
+        f"{counted(teachers['groups'], 'group')} of {teachers['count']} simulated teachers, each "
+        "with games of their own. They go on after the third while a situation was not shown yet, "
+        "and then say of each conflict which answer is right."
     )
     yield table(
         (
@@ -116,7 +117,7 @@ def _mistakes(rows: Any) -> Iterator[str]:
     yield heading("Wrong answers")
     yield figure(
         figures.mistakes(rows),
-        f"{many(rows[0]['n'], 'sequence')} for each point. Where both are the same, the dashes "
+        f"{counted(rows[0]['n'], 'sequence')} for each point. Where both are the same, the dashes "
         "lie on the broad line.",
     )
     yield paragraph(
@@ -196,13 +197,14 @@ def _persuasion(document: Document) -> Iterator[str]:
     yield heading("Optimal strategies over interactions")
     yield figure(
         figures.optimal_shares(document["users"]),
-        f"For each user, the share of {many(document['groups'], 'run')} in which the interaction's "
-        "strategy was the user's best (line), and one run's percentage so far (dashes).",
+        f"For each user, the share of {counted(document['groups'], 'run')} in which the "
+        "interaction's strategy was the user's best (line), and one run's percentage so far "
+        "(dashes).",
     )
     yield heading("Before convergence")
     yield figure(
         figures.before_convergence(document),
-        f"{many(before['n'], 'person', 'people')} who converged, which is who had "
+        f"{counted(before['n'], 'person', 'people')} who converged, which is who had "
         f"{before['converged_means_in_a_row']} optimal strategies in a row.",
     )
     if document.get("other_choices"):

@@ -14,6 +14,7 @@ from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
+from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_DRAWN = 24
@@ -96,9 +97,9 @@ def _sum(session: Session) -> str:
     games, faults = len(session.games), len(session.faults)
     steps = sum(game.steps for game in session.games)
     words = [
-        f"{games} game" + "s" * (games != 1),
-        f"{steps} behaviour" + "s" * (steps != 1),
-        f"{faults} fault" + "s" * (faults != 1),
+        counted(games, "game"),
+        counted(steps, "behaviour"),
+        counted(faults, "fault"),
     ]
     return " · ".join(words)
 
@@ -242,8 +243,7 @@ def _people(session: Session) -> Iterator[str]:
 
 
 def _person_words(person: Progress) -> str:
-    times = f"{person.interactions} time" + "s" * (person.interactions != 1)
-    return f"Asked {times}: {person.in_words}."
+    return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
 
 
 def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:

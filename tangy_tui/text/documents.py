@@ -7,7 +7,6 @@ from typing import Any
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.interaction import saying
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.learning.comparison import SituationComparison
@@ -18,6 +17,7 @@ from tangy_tui.learning.library import effects_of, read_library
 from tangy_tui.learning.online_learning import Lesson
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.reachable import joint_states
+from tangy_tui.text.people import prior_words, sentence
 
 
 def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
@@ -211,8 +211,8 @@ def person_document(record: Record) -> dict[str, Any]:
             "own": known.own,
             "words": known.method.words,
         },
-        "prior": saying.prior_words(known.prior),
-        "sentence": saying.sentence(record),
+        "prior": prior_words(known.prior),
+        "sentence": sentence(record),
         "last_seen": record.seen and record.seen.isoformat(),
         "games": [
             {

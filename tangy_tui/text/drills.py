@@ -10,7 +10,8 @@ from tangy_profiles.health import ERROR, OK, STALE
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
-from tangy_tui.text.situations import counted, state_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import state_words
 
 Told = tuple[str, str]
 """How a line is written (by an ink of the screens: text, dim, strong, ...), and the line."""

@@ -24,6 +24,7 @@ from tangy_tui.monitoring.fault import (
     RecoveryEvent,
 )
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.text.numbers import ordinal
 from tangy_tui.text.times import clock
 
 Name = Callable[[str], str]
@@ -313,14 +314,10 @@ def move_words(move: RecoveryEvent) -> str:
         tried = words if move.attempt else "nobody was there for that"
         return f"{tried}: now {RECOVERY_WORDS[move.to]}"
     if move.attempt > 1:
-        words = f"{words}, for the {_ordinal(move.attempt)} time"
+        words = f"{words}, for the {ordinal(move.attempt)} time"
     if move.by:
         words = f"{words}, by {move.by}"
     return words
-
-
-def _ordinal(number: int) -> str:
-    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
 
 
 def whom_to_call(robot: Robot) -> str:

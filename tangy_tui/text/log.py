@@ -11,7 +11,8 @@ from tangy_tui.monitoring.games import TO_ITS_END, Game
 from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Moment, Noted
 from tangy_tui.monitoring.session import STATUS_WORDS, Progress, Session
 from tangy_tui.text.faults import RECOVERY_WORDS, move_words
-from tangy_tui.text.situations import Name, counted
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import Name
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
 MOST_TOLD = 30

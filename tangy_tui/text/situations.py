@@ -22,6 +22,7 @@ from tangy_tui.learning.verification import (
     Rejected,
     Verification,
 )
+from tangy_tui.text.numbers import counted
 
 MOST_STEPS = 3
 """Steps that are named for each answer of a conflict."""
@@ -42,11 +43,6 @@ def agreement_words(activity: Activity, policy: Policy) -> str:
     if wrong:
         return f"not as expected in {counted(wrong, 'situation')}"
     return f"asks in {counted(asks, 'situation')}" if asks else "as expected everywhere"
-
-
-def counted(number: int, noun: str) -> str:
-    """Write a number with its noun: "1 step", "2 steps"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def step_words(activity: Activity, step: Step, name: Name) -> str:

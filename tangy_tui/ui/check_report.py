@@ -16,7 +16,7 @@ from tangy_tui.monitoring.rules import Rules, looks_at
 from tangy_tui.speech.activity_check import CheckedFile
 from tangy_tui.speech.phrase_list import PhraseList, items
 from tangy_tui.text.faults import recovery_words
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 
 
 def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:

@@ -19,7 +19,8 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.text.situations import counted, lesson_words, once_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
 from tangy_tui.ui.fault_log import write_fault

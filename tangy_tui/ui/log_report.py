@@ -13,7 +13,7 @@ from rich.text import Text
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
-from tangy_tui.ui.local_time import local_time
+from tangy_tui.text.times import local_time
 
 SHORT = 6
 """Characters of an id that are printed."""

@@ -11,14 +11,8 @@ from rich.text import Text
 
 from tangy_profiles.reading import plain
 from tangy_tui.interaction.record import Record
-from tangy_tui.interaction.saying import (
-    entry_words,
-    method_words,
-    on_day,
-    prior_words,
-    sentence,
-    tally,
-)
+from tangy_tui.text.people import entry_words, method_words, prior_words, sentence, tally
+from tangy_tui.text.times import on_day
 
 LEGEND = "P(best): probability of being the best of those on. "
 STAR = "*: the most probable one."

@@ -9,14 +9,8 @@ from rich.cells import cell_len
 from tangy_profiles.beliefs import Beta
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.interaction.saying import (
-    entry_words,
-    method_words,
-    on_day,
-    prior_words,
-    sentence,
-    tally,
-)
+from tangy_tui.text.people import entry_words, method_words, prior_words, sentence, tally
+from tangy_tui.text.times import on_day
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine
 from tangy_tui.ui.widgets.posteriors import BLOCKS, LOWEST_PEAK, share

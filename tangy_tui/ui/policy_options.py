@@ -6,7 +6,7 @@ from tangy_profiles.activity import Activity
 from tangy_profiles.store import Store
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import kept_policies
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 from tangy_tui.ui.dialogs.choose import Option
 
 DIGEST_SHOWN = 8

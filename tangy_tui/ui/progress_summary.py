@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning import library, policies
 from tangy_tui.monitoring.drill_log import last_sheet
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 
 
 def how_far(workspace: Workspace) -> Mapping[str, str]:

@@ -23,8 +23,9 @@ from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.text.situations import agreement_words, conflict_lines, counted
-from tangy_tui.ui.local_time import local_time
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import agreement_words, conflict_lines
+from tangy_tui.text.times import local_time
 
 T = TypeVar("T")
 

@@ -12,7 +12,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import Executed, StepUndone
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.text.situations import counted, state_words, step_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import state_words, step_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
 from tangy_tui.ui.widgets.log_view import LogView

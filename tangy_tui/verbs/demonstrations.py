@@ -244,7 +244,7 @@ def _change(
 ) -> None:
     """Make a change of the library and say what it was."""
     from tangy_tui.learning.editing import Editor
-    from tangy_tui.text.situations import counted
+    from tangy_tui.text.numbers import counted
 
     with open_workspace(data, activity, 4) as workspace:
         editor = Editor(workspace.store, workspace.activity)
@@ -286,7 +286,7 @@ def accepted(
     from tangy_tui.monitoring.accepted import read_accepted
     from tangy_tui.monitoring.accepted import take_back as take_it_back
     from tangy_tui.monitoring.evidence import mismatch_words
-    from tangy_tui.ui.local_time import local_time
+    from tangy_tui.text.times import local_time
 
     with open_workspace(data, activity, 4, write=take_back is not None) as workspace:
         name = workspace.activity.name

@@ -46,7 +46,7 @@ def drill(
             from tangy_profiles.codec import written
             from tangy_tui.monitoring.drill_log import read_sheets
             from tangy_tui.text.drills import sheets_lines
-            from tangy_tui.ui.local_time import local_time
+            from tangy_tui.text.times import local_time
 
             only = "" if who is None else name
             if as_json:

@@ -159,7 +159,7 @@ def _settle_conflicts(workspace: Workspace) -> None:
 
 
 def _only_unfinished(shown: list[Demonstration]) -> str:
-    from tangy_tui.text.situations import counted
+    from tangy_tui.text.numbers import counted
 
     steps = counted(sum(len(d.steps) for d in shown), "step")
     return (
@@ -177,7 +177,7 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
 
 def _tell_learnt(workspace: Workspace, policy: Policy, steps: int, left_out: int) -> None:
     from tangy_tui.learning.coverage import NOT_SHOWN
-    from tangy_tui.text.situations import counted
+    from tangy_tui.text.numbers import counted
 
     activity = workspace.activity
     unseen = [s for s in activity.situations if not policy.decide(s).seen]

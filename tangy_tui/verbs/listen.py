@@ -170,7 +170,7 @@ def _progress() -> Iterator[Callable[[int, int], None]]:
 
 def _forget(workspace: Workspace, as_json: bool) -> None:
     from tangy_tui.speech.recordings import FOLDER, forget_recordings
-    from tangy_tui.text.situations import counted
+    from tangy_tui.text.numbers import counted
 
     count, left = forget_recordings(workspace.store)
     if as_json:
@@ -180,5 +180,5 @@ def _forget(workspace: Workspace, as_json: bool) -> None:
     print(f"{deleted}; nothing more is recorded until somebody agrees again.")
     if left:
         there = plain(str(workspace.store.folder / FOLDER))
-        files = "1 other file is" if left == 1 else f"{left} other files are"
+        files = counted(left, "other file is", "other files are")
         print(f"{files} left in {there}.")

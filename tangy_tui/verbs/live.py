@@ -13,7 +13,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_workspace

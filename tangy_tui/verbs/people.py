@@ -236,7 +236,7 @@ def people_undo(
 
     A name is not taken back: rename again.
     """
-    from tangy_tui.interaction.saying import change_words
+    from tangy_tui.text.people import change_words
 
     with _changing(data, activity, users, person, as_json) as (workspace, found):
         change = workspace.memory().feedback.undo(found.id)
@@ -282,7 +282,7 @@ def _changing(
     data: Path | None, activity: str, users: int, person: str, as_json: bool, world: str = ""
 ) -> Iterator[tuple[Workspace, Person]]:
     """Open the workspace for a change to a person, and say afterwards what is now known of them."""
-    from tangy_tui.interaction.saying import method_words, sentence
+    from tangy_tui.text.people import method_words, sentence
 
     with open_workspace(data, activity, users) as workspace:
         found = workspace.find_person(person)
@@ -309,7 +309,8 @@ def _changed(chosen: PersuasionConfig, words: list[str]) -> PersuasionConfig:
 
 def _entry_words(entry: FeedbackEntry) -> str:
     """Name a line of a history: its number, strategy, time, and what came of it."""
-    from tangy_tui.interaction.saying import entry_words, on_day
+    from tangy_tui.text.people import entry_words
+    from tangy_tui.text.times import on_day
 
     return f"number {entry.number}, {entry.strategy}, {on_day(entry.at)}, {entry_words(entry)}"
 

@@ -13,6 +13,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import find_anybody
 from tangy_tui.verbs.opening import open_workspace
@@ -95,19 +96,16 @@ def _document(person: Person, forgotten: Forgotten) -> dict[str, object]:
 
 def _lines(person: Person, forgotten: Forgotten) -> list[str]:
     lines = [f"{person.id}: name, how it is said, voice and face are forgotten."]
-    changed = [
-        _many(forgotten.events, "entry of the log", "entries of the log"),
-        _many(len(forgotten.files), "file", "files"),
-    ]
-    if any(changed):
-        there = " and ".join(filter(None, changed))
+    changed = []
+    if forgotten.events:
+        changed.append(counted(forgotten.events, "entry of the log", "entries of the log"))
+    if forgotten.files:
+        changed.append(counted(len(forgotten.files), "file"))
+    if changed:
+        there = listed(changed)
         lines.append(f"{person.id} now stands in place of the name in {there}.")
     if forgotten.events_left:
-        entries = _many(forgotten.events_left, "entry", "entries")
+        entries = counted(forgotten.events_left, "entry", "entries")
         lines.append(f"The name stays in {entries} of the log where it is a teacher's.")
     lines += [f"Look through this file yourself: {path}" for path in forgotten.files_left]
     return lines
-
-
-def _many(count: int, one: str, more: str) -> str:
-    return "" if not count else f"{count} {one if count == 1 else more}"

@@ -194,7 +194,8 @@ def _play_headless(
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
     from tangy_tui.text.documents import lesson_document
-    from tangy_tui.text.situations import counted, lesson_words
+    from tangy_tui.text.numbers import counted
+    from tangy_tui.text.situations import lesson_words
     from tangy_tui.ui import reports
 
     tally = Tally()

@@ -104,7 +104,7 @@ def say(
 
 def _forget(synthesiser: Synthesiser, as_json: bool) -> None:
     """Empty the cache of spoken lines, and print how many there were."""
-    from tangy_tui.text.situations import counted
+    from tangy_tui.text.numbers import counted
 
     count = synthesiser.clear()
     if as_json:

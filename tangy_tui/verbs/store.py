@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from tangy_profiles.reading import plain
+from tangy_tui.text.numbers import counted
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
 
 app = typer.Typer(rich_markup_mode=None, help="The log that everything is kept in: check it.")
@@ -28,16 +29,12 @@ def store_check(data: Data = None, as_json: Json = False) -> None:
     else:
         for problem in problems:
             print_line(plain(problem))
-        print_line(plain(f"{folder}: {_count(events)}, {_found(len(problems))}."))
+        print_line(plain(f"{folder}: {counted(events, 'event')}, {_found(len(problems))}."))
     if problems:
         raise typer.Exit(1)
-
-
-def _count(events: int) -> str:
-    return "1 event" if events == 1 else f"{events} events"
 
 
 def _found(problems: int) -> str:
     if not problems:
         return "nothing is wrong"
-    return "1 thing is wrong" if problems == 1 else f"{problems} things are wrong"
+    return counted(problems, "thing is wrong", "things are wrong")

@@ -12,9 +12,10 @@ from xml.etree import ElementTree
 import pytest
 
 from tangy_tui.experiments import figures, published
-from tangy_tui.experiments.comparison import compare, many, of_all, percent
+from tangy_tui.experiments.comparison import compare, of_all
 from tangy_tui.experiments.figures import INKS
 from tangy_tui.experiments.report import report
+from tangy_tui.text.numbers import counted, percent
 from tests.experiments.conftest import Ran, run
 
 pytestmark = pytest.mark.xdist_group("scenarios")
@@ -121,7 +122,7 @@ def test_numbers_are_written_as_people_write_them() -> None:
     assert percent(None) == "\N{EN DASH}"
     assert (of_all(1.0, 1), of_all(0.4, 5)) == ("1 of 1", "2 of 5")
     assert of_all(0.95, 20) == "19 of 20 (95%)"
-    assert (many(1, "sequence"), many(2000, "game")) == ("1 sequence", "2,000 games")
+    assert (counted(1, "sequence"), counted(2000, "game")) == ("1 sequence", "2,000 games")
 
 
 def test_what_is_of_few_is_counted_and_right_decisions_asked_about_are_told(ran: Ran) -> None:

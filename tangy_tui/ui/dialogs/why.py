@@ -18,7 +18,7 @@ from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.explanation import Why, why_words
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import OpenStep

@@ -13,7 +13,7 @@ from textual.widgets import Static
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close

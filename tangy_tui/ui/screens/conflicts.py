@@ -17,7 +17,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.text.situations import counted, edit_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import edit_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.words import WordsDialog

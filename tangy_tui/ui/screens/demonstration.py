@@ -16,12 +16,13 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import heard_words, state_of
 from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.quality import quality_notes
-from tangy_tui.text.situations import counted, step_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import step_words
+from tangy_tui.text.times import local_time
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
-from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.panels import LOW, WIDE, key_line, panel
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 from tangy_tui.ui.widgets.transcript import Transcript

@@ -15,7 +15,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.text.situations import counted, edit_words, step_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close

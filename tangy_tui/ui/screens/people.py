@@ -14,8 +14,9 @@ from tangy_profiles.game_world import GAME_WORLDS
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.interaction.saying import change_words, entry_words, on_day
 from tangy_tui.speech.aloud import hear
+from tangy_tui.text.people import change_words, entry_words
+from tangy_tui.text.times import on_day
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close, close_after

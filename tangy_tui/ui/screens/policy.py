@@ -12,7 +12,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.panels import key_line, panel

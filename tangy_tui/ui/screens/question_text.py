@@ -6,7 +6,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.explanation import Why
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.text.situations import ALL_RIGHT, counted, state_words
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import ALL_RIGHT, state_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.reasons import why_of
 

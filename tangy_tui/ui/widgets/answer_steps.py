@@ -9,9 +9,9 @@ from textual.message import Message
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.library import Library
-from tangy_tui.text.situations import counted
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import shorten
 

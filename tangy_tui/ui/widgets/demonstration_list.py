@@ -8,8 +8,8 @@ from rich.cells import cell_len
 from textual.message import Message
 
 from tangy_tui.learning.demonstration_rows import ListRow
+from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.local_time import local_time
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row, fit, shorten
 

@@ -1,8 +1,6 @@
-"""What is known of a person, in the words of somebody who works with people."""
+"""People in words: what works with each person, on how much that rests, and what was changed."""
 
 from __future__ import annotations
-
-from datetime import datetime
 
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.events import EventRecord
@@ -10,6 +8,8 @@ from tangy_profiles.people_records import FeedbackGiven, ResponseVoided, Strateg
 from tangy_profiles.store import Event
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.times import ago
 
 SELDOM = 0.5
 """A best strategy that works less often than this is not said to work."""
@@ -33,7 +33,7 @@ def _what_works(record: Record) -> str:
     if best is None:
         if not responses:
             return f"nothing is known of {name} yet"
-        return f"not clear yet what works with {name}: {_many(responses)} so far"
+        return f"not clear yet what works with {name}: {counted(responses, 'response')} so far"
     belief = record.beliefs[best]
     if not belief.trials:
         if not responses:
@@ -105,26 +105,3 @@ def change_words(change: Event[EventRecord]) -> str:
             return f"that {change.strategy} was switched {'on' if on else 'off'}"
         case _:
             return "the method that was chosen"
-
-
-def ago(then: datetime, now: datetime) -> str:
-    """Say how long ago something was, as people do; days are those of the place we are in."""
-    days = (now.astimezone().date() - then.astimezone().date()).days
-    if days < 1:
-        return "today"
-    if days < 2:
-        return "yesterday"
-    for unit, length, most in (("day", 1, 14), ("week", 7, 60), ("month", 30.44, 700)):
-        if days < most:
-            return f"{int(days / length)} {unit}s ago"
-    return f"{max(2, round(days / 365.25))} years ago"
-
-
-def on_day(at: datetime) -> str:
-    """Write the day and the time of something, in the time of the place we are in."""
-    local = at.astimezone()
-    return f"{local.day} {local:%b %Y %H:%M}"
-
-
-def _many(responses: int) -> str:
-    return "1 response" if responses == 1 else f"{responses} responses"

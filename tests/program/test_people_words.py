@@ -23,7 +23,7 @@ from tangy_tui.interaction.record import (
     read_records,
     settled_of,
 )
-from tangy_tui.interaction.saying import sentence
+from tangy_tui.text.people import sentence
 from tests.support.append_body import append_body
 
 NAMES = ("neutral", "praise", "suggestion", "scarcity")

@@ -1,0 +1,61 @@
+"""A count, a share and a list have one form wherever they are written."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from tangy_tui.text.numbers import counted, listed, ordinal
+
+PROGRAM = Path(__file__).parents[2] / "tangy_tui"
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [(0, "0 steps"), (1, "1 step"), (2, "2 steps"), (3725, "3,725 steps")],
+)
+def test_a_count_agrees_with_its_noun(number: int, words: str) -> None:
+    assert counted(number, "step") == words
+
+
+def test_a_noun_can_have_a_plural_of_its_own() -> None:
+    assert [counted(n, "entry", "entries") for n in (1, 2)] == ["1 entry", "2 entries"]
+
+
+def test_places_in_an_order_are_said_as_people_say_them() -> None:
+    said = [ordinal(number) for number in (1, 2, 3, 4, 11, 12, 21, 22, 113)]
+    assert said == ["first", "second", "third", "4th", "11th", "12th", "21st", "22nd", "113th"]
+
+
+@pytest.mark.parametrize(
+    ("things", "words"),
+    [((), ""), ((1,), "1"), ((1, 2), "1 and 2"), (("A", "B", "C"), "A, B and C")],
+)
+def test_a_list_is_said_as_people_say_it(things: tuple[object, ...], words: str) -> None:
+    assert listed(things) == words
+
+
+def test_alternatives_are_joined_by_or() -> None:
+    assert listed(["joke", "greeting", "celebrate"], "or") == "joke, greeting or celebrate"
+
+
+def plural_rules(source: Path) -> list[str]:
+    """Return the functions of a module that make a noun plural by an "s" themselves."""
+    tree = ast.parse(source.read_text(encoding="utf-8"))
+    return [
+        f"{source.relative_to(PROGRAM).as_posix()}:{node.lineno}"
+        for node in ast.walk(tree)
+        if (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) and _is_s(node.left))
+        or (isinstance(node, ast.IfExp) and (_is_s(node.body) or _is_s(node.orelse)))
+    ]
+
+
+def _is_s(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value == "s"
+
+
+def test_plurals_are_made_in_one_place() -> None:
+    found = [where for source in PROGRAM.rglob("*.py") for where in plural_rules(source)]
+    assert {where.partition(":")[0] for where in found} <= {"text/numbers.py"}
