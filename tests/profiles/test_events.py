@@ -168,6 +168,22 @@ def test_a_record_is_read_as_it_was_written(name: str) -> None:
     goes_round()
 
 
+OLD = (
+    (Path(__file__).parent / "bodies_before_records.jsonl").read_text(encoding="utf-8").splitlines()
+)
+
+
+@pytest.mark.parametrize("row", OLD, ids=[f"{json.loads(row)[0]}-{n}" for n, row in enumerate(OLD)])
+def test_what_was_logged_before_there_were_records_is_read_and_logged_alike(row: str) -> None:
+    kind, person, strategy, body = json.loads(row)
+    now = json.loads(json.dumps(read_record(kind, person, strategy, body).body))
+    assert {key: now.get(key, "is gone") for key in body} == body
+
+
+def test_every_kind_that_was_logged_before_is_known() -> None:
+    assert {json.loads(row)[0] for row in OLD} <= KINDS.keys()
+
+
 @given(states(), st.data())
 def test_a_state_at_a_glance_is_one_looked_at_closely(state: ActivityState, data: Any) -> None:
     table = json.loads(json.dumps(written(state)))
