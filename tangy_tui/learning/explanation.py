@@ -6,7 +6,7 @@ taught, and one that somebody looks up.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tangy_profiles.activity import Activity
@@ -15,7 +15,7 @@ from tangy_profiles.state import Situation
 from tangy_profiles.store import Store
 from tangy_tui.learning.conflicts import Shown, shown_steps
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policy import SURE, Decision, Policy, learn_policy
+from tangy_tui.learning.policy import Decision, Policy, learn_policy
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,61 +79,6 @@ def foresee(store: Store, activity: Activity, present: Demonstration | None) -> 
             shown.pop(id, None)
         shown[present.id] = present
     return learn_policy(activity, list(shown.values()), resolutions=library.resolutions)
-
-
-def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
-    """Put the grounds of a decision into sentences, the most important first.
-
-    Args:
-        activity: what is played.
-        why: the grounds.
-        votes: with a sentence on the votes; without it, they are drawn beside the sentences.
-    """
-    decision = why.decision
-    sentences = [f"Situation: {activity.in_words(why.situation)}."]
-    teachers = dict.fromkeys(shown.teacher for shown in why.rests_on)
-    times = "once" if len(why.rests_on) == 1 else f"{len(why.rests_on)} times"
-    if decision.contested:
-        sentences.append(
-            "Demonstrations disagree about it, and nobody has said yet which is right: "
-            "Tangy does not act here, it asks."
-        )
-    elif not decision.seen:
-        sentences.append("Nobody has shown Tangy what to do here: it does not act, it asks.")
-    elif not why.rests_on:
-        sentences.append(f"A teacher said that {decision.behaviour!r} is right here.")
-    else:
-        sentences.append(
-            f"{decision.behaviour!r} was shown here {times}, by {', '.join(teachers)}."
-        )
-        if decision.right and why.against:
-            sentences.append(f"A teacher said that {_either(decision.right)} is right here.")
-        if not decision.sure:
-            sentences.append(
-                f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
-            )
-    if votes:
-        shares = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
-        sentences.append(f"Votes of the trees: {shares}.")
-    if why.near:
-        guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
-        sentences.append(f"The trees guess from what was shown nearby: {'; '.join(guesses)}.")
-    return sentences
-
-
-def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
-    """Name a demonstrated step: what, where it stands, by whom.
-
-    Args:
-        shown: a demonstrated step, and of which demonstration.
-        name: what to call a demonstration, by its id.
-    """
-    where = f"step {shown.number} of {name(shown.demonstration)}"
-    return f"{shown.step.behaviour}: {where}, by {shown.teacher}"
-
-
-def _either(answers: Sequence[str]) -> str:
-    return " or ".join(repr(answer) for answer in answers)
 
 
 def _differ(shown: Shown, situation: Situation) -> int:

@@ -12,11 +12,12 @@ from tangy_tui.interaction.record import Record
 from tangy_tui.learning.comparison import SituationComparison
 from tangy_tui.learning.conflicts import Conflict, Shown
 from tangy_tui.learning.coverage import coverage
-from tangy_tui.learning.explanation import Why, why_words
+from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.library import effects_of, read_library
 from tangy_tui.learning.online_learning import Lesson
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.reachable import joint_states
+from tangy_tui.text.decisions import why_words
 from tangy_tui.text.people import prior_words, sentence
 
 

@@ -15,9 +15,10 @@ from tangy_tui.interaction.game_events import (
     Taught,
     Unsure,
 )
-from tangy_tui.learning.explanation import explain, why_words
+from tangy_tui.learning.explanation import explain
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.decisions import why_words
 from tangy_tui.text.faults import fault_lines
 from tangy_tui.text.situations import Name, once_words
 

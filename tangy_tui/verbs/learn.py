@@ -278,8 +278,9 @@ def _compare(workspace: Workspace, a: str, b: str, as_json: bool) -> None:
 
 
 def _why(workspace: Workspace, name: str, wanted: str, as_json: bool) -> None:
-    from tangy_tui.learning.explanation import explain, shown_words, why_words
+    from tangy_tui.learning.explanation import explain
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.decisions import shown_words, why_words
     from tangy_tui.text.documents import why_document
 
     policy = _find(workspace, name)

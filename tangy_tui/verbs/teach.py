@@ -190,9 +190,10 @@ def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
 
 def _why(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     """Say what Tangy would do now by what it has been shown, and why."""
-    from tangy_tui.learning.explanation import explain, foresee, why_words
+    from tangy_tui.learning.explanation import explain, foresee
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policy import NothingToLearnFrom
+    from tangy_tui.text.decisions import why_words
 
     present = teaching.demonstration
     try:

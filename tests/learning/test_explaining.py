@@ -24,10 +24,11 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import choices, compare, find_policy
 from tangy_tui.learning.conflicts import find_conflicts
 from tangy_tui.learning.coverage import coverage, missing_words
-from tangy_tui.learning.explanation import explain, foresee, shown_words, why_words
+from tangy_tui.learning.explanation import explain, foresee
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policies import keep_policy, kept_policies
 from tangy_tui.learning.policy import ForestSettings, NothingToLearnFrom, learn_policy
+from tangy_tui.text.decisions import shown_words, why_words
 from tests.support.append_body import append_body
 
 Demonstrate = Callable[[str, int, int], Demonstration]

@@ -15,9 +15,10 @@ from tangy_profiles.beliefs import Beta
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.persuasion import StrategyChoice
 from tangy_tui.learning.conflicts import Shown
-from tangy_tui.learning.explanation import Why, why_words
+from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
+from tangy_tui.text.decisions import why_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean

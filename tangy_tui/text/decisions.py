@@ -1,0 +1,64 @@
+"""Decisions in words: why Tangy does one thing and no other, and which steps that rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tangy_profiles.activity import Activity
+from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.explanation import Why
+from tangy_tui.learning.policy import SURE
+from tangy_tui.text.numbers import listed
+
+
+def why_words(activity: Activity, why: Why, *, votes: bool = True) -> list[str]:
+    """Put the grounds of a decision into sentences, the most important first.
+
+    Args:
+        activity: what is played.
+        why: the grounds.
+        votes: with a sentence on the votes; without it, they are drawn beside the sentences.
+    """
+    decision = why.decision
+    sentences = [f"Situation: {activity.in_words(why.situation)}."]
+    teachers = dict.fromkeys(shown.teacher for shown in why.rests_on)
+    times = "once" if len(why.rests_on) == 1 else f"{len(why.rests_on)} times"
+    if decision.contested:
+        sentences.append(
+            "Demonstrations disagree about it, and nobody has said yet which is right: "
+            "Tangy does not act here, it asks."
+        )
+    elif not decision.seen:
+        sentences.append("Nobody has shown Tangy what to do here: it does not act, it asks.")
+    elif not why.rests_on:
+        sentences.append(f"A teacher said that {decision.behaviour!r} is right here.")
+    else:
+        sentences.append(
+            f"{decision.behaviour!r} was shown here {times}, by {', '.join(teachers)}."
+        )
+        if decision.right and why.against:
+            sentences.append(
+                f"A teacher said that {listed(map(repr, decision.right), 'or')} is right here."
+            )
+        if not decision.sure:
+            sentences.append(
+                f"Fewer than {SURE:.0%} of the trees agree: Tangy does not act here, it asks."
+            )
+    if votes:
+        shares = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
+        sentences.append(f"Votes of the trees: {shares}.")
+    if why.near:
+        guesses = dict.fromkeys(activity.in_words(s.step.state.situation) for s in why.near)
+        sentences.append(f"The trees guess from what was shown nearby: {'; '.join(guesses)}.")
+    return sentences
+
+
+def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
+    """Name a demonstrated step: what, where it stands, by whom.
+
+    Args:
+        shown: a demonstrated step, and of which demonstration.
+        name: what to call a demonstration, by its id.
+    """
+    where = f"step {shown.number} of {name(shown.demonstration)}"
+    return f"{shown.step.behaviour}: {where}, by {shown.teacher}"
