@@ -18,7 +18,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, InvalidStateError
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -163,7 +163,8 @@ class WorkerProcess:
     def ask(self, what: Mapping[str, Any]) -> Future[Any]:
         """Ask for something; the answer comes, or what `read` or `lost` makes of it is raised."""
         number, answer = self.expect()
-        self.tell({"id": number, **what})
+        if self.tell({"id": number, **what}) is None:  # it ends, and is not waited for
+            _fail(answer, self._lost(self.how or "closed"))
         return answer
 
     # ------------------------------------------------------------------------- its end
@@ -253,19 +254,23 @@ class WorkerProcess:
         except Exception as error:  # whoever waits for an answer is told
             if answer is None:
                 _LOG.warning("what a process said cannot be taken: %r", error)
-            elif answer.set_running_or_notify_cancel():
-                answer.set_exception(error)
+            else:
+                _fail(answer, error)
         else:
-            if answer.set_running_or_notify_cancel():
+            with suppress(InvalidStateError):  # nobody waits any more
                 answer.set_result(done)
 
     def _tell_end(self) -> None:
         self._queue.close()
         for answer in list(self._asked.values()):
-            if answer.set_running_or_notify_cancel():
-                answer.set_exception(self._lost(self.how))
+            _fail(answer, self._lost(self.how))
         self._ended(self.how)
         self.over.set_result(self.how)
+
+
+def _fail(answer: Future[Any], error: Exception) -> None:
+    with suppress(InvalidStateError):  # nobody waits any more, or it was answered just now
+        answer.set_exception(error)
 
 
 def _object(line: bytes) -> Said | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import sys
@@ -102,7 +101,7 @@ class TestHungProcess:
         monkeypatch.setattr(client, "BEAT_SECONDS", 0.005)
         link = linked(monkeypatch, "time.sleep(60)")
         try:
-            outbox = cast(Any, link._outbox)
+            outbox = cast(Any, link._worker)._queue
             assert holds(lambda: link.silent)
             beaten: list[str] = []
             monkeypatch.setattr(outbox, "beat", beaten.append)
@@ -118,7 +117,7 @@ class TestHungProcess:
             began = time.monotonic()
             link.close()
         assert time.monotonic() - began < AT_ONCE
-        assert not any(thread.is_alive() for thread in link._threads)
+        assert link.pid is None and not link._beating.is_alive()
 
 
 class TestEnd:
@@ -136,26 +135,32 @@ class TestEnd:
                     one.result(5)
             link.close()
 
-    def test_one_that_nobody_has_heard_to_end_yet_says_so_later(
+    @pytest.mark.parametrize(
+        ("does", "how"), [("sys.exit(3)", "status 3"), ("os.kill(os.getpid(), 9)", "signal 9")]
+    )
+    def test_one_that_ends_while_it_is_switched_on_says_how(
+        self, monkeypatch: pytest.MonkeyPatch, does: str, how: str
+    ) -> None:
+        monkeypatch.setattr(client, "CHILD", (sys.executable, "-c", "import os, sys; " + does))
+        link = RobotLink(SETUP)
+        with pytest.raises(DeviceError, match=rf"has ended \({how}\)"):
+            link.start()
+        assert how in link.silent and link.pid is None
+        link.close()
+
+    def test_lines_of_it_that_make_no_sense_are_left_out(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """An answer that comes at once with the end is not given twice."""
-        link = RobotLink(SETUP)
-
-        def put(line: str) -> bool:  # it ends while it is asked
-            ends.start()
-            time.sleep(0.05)
-            return False
-
-        class Gone:
-            stdout = io.BytesIO()
-
-        ends = threading.Thread(target=link._listen, args=(cast(Any, Gone()),))
-        monkeypatch.setattr(link, "_write", put)
-        with pytest.raises(DeviceError):
-            link.ask("spin").result(5)
-        ends.join()
-        assert link.silent == "the robot process has ended"
+        does = (
+            "print('noise'); print('[' * 100_000); print('x' * 9_000_000); print('{\"beat\": 7}');"
+            " line = sys.stdin.readline()\nwhile '\"do\"' not in line: line = sys.stdin.readline()"
+            '\nprint(\'{"id": 1, "done": {"found": true}}\', flush=True); time.sleep(60)'
+        )
+        link = linked(monkeypatch, does)
+        try:
+            assert link.ask("spin").result(20) == {"found": True}
+        finally:
+            link.close()
 
 
 SILENT = "import sys, time; sys.stdin.readline(); "
@@ -194,12 +199,12 @@ class TestCalledOff:
         monkeypatch.setattr(client, "CALLED_OFF_SECONDS", 0.2)
         link, cancellation, done = self.opening(monkeypatch, does + "time.sleep(60)")
         assert holds(lambda: link.pid is not None)
-        process = link._process
-        assert process is not None
+        worker = link._worker
+        assert worker is not None
         cancellation.cancel()
         with pytest.raises(Cancelled):
             done.result(5)
-        assert holds(lambda: process.poll() is not None)
+        assert holds(lambda: worker.pid is None)
 
     def test_nothing_is_started_afterwards(self, monkeypatch: pytest.MonkeyPatch) -> None:
         started: list[object] = []
@@ -228,6 +233,6 @@ class TestCalledOff:
             link.start()
             cancellation.complete()
             cancellation.cancel()
-            assert link._process is not None and link._process.poll() is None
+            assert link.pid is not None
         finally:
             link.close()

@@ -207,7 +207,7 @@ def test_the_end_of_the_robot_process_is_said_and_it_is_started_again(
     os.kill(link.pid, signal.SIGKILL)
     with pytest.raises(Preempted, match="has ended"):
         drive.result(SAID)
-    assert link.silent == "the robot process has ended"
+    assert link.silent == "the robot process has ended (signal 9)"
     assert {reading.state for reading in link.health()} == {"STALE"}
     assert seconds_to_stop(bench) <= BASE_STOPS
     with pytest.raises(DeviceError):

@@ -8,20 +8,18 @@ screen hangs: a screen says itself that it is `alive`.
 
 from __future__ import annotations
 
-import json
 import logging
 import os
-import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as TooLate
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from tangy_hw.cancellation import Cancellation, Cancelled
 from tangy_hw.device_protocols import DeviceError
@@ -30,10 +28,9 @@ from tangy_hw.robot_process.protocol import level_of
 from tangy_hw.robot_process.requests import Request
 from tangy_hw.robot_process.stop_latch import STAFF, Preempted
 from tangy_hw.robot_setup import RobotSetup
-from tangy_hw.write_queue import WriteQueue
+from tangy_hw.worker_process import Said, WorkerError, WorkerProcess
 from tangy_profiles.health import STALE, Health
 from tangy_profiles.process_log import NO_COMMAND, command_id, serving
-from tangy_profiles.worker_log import open_log
 
 _LOG = logging.getLogger(__name__)
 
@@ -50,8 +47,6 @@ END_SECONDS = 3.0
 CALLED_OFF_SECONDS = 1.0
 """In which a process that was still switching the robot on lets go of what it has opened."""
 
-ENDED = "the robot process has ended"
-
 
 @dataclass
 class _Told:
@@ -59,8 +54,6 @@ class _Told:
 
     state: RobotState = field(default_factory=RobotState)
     time: float = 0.0
-    heard: float = 0.0
-    ended: str = ""
 
 
 class RobotLink:
@@ -89,16 +82,12 @@ class RobotLink:
         self._cancellation = cancellation or Cancellation()
         self._starting = threading.Lock()
         self._over = False  # it is closed for good
-        self._process: subprocess.Popen[bytes] | None = None
+        self._worker: WorkerProcess | None = None
         self._told = _Told()
-        self._outbox: WriteQueue | None = None
-        self._asked: dict[int, Future[dict[str, Any]]] = {}
-        self._number = 0
-        self._lock = threading.Lock()
         self._said = threading.Condition()
         self._closing = threading.Event()
         self._alive: float | None = None  # when a screen last said that it lives
-        self._threads: list[threading.Thread] = []
+        self._beating = threading.Thread()
 
     # ------------------------------------------------------------------------- its process
 
@@ -112,59 +101,36 @@ class RobotLink:
             self._cancellation.check()
             if self._over:
                 raise DeviceError("The robot is switched off.")
-            ready = self._begin()
-        self._cancellation.register(self._call_off)
+            worker = self._begin()
+        self._cancellation.register(partial(_call_off, worker))
         try:
-            told = ready.result(START_SECONDS)
+            told = worker.first.result(START_SECONDS)
             self.screen, self.code = str(told.get("screen", "")), str(told.get("code", ""))
         except TooLate:
             self._end()
             raise DeviceError("The robot process does not begin.") from None
+        except CancelledError:
+            raise Cancelled from None
 
-    def _begin(self) -> Future[dict[str, Any]]:
-        """Start the process and the threads; return what is done when the robot is switched on."""
+    def _begin(self) -> WorkerProcess:
+        """Start the process, and tell it what robot it is."""
         self._closing.clear()
         self._told = _Told()
-        log: IO[bytes] | int = subprocess.DEVNULL
-        if self._log is not None:
-            with suppress(OSError):
-                log = open_log(self._log)
         try:
-            process = self._process = subprocess.Popen(  # noqa: S603 - it is our own program
+            worker = self._worker = WorkerProcess(
                 [*CHILD, str(os.getpid())],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                start_new_session=True,
+                hear=self._hear,
+                read=_answer,
+                lost=lambda how: Preempted(_ended(how)),
+                log=self._log,
+                forgiving=True,
             )
-        except OSError as error:
+        except WorkerError as error:
             raise DeviceError(f"The robot process cannot be started ({error}).") from None
-        finally:
-            if not isinstance(log, int):
-                log.close()
-        ready: Future[dict[str, Any]] = Future()
-        self._asked[0] = ready
-        assert process.stdin is not None  # noqa: S101 - it was asked for
-        outbox = self._outbox = WriteQueue(process.stdin)
-        outbox.put(self.setup.to_json())
-        self._threads = [
-            threading.Thread(target=outbox.run, daemon=True),
-            threading.Thread(target=self._listen, args=(process,), daemon=True),
-            threading.Thread(target=self._beat, args=(process, outbox), daemon=True),
-        ]
-        for thread in self._threads:
-            thread.start()
-        return ready
-
-    def _call_off(self) -> None:
-        """Have the process end that was to switch the robot on; nobody waits for it any more."""
-        process = self._process
-        if process is not None:
-            process.terminate()
-        with self._lock:
-            ready = self._asked.pop(0, None)
-        if ready is not None:
-            ready.set_exception(Cancelled())
+        worker.tell(self.setup.to_json())
+        self._beating = threading.Thread(target=self._beat, args=(worker,), daemon=True)
+        self._beating.start()
+        return worker
 
     def restart(self) -> None:
         """End the process, however it is, and start another.
@@ -182,23 +148,16 @@ class RobotLink:
         self._end()
 
     def _end(self) -> None:
-        process, self._process = self._process, None
-        outbox, self._outbox = self._outbox, None
         self._closing.set()
-        if process is None or outbox is None:
+        worker = self._worker
+        if worker is None:
             return
         called_off = self._cancellation.cancelled
         if self.silent and not called_off:  # it would not end by itself, and may not even read
-            process.kill()
-        outbox.close()
-        try:
-            process.wait(CALLED_OFF_SECONDS if called_off else END_SECONDS)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        for thread in self._threads:
-            if thread is not threading.current_thread():
-                thread.join()
+            worker.kill()
+        worker.stop(CALLED_OFF_SECONDS if called_off else END_SECONDS)
+        if self._beating is not threading.current_thread():
+            self._beating.join()
 
     # ------------------------------------------------------------------------- what it says
 
@@ -222,7 +181,7 @@ class RobotLink:
     @property
     def pid(self) -> int | None:
         """The id of the process, None where there is none."""
-        return None if self._process is None else self._process.pid
+        return None if self._worker is None else self._worker.pid
 
     @property
     def time(self) -> float:
@@ -232,36 +191,41 @@ class RobotLink:
     @property
     def silent(self) -> str:
         """Why nothing is heard from the robot process, "" as long as it is."""
-        told = self._told
-        if told.ended:
-            return told.ended
+        if self._how:
+            return _ended(self._how)
         patience = SILENT_STEPPED if self.setup.stepped else SILENT_SECONDS
-        quiet = time.monotonic() - told.heard
+        quiet = time.monotonic() - self._heard
         return "the robot process does not answer" if quiet > patience else ""
+
+    @property
+    def _how(self) -> str:
+        """How the process ended, "" where it has not."""
+        return "" if self._worker is None else self._worker.how
+
+    @property
+    def _heard(self) -> float:
+        """When it said something last (monotonic, s); 0 where it never has."""
+        return 0.0 if self._worker is None else self._worker.heard
 
     def health(self) -> Health:
         """Return the newest reading of each device; all are stale where the process is silent."""
         health = self._told.state.health
         if not self.silent:
             return health
-        quiet = time.monotonic() - self._told.heard
+        quiet = time.monotonic() - self._heard
         return tuple(r._replace(age=r.age + quiet, state=STALE, rate=None) for r in health)
 
     # ------------------------------------------------------------------------- what it is told
 
     def ask(self, do: Request, **what: Any) -> Future[dict[str, Any]]:
         """Ask the robot for something; the answer comes, or DeviceError, or BrokenOff."""
-        asked: Future[dict[str, Any]] = Future()
-        with self._lock:  # an end of the process is answered either here or by whoever hears of it
-            self._number += 1
-            line = json.dumps({"id": self._number, **self._command(do), **what})
-            heard = not self._told.ended and self._write(line)
-            if heard:
-                self._asked[self._number] = asked
-                answered = partial(_note_answer, do, command_id())
-                asked.add_done_callback(answered)
-        if not heard:
-            asked.set_exception(Preempted(self.silent or ENDED))
+        worker = self._worker
+        if worker is None:
+            gone: Future[dict[str, Any]] = Future()
+            gone.set_exception(Preempted(self.silent))
+            return gone
+        asked = worker.ask({**self._command(do), **what})
+        asked.add_done_callback(partial(_note_answer, do, command_id()))
         return asked
 
     def wait(self, asked: Future[dict[str, Any]], seconds: float = 0.05) -> bool:
@@ -275,7 +239,7 @@ class RobotLink:
         last, until = self.state.number, time.monotonic() + START_SECONDS
         while (
             self.state.number == last
-            and not (self._told.ended or self._cancellation.cancelled)
+            and not (self._how or self._cancellation.cancelled)
             and time.monotonic() < until
         ):
             with self._said:
@@ -296,7 +260,9 @@ class RobotLink:
 
     def tell(self, do: Request, **what: Any) -> None:
         """Tell the robot something, and wait for no answer."""
-        self._write(json.dumps({**self._command(do), **what}))
+        line = {**self._command(do), **what}
+        if self._worker is not None:
+            self._worker.tell(line)
 
     @staticmethod
     def _command(do: Request) -> dict[str, str]:
@@ -323,51 +289,49 @@ class RobotLink:
 
     # ------------------------------------------------------------------------- the threads
 
-    def _write(self, line: str) -> bool:
-        """Have a line written, without waiting for it; return whether it may be."""
-        outbox = self._outbox
-        return outbox is not None and outbox.put(line) is not None
-
-    def _beat(self, process: subprocess.Popen[bytes], outbox: WriteQueue) -> None:
+    def _beat(self, worker: WorkerProcess) -> None:
         number = 0
-        while not self._closing.wait(BEAT_SECONDS) and process.poll() is None:
+        while not self._closing.wait(BEAT_SECONDS) and worker.pid is not None:
             alive = self._alive
-            hears = not (self._told.heard and self.silent)  # or its pipe would only fill
+            hears = not (worker.heard and self.silent)  # or its pipe would only fill
             if hears and (alive is None or time.monotonic() - alive < HANGS_SECONDS):
                 number += 1
-                outbox.beat(f'{{"beat":{number}}}')
+                worker.beat({"beat": number})
 
-    def _listen(self, process: subprocess.Popen[bytes]) -> None:
-        assert process.stdout is not None  # noqa: S101 - it was asked for
-        for line in process.stdout:
-            with suppress(ValueError, KeyError, TypeError, AttributeError, RecursionError):
-                self._take(json.loads(line))
-        process.stdout.close()
-        with self._lock:
-            self._told.ended = ENDED
-            unanswered, self._asked = self._asked, {}
-        for asked in unanswered.values():
-            if not asked.done():
-                asked.set_exception(Preempted(ENDED))
-
-    def _take(self, said: dict[str, Any]) -> None:
-        self._told.heard = time.monotonic()
+    def _hear(self, said: Said, _: bytes) -> bool:
+        """Take what it says of itself; return whether that was no answer."""
         self._told.time = max(self._told.time, said.get("at", 0.0))
-        if "beat" in said:
-            self._told.state = RobotState.from_json(said["beat"])
-            self._told.time = max(self._told.time, self._told.state.time)
-            with self._said:
-                self._said.notify_all()
-            return
-        with self._lock:
-            asked = self._asked.pop(said.get("id", 0), None)
-        if asked is None or asked.done():
-            return
-        if "failed" in said:
-            kind = Preempted if said.get("broken") else DeviceError
-            asked.set_exception(kind(said["failed"]))
-        else:
-            asked.set_result(said.get("done", {}))
+        if "beat" not in said:
+            return False
+        self._told.state = RobotState.from_json(said["beat"])
+        self._told.time = max(self._told.time, self._told.state.time)
+        with self._said:
+            self._said.notify_all()
+        return True
+
+
+def _ended(how: str) -> str:
+    return f"the robot process has ended ({how})"
+
+
+def _call_off(worker: WorkerProcess) -> None:
+    """Have the process end that was to switch the robot on; nobody waits for it any more."""
+    worker.terminate()
+    worker.first.cancel()
+
+
+def _answer(said: Said) -> dict[str, Any]:
+    """Return what was done.
+
+    Raises:
+        BrokenOff: it was broken off.
+        DeviceError: it could not be done.
+    """
+    if "failed" in said:
+        kind = Preempted if said.get("broken") else DeviceError
+        raise kind(said["failed"])
+    done: dict[str, Any] = said.get("done", {})
+    return done
 
 
 def _note_answer(do: Request, command: str, asked: Future[dict[str, Any]]) -> None:
