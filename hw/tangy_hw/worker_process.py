@@ -229,8 +229,8 @@ class WorkerProcess:
                 while line and not line.endswith(b"\n"):  # the rest of one that is too long
                     line = out.readline(self._longest)
                 if said is not None:
-                    after = out.read(size := _size(said))
-                    if len(after) < size:
+                    after = out.read(said.get("bytes", 0))
+                    if len(after) < said.get("bytes", 0):
                         return
                     self.heard = time.monotonic()
                     self._post(self._take, said, after)
@@ -264,8 +264,10 @@ class WorkerProcess:
         self._queue.close()
         for answer in list(self._asked.values()):
             _fail(answer, self._lost(self.how))
-        self._ended(self.how)
-        self.over.set_result(self.how)
+        try:
+            self._ended(self.how)
+        finally:
+            self.over.set_result(self.how)
 
 
 def _fail(answer: Future[Any], error: Exception) -> None:
@@ -274,21 +276,12 @@ def _fail(answer: Future[Any], error: Exception) -> None:
 
 
 def _object(line: bytes) -> Said | None:
-    """Read a line as a JSON object; None where it is none."""
+    """Read a line as a JSON object; None where it is none, or so many bytes cannot follow it."""
     try:
         said = json.loads(line)
     except (ValueError, RecursionError):
         return None
-    return said if isinstance(said, dict) and line.endswith(b"\n") else None
-
-
-def _size(said: Said) -> int:
-    """Return how many bytes follow a line.
-
-    Raises:
-        ValueError: so many cannot.
-    """
+    if not isinstance(said, dict) or not line.endswith(b"\n"):
+        return None
     follow = said.get("bytes", 0)
-    if type(follow) is not int or not 0 <= follow <= MOST_BYTES:
-        raise ValueError(f"{follow!r:.100} bytes")
-    return follow
+    return said if type(follow) is int and 0 <= follow <= MOST_BYTES else None

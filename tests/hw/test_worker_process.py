@@ -267,7 +267,9 @@ class TestChildren:
                 assert "too long" in str(heard("failed", "error"))
                 if before:
                     for line in child.begins:
-                        worker.tell(line)
+                        written = worker.tell(line)
+                        assert written is not None
+                        written.result(PATIENCE)  # or what follows would come between its parts
             worker.tell(child.asks)
             assert heard(child.answers)
         finally:
