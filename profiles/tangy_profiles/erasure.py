@@ -85,6 +85,12 @@ class NameEraser:
         self._typed = self._pattern(typed, (), but)
         self._running = self._pattern(anywhere, written, but)
         self._exact = self._pattern((), [name for name in plain if len(_letters(name)) > 2], but)
+        several = [_TOKEN.findall(name) for name in self.names]
+        words = {word for parts in several if parts[1:] for word in parts if len(word) > 1}
+        parts = sorted({form for word in words for form in _forms(word)}, key=_longest)
+        self._anchors |= {_anchor(form) for form in parts}
+        spelt = "|".join(map(re.escape, parts)) or "(?!)"
+        self._parts = re.compile(rf"\b(?:{spelt})\b", re.I)
         self._bytes = [
             _bytes_pattern(form, stand_in, self._stays([form], but), flags)
             for forms, flags in ((anywhere, re.I), (written, re.NOFLAG))
@@ -109,8 +115,16 @@ class NameEraser:
         return _HTML.sub(self._shown, page)
 
     def body(self, kind: str, body: dict[str, Any]) -> dict[str, Any]:
-        """Return the body of an event without the name in its free texts."""
-        return {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
+        """Return the body of an event without the name in its free texts.
+
+        From what was typed or said of a command for the person each word of the name goes as well:
+        people say "Rosa" or "Frau Weber".
+        """
+        left = {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
+        heard = left.get("heard")
+        if left.get("target") == self.stand_in and isinstance(heard, str):
+            left["heard"] = self._parts.sub(self.stand_in, heard)
+        return left
 
     def is_left(self, body: Mapping[str, Any]) -> bool:
         """Say whether the name stands in a body as that of a teacher or of staff."""

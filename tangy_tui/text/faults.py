@@ -249,6 +249,18 @@ def ages_of(fault: Fault, book: FaultBook, robot: Robot, health: Health) -> list
     return [piece for age in ages for piece in _age(device, age)]
 
 
+def known_now(fault: Fault, supervision: Supervision) -> Fault:
+    """Return a fault with the words of the rule by which more is known of it now, if there is one.
+
+    A robot whose own program stood still looks at first like one to which the link is lost.
+    """
+    evidence = supervision.devices
+    for rule in supervision.book.rules:
+        if fault.code in rule.continues and rule.matched(evidence):
+            return replace(fault, texts=(rule.name, rule.console, *rule.advice))
+    return fault
+
+
 def still_there_words(fault: Fault, supervision: Supervision) -> str:
     """Say whether a fault is still there; empty where the devices cannot tell."""
     book, evidence = supervision.book, supervision.devices
@@ -361,8 +373,10 @@ def advice_lines(game: Supervision) -> list[str]:
     fault = game.halted or next((one for one in game.faults if one.id == about), None)
     if fault is None:
         return []
-    steps = [f"  {number}. {step}" for number, step in enumerate(fault.advice, 1)]
-    return [f"{fault.console} Why: {fault.why}.", *steps]
+    now = known_now(fault, game)
+    why = f" Why: {fault.why}." if now is fault else ""
+    steps = [f"  {number}. {step}" for number, step in enumerate(now.advice, 1)]
+    return [f"{now.console}{why}", *steps]
 
 
 def expert_line(game: Supervision) -> str:

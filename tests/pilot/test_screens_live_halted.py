@@ -152,3 +152,15 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
         await pilot.pause()
         await pilot.press("escape")
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
+
+
+async def test_a_lost_link_that_was_a_freeze_is_called_what_it_is_as_soon_as_that_is_known(
+    run: Run, program: Program, link: HeldLink
+) -> None:
+    async with run(app=program, size=(120, 40)) as pilot:
+        await halting(pilot, link, "link", STALE)
+        assert "Link to the robot lost" in seen(pilot)
+        link.silent = ""
+        link.ail("link", frozen=4.0)
+        await until_shown(pilot, lambda: "stands still: The robot's own program" in seen(pilot))
+        assert "network" not in seen(pilot), "nobody is sent to the cables"

@@ -129,6 +129,7 @@ def test_no_handler_calls_the_one_that_it_overrides() -> None:
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Attribute)
         and call.func.attr.startswith("on_")
+        and call.func.attr != "on_event"  # the door for all events, which Textual calls once
         and isinstance(call.func.value, ast.Call)
         and isinstance(call.func.value.func, ast.Name)
         and call.func.value.func.id == "super"

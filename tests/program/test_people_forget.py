@@ -197,3 +197,18 @@ def test_a_teachers_name_has_the_limits_of_other_names(
     done = tangy(*verb, "--teacher", name, "--data", tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert "teacher's name" in done.stderr and why in done.stderr
+
+
+def test_a_first_name_alone_goes_from_what_was_typed_for_that_person(
+    tangy: Tangy, tmp_path: Path
+) -> None:
+    data = ("--data", tmp_path / "mine")
+    assert tangy("people", "rename", "user1", "Rosa Weber", *data).returncode == 0
+    typed = "greet everyone\ny\ncall number\ny\ngo to rosa\ny\ngo to frau weber\ny\n"
+    tangy("teach", "--plain", "--seed", "1", *data, stdin=typed)
+    with Store.open(tmp_path / "mine", write=False) as store:
+        heard = [e.body.get("heard") for e in store.events() if e.body.get("target") == "user1"]
+    assert any("rosa" in str(one) for one in heard), "it was said before"
+    assert tangy("people", "forget", "Rosa Weber", "--yes", *data).returncode == 0
+    left = bytes_of(tmp_path / "mine").lower()
+    assert b"rosa" not in left and b"weber" not in left

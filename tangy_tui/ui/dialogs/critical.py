@@ -19,6 +19,7 @@ from tangy_tui.text.faults import (
     ages_of,
     evidence_of,
     kind_words,
+    known_now,
     mark_of,
     move_words,
     still_there_words,
@@ -137,9 +138,12 @@ class CriticalDialog(Dialog[None]):
             id="critical",
             classes="box",
         )
-        title = f"{mark_of(fault)} Tangy stands still: {clean(fault.name)}"
-        box.border_title = Content(title)
+        box.border_title = self._title()
         yield box
+
+    def _title(self) -> Content:
+        name = known_now(self._fault, self._desk.supervision).name
+        return Content(f"{mark_of(self._fault)} Tangy stands still: {clean(name)}")
 
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
@@ -168,6 +172,8 @@ class CriticalDialog(Dialog[None]):
         before = self._now
         words = self._is_there()
         if words != before:
+            for box in self.query("#critical"):
+                box.border_title = self._title()
             for now in self.query(".now").results(Static):
                 now.update(words)
 
@@ -288,13 +294,14 @@ class CriticalDialog(Dialog[None]):
         return (*seen, ("e", "expert"), ("c", "clear"), ("g", "give up"), ("?", "help"))
 
     def _write(self, width: int) -> list[PageLine]:
-        fault, supervision = self._fault, self._desk.supervision
+        supervision = self._desk.supervision
+        fault = known_now(self._fault, supervision)
         book, robot = supervision.book, self._robot
         lines = paragraph(clean(fault.console), width, "strong")
         where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
         still = f"{where} Tangy has stopped, and nothing moves before this is cleared."
         lines += paragraph(still, width)
-        others = [f for f in supervision.faults if f is not fault and f.status != OVER]
+        others = [f for f in supervision.faults if f is not self._fault and f.status != OVER]
         if others:
             lines += paragraph(clean(f"Also wrong: {', '.join(f.name for f in others)}."), width)
         if len(fault.moves) > 1:
