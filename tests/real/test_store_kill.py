@@ -16,23 +16,26 @@ KILLS = 15
 WRITER = """
 import sys
 from pathlib import Path
+from tangy_profiles.events import Unknown
 from tangy_profiles.store import Store
 store = Store.open(Path(sys.argv[1]))
 print("open", flush=True)
 while True:
     with store.transaction():
-        first = append_body(store, "first", {"filling": "words " * 200})
-        append_body(store, "second", {"of": first})
-        third = append_body(store, "third", {"of": first}, person="p", strategy="s", complied=True)
+        first = store.append(Unknown("first", {"filling": "words " * 200}))
+        store.append(Unknown("second", {"of": first}))
+        third = Unknown("third", {"of": first})
+        third = store.append(third, person="p", strategy="s", complied=True)
     print(third, flush=True)
 """
 
 HOLDER = """
 import sys
 from pathlib import Path
+from tangy_profiles.events import Unknown
 from tangy_profiles.store import Store
 with Store.open(Path(sys.argv[1])) as store:
-    append_body(store, "greeting", {})
+    store.append(Unknown("greeting"))
     print("open", flush=True)
     sys.stdin.read()
 """
