@@ -37,7 +37,7 @@ from tangy_tui.language.stop_sentence import stops, stops_whatever_follows
 from tangy_tui.speech.endpointing import Endpoints, Pauses, pieces
 from tangy_tui.speech.evidence import LONGEST, RATE, AcousticEvidence, Expecting, Wanted
 
-_LOG = logging.getLogger(__name__)
+_LOG = logging.getLogger("tangy_tui.speech.worker")  # also where it is run as a process
 
 LARGEST_PIECE = 0.25  # s; what comes in larger ones is not shown word by word
 SILENCE = 8  # of 65,536: a sound that swings by less is none; the decoder would find words in it

@@ -277,6 +277,13 @@ class TestChildren:
         assert worker.how == "status 0"
         assert not [told for told in said.queue if "failed" in told]
 
+    def test_it_writes_down_what_it_does(self, child: Child, tmp_path: Path) -> None:
+        worker = WorkerProcess(child.command, log=tmp_path / "log")
+        for line in [*child.begins, child.asks]:
+            worker.tell(line)
+        worker.stop(PATIENCE)
+        assert " INFO    tangy_" in (tmp_path / "log").read_text()
+
     def test_it_ends_when_its_program_is_killed(self, child: Child) -> None:
         program = (
             "import json, sys, time\n"

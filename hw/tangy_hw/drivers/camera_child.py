@@ -38,7 +38,7 @@ from tangy_profiles.worker_lines import AnswerWriter, requests
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera_look import Image
 
-_LOG = logging.getLogger(__name__)
+_LOG = logging.getLogger("tangy_hw.drivers.camera_child")  # also where it is run as a process
 
 ALIVE_SECONDS = 0.25  # between two heartbeats
 AGAIN_SECONDS = 0.3  # until a source that has gone is opened anew
@@ -85,6 +85,7 @@ class Child:
                     self._answers.refuse(f"That is no source: it {why}.")
                     return
                 self._begun = True
+                _LOG.info("opens a camera")
                 Thread(target=self._reads, args=(reads, first), daemon=True).start()
             case {"frame": int(id), "after": int(after)} if _is_size(request.get("fit")):
                 with self._changed:
@@ -117,7 +118,6 @@ class Child:
                 self._changed.notify_all()
 
     def _reads(self, source: CameraSource, first: int) -> None:
-        _LOG.info("opens a camera")
         try:
             self.grab(source, first)
         except BaseException:

@@ -27,7 +27,7 @@ from tangy_hw.drivers.chest_server import ChestServer, Said
 from tangy_profiles.process_log import log_to_stderr
 from tangy_profiles.worker_lines import AnswerWriter, Asked, LineError, coming, open_lines
 
-_LOG = logging.getLogger(__name__)
+_LOG = logging.getLogger("tangy_hw.drivers.chest_child")  # also where it is run as a process
 
 AGAIN_SECONDS = 1.0  # until a port that is in use is tried again
 NICER = 5  # than what drives the robot

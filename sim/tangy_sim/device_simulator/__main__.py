@@ -26,7 +26,7 @@ from tangy_profiles.worker_lines import AnswerWriter, Asked, coming, open_lines
 from tangy_sim.device_simulator.device_servers import DeviceServers
 from tangy_sim.device_simulator.world import BenchWorld
 
-_LOG = logging.getLogger(__name__)
+_LOG = logging.getLogger("tangy_sim.device_simulator")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -98,7 +98,7 @@ def _answer(bench: DeviceServers, told: Asked) -> dict[str, Any]:
         answer = {"done": "stop"} if told["do"] == "stop" else bench.do(told)
     except Exception as error:  # whoever asked must not wait for ever
         answer = {"failed": f"The bench does not understand {told!r:.200} ({error!r:.200})."}
-    _LOG.info("asked for %s: %s", told.get("do"), *answer)
+    _LOG.info("asked for %s: %s", told.get("do"), ", ".join(answer))
     return {**answer, "id": told["id"]} if "id" in told else answer
 
 
