@@ -116,6 +116,28 @@ class BayesUcb(Plain):""",
     assert "each in turn" in shown.stdout
 
 
+def test_mypy_names_each_place_that_was_forgotten(copy: Path) -> None:
+    places("Add an effect of behaviours", "profiles/tangy_profiles/effects.py", "world.py")
+    edit(
+        copy / "profiles/tangy_profiles/effects.py",
+        '    "finish",',
+        '    "stretch",\n    "finish",',
+    )
+    names = copy / "profiles/tangy_profiles/persuading.py"
+    edit(names, '["thompson", "bayes-ucb"]', '["thompson", "bayes-ucb", "turns"]')
+    requests = copy / "hw/tangy_hw/robot_process/requests.py"
+    edit(requests, '    "spin",\n', '    "spin",\n    "dance",\n')
+    checked = run_on(copy, "-m", "mypy", "-p", "tangy_tui", "-p", "tangy_hw", "-p", "tangy_sim")
+    for forgotten, where in (
+        ("stretch", "sim/tangy_sim/worlds/world.py"),
+        ("stretch", "hw/tangy_hw/robot_client/live_world.py"),
+        ("turns", "tangy_tui/interaction/methods.py"),
+        ("dance", "hw/tangy_hw/robot_process/process.py"),
+    ):
+        lines = [line for line in checked.stdout.splitlines() if where in line]
+        assert any(forgotten in line for line in lines), f"{where}: {forgotten}\n{checked.stdout}"
+
+
 def test_a_panel_is_a_widget_and_a_line_in_a_screen(copy: Path, taught: Path) -> None:
     places("Add a panel", "tangy_tui/ui/widgets/", "tangy_tui/ui/panels.py", "`compose`")
     (copy / "tangy_tui/ui/widgets/hello_panel.py").write_text(
