@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, Evidence
-from tangy_profiles.health import STALE, Fact
+from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact
 from tangy_profiles.robot import Robot
 from tangy_tui.learning.effects import Mismatch
 
-STATES = {
-    "OK": "all is well",
-    "STALE": "nothing came from it",
-    "ERROR": "it reports an error",
-    "WARN": "it warns",
-}
+STATES = {OK: "it works", STALE: "no data", ERROR: "failed", WARN: "it warns"}
+"""The states of a device in words: the same in lists, in evidence, in drills and in banners."""
 
 
 def evidence_words(

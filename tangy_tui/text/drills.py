@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 from tangy_profiles.drill_sheet import AnsweredRound, Sheet
-from tangy_profiles.health import ERROR, OK, STALE
+from tangy_profiles.health import OK
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.drill import ACTIONS, Drill, Question
 from tangy_tui.monitoring.drill_rounds import Round, Tabletop
+from tangy_tui.monitoring.evidence import STATES
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import state_words
 
@@ -37,7 +38,6 @@ NOTHING_KEPT = "Nothing was kept: the first round was not answered to its end."
 NOTHING_MOVES = "Nothing is moving: this is a rehearsal, without the robot."
 HELP = "Type the number or letter of an answer, or quit."
 
-_STATES = {STALE: "nothing comes from it", ERROR: "it reports an error", "WARN": "it warns"}
 _QUIET = {
     "refused": "People may refuse. Tangy asks again, and after a while leaves it at that.",
     "late": "It was done. Late counts as no for how Tangy asks next time, and is no fault.",
@@ -72,9 +72,9 @@ def device_words(devices: Sequence[tuple[str, str]]) -> str:
     if not by_state:
         return "None reports an error."
     parts = [
-        f"{', '.join(labels)}: {_STATES.get(state, state)}"
+        f"{', '.join(labels)}: {STATES.get(state, state)}"
         if well or len(by_state) > 1
-        else f"all {len(labels)}: {_STATES.get(state, state)}"
+        else f"all {len(labels)}: {STATES.get(state, state)}"
         for state, labels in by_state.items()
     ]
     if well:

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 from tangy_profiles.faults import CONTEXT, SYMPTOMS, Condition, FaultBook, FaultRule
 from tangy_profiles.game_records import MoveKind
-from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health
+from tangy_profiles.health import ERROR, STALE, Fact, Health
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import DeviceProfile, Robot
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_tui.monitoring.diagnosis import narrows
-from tangy_tui.monitoring.evidence import mismatch_words, written
+from tangy_tui.monitoring.evidence import STATES, mismatch_words, written
 from tangy_tui.monitoring.fault import (
     BORNE,
     OPEN,
@@ -83,13 +83,6 @@ RECOVERY_WORDS = {
 }
 """The recoveries in words."""
 
-_STATES = {
-    STALE: f"nothing comes from it ({STALE})",
-    ERROR: f"it reports a failure ({ERROR})",
-    WARN: f"it warns ({WARN})",
-    OK: f"all is well ({OK})",
-}
-
 _DOING = {
     "teacher asked": "asking the teacher",
     "halted": "Tangy stands still",
@@ -107,10 +100,10 @@ def status_words(status: tuple[str, str]) -> str:
     word, cause = status
     if not cause:
         return word
-    if word == "STALE":
-        return f"STALE: nothing is heard from the {cause}"
-    if word == "ERROR":
-        return f"ERROR: the {cause} reports a failure"
+    if word == STALE:
+        return f"{word}: {STATES[STALE]} from the {cause}"
+    if word == ERROR:
+        return f"{word}: the {cause} {STATES[ERROR]}"
     return f"{word}: {cause}"
 
 
@@ -316,7 +309,7 @@ def _otherwise(condition: Condition) -> str:
 def _observed(fact: str, value: Fact) -> str:
     if fact != "state":
         return written(value)
-    return _STATES.get(str(value), str(value))
+    return f"{STATES[str(value)]} ({value})" if value in STATES else str(value)
 
 
 def move_words(move: RecoveryEvent) -> str:

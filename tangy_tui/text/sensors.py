@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tangy_profiles.health import ERROR, OK, STALE, WARN, Fact, Health, Reading, state_of
 from tangy_profiles.robot import DeviceProfile, Robot
+from tangy_tui.monitoring.evidence import STATES
 
 if TYPE_CHECKING:
     from tangy_hw.drivers.camera import Frame
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 CAMERA_STATES = {
     "OPENING": "no picture yet",
-    "OK": "it works",
+    "OK": STATES[OK],
     "DISCONNECTED": "disconnected",
     "FROZEN": "frozen",
     "COVERED": "covered",
@@ -28,7 +29,6 @@ CAMERA_STATES = {
 }
 """What is said of the states of a camera."""
 
-DEVICE_STATES = {OK: "it works", WARN: "it warns", STALE: "silent", ERROR: "failed"}
 NOW_SECONDS = 3.0  # for which what was seen at the last look is said to be so now
 SIMULATED = "simulated"
 ABSENT = "not there"
@@ -169,7 +169,7 @@ class Teller:
         return Told(
             device,
             code,
-            DEVICE_STATES[code],
+            STATES[code],
             why,
             reading.age,
             now - since,

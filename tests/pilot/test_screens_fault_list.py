@@ -176,8 +176,8 @@ async def test_the_timeline_has_times_evidence_and_steps_for_staff(
 
 
 def test_nothing_heard_is_worded_otherwise_than_an_error() -> None:
-    assert status_words(("STALE", "head camera")) == "STALE: nothing is heard from the head camera"
-    assert status_words(("ERROR", "head camera")) == "ERROR: the head camera reports a failure"
+    assert status_words(("STALE", "head camera")) == "STALE: no data from the head camera"
+    assert status_words(("ERROR", "head camera")) == "ERROR: the head camera failed"
     assert status_words(("OK", "")) == "OK"
 
 

@@ -75,7 +75,7 @@ async def test_the_dialog_says_what_was_expected_and_observed_and_when(
     async with run(app=playing(workspace, policy), size=MIDDLE) as pilot:
         await halting(pilot, "laser-disconnected")
         text = seen(pilot)
-        assert "Still there: laser scanner: nothing comes from it (STALE)." in text
+        assert "Still there: laser scanner: no data (STALE)." in text
         assert "to be expected: OK" in text
         assert "laser scanner, newest data: 2 s old" in text
         assert "at most 0.25 s old" in text

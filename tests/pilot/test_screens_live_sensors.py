@@ -179,7 +179,7 @@ async def test_a_robot_process_that_is_silent_is_not_asked_and_that_is_said(
         pilot.type("v")
         await shown(pilot, "No picture comes")
         assert "!! head camera" in pilot.text() and "disconnected" in row(pilot, "head camera")
-        assert "silent" in row(pilot, "wheels")
+        assert "no data" in row(pilot, "wheels")
         await pilot.pause(0.3)
         assert link.asked_for == []
 

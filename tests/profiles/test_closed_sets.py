@@ -14,7 +14,6 @@ from tangy_profiles.health import STATES, DeviceState
 from tangy_profiles.persuading import METHODS, PersuasionConfig
 from tangy_tui.interaction.methods import method_of
 from tangy_tui.monitoring import evidence
-from tangy_tui.text import sensors
 from tangy_tui.ui.dialogs import method
 
 ROOT = Path(__file__).parents[2]
@@ -66,7 +65,6 @@ def test_the_state_of_a_device_is_ranked_and_said_in_words() -> None:
     states = get_args(DeviceState)
     told: dict[str, Collection[str]] = {
         "STATES of tangy_profiles.health": STATES,
-        "DEVICE_STATES of tangy_tui.text.sensors": sensors.DEVICE_STATES,
         "STATES of tangy_tui.monitoring.evidence": evidence.STATES,
     }
     forgotten = [missing(place, states, words) for place, words in told.items()]

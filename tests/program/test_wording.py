@@ -1,4 +1,4 @@
-"""Situations, steps and cards in words that a newcomer can act on."""
+"""Situations, steps, cards and devices in words that a newcomer can act on."""
 
 from __future__ import annotations
 
@@ -6,8 +6,13 @@ import pytest
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Step
+from tangy_profiles.health import OK, STALE
+from tangy_profiles.robot import load_robot
 from tangy_profiles.scene import CardView, Scene
 from tangy_profiles.state import FRONT, ActivityState, Situation, UserState
+from tangy_tui.monitoring.evidence import STATES, evidence_words
+from tangy_tui.text.drills import device_words
+from tangy_tui.text.faults import status_words
 from tangy_tui.text.situations import card_words, state_words, step_words
 
 NUMBERS = tuple(range(1, 26))
@@ -76,3 +81,14 @@ def test_a_correct_card_needs_no_words(activity: Activity) -> None:
     assert card_words(activity, CardView("user1", NUMBERS, 0b111, 0b111)) == ""
     assert card_words(activity, CardView("user1", NUMBERS, 0b101, 0b111)) == "Missed: B-2."
     assert card_words(activity, CardView("user1", NUMBERS, 0b111, 0b011)) == "Wrong: B-3."
+
+
+def test_a_device_without_data_is_told_of_in_the_same_words_everywhere() -> None:
+    robot = load_robot()
+    device = next(iter(robot.devices.values()))
+    told = {
+        "evidence": evidence_words({f"{device.name}.state": STALE}, (), robot),
+        "status": status_words((STALE, device.label)),
+        "drill": device_words([(device.label, STALE), ("another", OK)]),
+    }
+    assert [place for place, words in told.items() if STATES[STALE] not in words] == []
