@@ -10,7 +10,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.effects import learn_effects
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policies import keep_policy, unused_name
+from tangy_tui.learning.policies import keep_policy, unused_name, without_strange_steps
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Next
@@ -74,7 +74,8 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
 def learn(workspace: Workspace) -> Policy:
     """Learn from the finished demonstrations, by what teachers said of them; keep the policy."""
     library = read_library(workspace.store, workspace.activity.name)
-    policy = learn_policy(workspace.activity, library.finished, resolutions=library.resolutions)
+    used, _ = without_strange_steps(workspace.activity, library.finished)
+    policy = learn_policy(workspace.activity, used, resolutions=library.resolutions)
     policy = unused_name(workspace.store, policy)
     keep_policy(workspace.store, policy)
     return policy

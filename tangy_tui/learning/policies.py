@@ -6,9 +6,11 @@ when it is loaded, and never used silently if it does not come out as it was.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tangy_profiles.activity import Activity
+from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
 from tangy_profiles.state import Situation
@@ -16,11 +18,13 @@ from tangy_profiles.store import Store
 from tangy_profiles.teaching_records import PolicyLearnt
 from tangy_tui.learning.forest_cache import ForestCache
 from tangy_tui.learning.library import read_library
-from tangy_tui.learning.policy import SURE, Decision, Grow, Policy, learn_policy
+from tangy_tui.learning.policy import SURE, Decision, Grow, Policy, all_situations, learn_policy
 
 ASKS = "to ask"
 """What a policy does where it is not sure."""
 GONE = "no situation any more"
+MANY = 20
+"""Where one step in so many, or more, is not of the activity, the activity was changed."""
 RESERVED = ("last", "policy", "teacher")
 """Words that a name must not begin with: they say which policy is meant."""
 
@@ -135,11 +139,14 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
             "this data folder: run `tangy learn` again."
         )
     cache = ForestCache(store.folder)
+    used, notices = without_strange_steps(
+        activity, [entries[id].demonstration for id in kept.demonstrations]
+    )
 
     def again(grow: Grow) -> Policy:
         return learn_policy(
             activity,
-            [entries[id].demonstration for id in kept.demonstrations],
+            used,
             resolutions=kept.resolved,
             settings=kept.forest,
             name=kept.name,
@@ -149,7 +156,35 @@ def load_policy(store: Store, activity: Activity, wanted: str = "") -> tuple[Pol
     policy = again(cache.grown)
     if policy.digest != kept.digest:
         policy = again(cache.afresh)  # what was kept may be wrong; what is learnt again is not
-    return policy, [] if policy.digest == kept.digest else _explain(kept, policy)
+    if policy.digest != kept.digest:
+        notices += _explain(kept, policy)
+    return policy, notices
+
+
+def without_strange_steps(
+    activity: Activity, demonstrations: Sequence[Demonstration]
+) -> tuple[list[Demonstration], list[str]]:
+    """Leave out single steps that the activity does not know, and name them: bad rows of a log.
+
+    Where they are many the activity was changed, and all of them are left as they are.
+    """
+    situations = frozenset(all_situations(activity))
+    kept, notices, count = list[Demonstration](), list[str](), 0
+    for one in demonstrations:
+        known = []
+        for number, step in enumerate(one.steps, 1):
+            if step.behaviour in activity.behaviours and step.state.situation in situations:
+                known.append(step)
+                continue
+            where = f"{' / '.join(step.state.situation)} -> {step.behaviour}"
+            notices.append(
+                plain(f"Step {number} of {one.id} is left out: {activity.title} has no {where}.")
+            )
+        count += len(one.steps)
+        kept.append(one if len(known) == len(one.steps) else replace(one, steps=tuple(known)))
+    if len(notices) * MANY > count:
+        return list(demonstrations), []
+    return kept, notices
 
 
 def changes(kept: PolicyLearnt, policy: Policy) -> list[Change]:

@@ -51,6 +51,7 @@ def learn(
         keep_policy,
         last_policy,
         unused_name,
+        without_strange_steps,
     )
     from tangy_tui.learning.policy import FORESTS, learn_policy
     from tangy_tui.text.documents import policy_document
@@ -70,6 +71,8 @@ def learn(
         if left_out and not used:
             raise TangyError(_only_unfinished(left_out))
         before = last_policy(workspace.store, workspace.activity.name)
+        used, notices = without_strange_steps(workspace.activity, used)
+        say_notices(notices)
         policy = learn_policy(
             workspace.activity,
             used,
