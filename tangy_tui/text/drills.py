@@ -41,7 +41,7 @@ HELP = "Type the number or letter of an answer, or quit."
 _QUIET = {
     "refused": "People may refuse. Tangy asks again, and after a while leaves it at that.",
     "late": "It was done. Late counts as no for how Tangy asks next time, and is no fault.",
-    "asks": "Whoever asks waits for their turn; Tangy comes by itself.",
+    "asks": "People who ask for help wait their turn; Tangy comes by itself.",
     "reading": "That is how it should be.",
 }
 

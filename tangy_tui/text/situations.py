@@ -41,8 +41,8 @@ def agreement_words(activity: Activity, policy: Policy) -> str:
     wrong = len(policy.errors(activity))
     asks = sum(not policy.decide(situation).sure for situation in activity.expected)
     if wrong:
-        return f"not as expected in {counted(wrong, 'situation')}"
-    return f"asks in {counted(asks, 'situation')}" if asks else "as expected everywhere"
+        return f"differs from the reference in {counted(wrong, 'situation')}"
+    return f"asks in {counted(asks, 'situation')}" if asks else "matches the reference"
 
 
 def step_words(activity: Activity, step: Step, name: Name) -> str:
@@ -64,7 +64,7 @@ def state_words(activity: Activity, state: ActivityState, scene: Scene, name: Na
         sentences.append("Nobody asks for help.")
     shown = next((s for s in activity.user_states if s.name == state.situation.user_state), None)
     if any(r.stage == state.stage and r.condition == "after" for r in activity.stage_rules):
-        sentences.append("The game is won: only the end is left.")
+        sentences.append("The game is won. It is time to end it.")
     elif shown is not None and activity.reads(state.stage):
         sentences.append(shown.hint)
         if scene.card is not None:

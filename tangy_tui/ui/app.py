@@ -225,9 +225,9 @@ class TangyApp(App[None]):
         """Take the mouse, or leave it to the terminal so that text can be copied."""
         self.use_mouse(not self.mouse)
         if self.mouse:
-            self.say("The mouse works in Tangy again. Press m to copy text with it.")
+            self.say("Mouse on. Press m to turn it off and select text.")
         else:
-            self.say("The mouse is the terminal's: text can be copied. Press m to change back.")
+            self.say("Mouse off: you can select text. Press m to turn it on again.")
 
     def use_mouse(self, on: bool) -> None:
         """Take the mouse, or leave it to the terminal."""

@@ -21,7 +21,7 @@ async def show_why(
     from tangy_tui.ui.dialogs.why import WhyDialog
 
     app: Any = screen.app
-    app.say("Tangy thinks it over ... (esc: never mind)")
+    app.say("Tangy is working out what it would do ... (esc: cancel)")
     worker: Worker[Why] = screen.run_worker(
         lambda: _grounds(workspace, present, situation),
         thread=True,

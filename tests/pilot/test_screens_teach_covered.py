@@ -151,11 +151,11 @@ async def test_escape_while_tangy_thinks_stops_that_and_no_more(
         await pilot.pause()
         await pilot.press(*why)
         await pilot.pause()
-        assert "thinks it over" in screen_text(pilot.app)
+        assert "is working out" in screen_text(pilot.app)
         await pilot.press("escape")
         await pilot.pause()
         assert ended == []
-        assert "thinks it over" not in screen_text(pilot.app)
+        assert "is working out" not in screen_text(pilot.app)
         let_go.set()
         await pilot.pause(0.5)
         assert isinstance(pilot.app.screen, TeachScreen)

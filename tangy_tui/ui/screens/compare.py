@@ -46,7 +46,7 @@ async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> 
         await app.push_screen_wait(MessageDialog(NOTHING_TO_COMPARE, title="Nothing to compare"))
         return []
     wanted = [] if first is None else [first]
-    for question in ("Compare A: which?", "With B: which?")[len(wanted) :]:
+    for question in ("Compare:", "Compare with:")[len(wanted) :]:
         left = [option for option in options if option.id not in wanted]
         chosen = await app.push_screen_wait(ChooseDialog(question, left))
         if chosen is None:

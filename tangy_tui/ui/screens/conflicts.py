@@ -176,7 +176,7 @@ class ConflictsScreen(TangyScreen[bool]):
     async def _show(self) -> None:
         self._keys = FreshKeys()
         present, count = self._present, len(self._conflicts)
-        note = f"{len(self._answered) + 1} of {count}" if present is not None else "all looked at"
+        note = f"{len(self._answered) + 1} of {count}" if present is not None else "all reviewed"
         self.query_one(StatusLine).show(Status(mode="conflicts", note=note))
         await self._show_answers(present)
         self.query_one("#situation", Static).update(

@@ -38,7 +38,7 @@ class MenuItem:
 CHOICES = (
     MenuItem("t", "Teach", "show Tangy how the activity is run"),
     MenuItem("g", "Guided", "teach in one game that shows everything"),
-    MenuItem("i", "Library", "all demonstrations: look, mend, delete"),
+    MenuItem("i", "Library", "all demonstrations: view, edit, delete"),
     MenuItem("l", "Learn", "make a policy from what was shown"),
     MenuItem("p", "Play", "let Tangy run the activity"),
     MenuItem("v", "Live", "run it with the robot, or on its bench"),

@@ -283,7 +283,7 @@ class TeachScreen(TangyScreen[bool]):
         """Give up what is being thought over, and stay here."""
         if self._thinking is not None:
             self._thinking.cancel()
-            self._log.write("Tangy thinks no more of it.", "dim")
+            self._log.write("Cancelled.", "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""

@@ -46,5 +46,5 @@ BINDINGS: list[BindingType] = [
     Binding("r", "learn", "Learn from the demonstrations"),
     Binding("d", "next", "Another demonstration"),
     Binding("escape", "leave", "Leave; your steps are kept"),
-    Binding("escape", "think_no_more", "Think no more of it", show=False, priority=True),
+    Binding("escape", "think_no_more", "Cancel", show=False, priority=True),
 ]
