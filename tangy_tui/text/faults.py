@@ -24,7 +24,7 @@ from tangy_tui.monitoring.fault import (
     RecoveryEvent,
 )
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.text.numbers import ordinal
+from tangy_tui.text.numbers import listed, ordinal
 from tangy_tui.text.times import clock
 
 Name = Callable[[str], str]
@@ -227,7 +227,7 @@ def evidence_of(fault: Fault, book: FaultBook, robot: Robot) -> list[EvidenceLin
             pieces.append(EvidenceLine(f"{what}: {observed}", f"to be expected: {expected}"))
     for one in fault.mismatches:
         words = mismatch_words(one)
-        wanted = " or ".join(one.expected) or "nothing known"
+        wanted = listed(one.expected, "or") or "nothing known"
         note = f"{one.variable}: {one.seen}; to be expected: {wanted}"
         pieces.append(EvidenceLine(f"{words[:1].upper()}{words[1:]}", note))
     return pieces

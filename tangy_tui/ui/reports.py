@@ -23,7 +23,7 @@ from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import agreement_words, conflict_lines
 from tangy_tui.text.times import local_time
 
@@ -121,7 +121,7 @@ def print_comparison(
 
 def _does(decision: Decision, also: Sequence[str] = ()) -> str:
     if decision.sure:
-        return " or ".join([decision.behaviour, *also])
+        return listed([decision.behaviour, *also], "or")
     why = "contested" if decision.contested else "never shown" if not decision.seen else "unsure"
     return f"asks ({why})"
 

@@ -15,7 +15,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -156,7 +156,7 @@ class DemonstrationsScreen(TangyScreen[None]):
             return
         if self._refused(*ids):
             return
-        names = " and ".join(str(self._rows[id].number) for id in ids)
+        names = listed(self._rows[id].number for id in ids)
         steps = sum(self._rows[id].steps for id in ids)
         self._confirm(
             f"Merge demonstrations {names}?",

@@ -12,7 +12,7 @@ from tangy_profiles.activity import Activity
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Decision, Policy
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.numbers import counted, listed
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.panels import key_line, panel
@@ -36,7 +36,7 @@ def _row(words: str, decision: Decision) -> PolicyRow:
     if not decision.seen:  # whatever the trees would vote for, Tangy asks there
         return PolicyRow(words, "never shown", 0.0, 0)
     if decision.contested:
-        answers = " or ".join(behaviour for behaviour, _ in decision.votes)
+        answers = listed((behaviour for behaviour, _ in decision.votes), "or")
         return PolicyRow(words, "contested", decision.share, decision.seen, answers)
     note = "" if decision.sure else "not sure: asks"
     return PolicyRow(words, decision.behaviour, decision.share, decision.seen, note)
