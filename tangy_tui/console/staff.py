@@ -77,7 +77,6 @@ class StaffLines:
         read: Callable[[], str | None],
         write: Callable[[str], None],
         *,
-        teacher: str = "",
         speed: float | None = None,
         also: Callable[[Sequence[Event]], Sequence[str]] = lambda events: (),
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
@@ -90,7 +89,6 @@ class StaffLines:
             find_person: returns the id of a person by name or id.
             read: returns the next line, None at their end; it may wait for it.
             write: writes a line; it is called by one thread at a time.
-            teacher: who answers.
             speed: times life, in which the time of a simulated game passes; None: a robot's own.
             also: is told all events, and returns what else is to be written.
             demonstrations: gives all there are, for the grounds of a question.
@@ -98,7 +96,7 @@ class StaffLines:
         self._controller = controller
         self._game = controller.supervision
         self._name, self._find_person = name, find_person
-        self._read, self._teacher, self._speed = read, teacher, speed
+        self._read, self._speed = read, speed
         self._also = also
         self._inquiries = Inquiries(controller, name, demonstrations)
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
@@ -385,6 +383,7 @@ class StaffLines:
         until = time.monotonic() + min(seconds, LONGEST_WAIT)
         calls = self._count_calls()
         while time.monotonic() < until and playing.is_alive():
+            self._tell_where_it_goes()
             phase = self._controller.phase
             came = {
                 "asked": phase == "asking",

@@ -164,7 +164,6 @@ def _lines(
         lambda wanted: workspace.find_person(wanted).id,
         line_reader(None),
         print_line,
-        teacher=teacher,
         speed=speed,
         also=(lambda events: ()) if live is None else live.take,
         demonstrations=shown,

@@ -40,7 +40,6 @@ def told(
         lambda wanted: workspace.find_person(wanted).id,
         lambda: next(typed, None),
         written.append,
-        teacher="Ada",
         speed=speed,
     )
     return written, games.run(1)

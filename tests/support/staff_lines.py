@@ -35,7 +35,6 @@ def play_by_turns(
         nobody,
         lambda: next(typed, None),
         written.append,
-        teacher=teacher,
         demonstrations=demonstrations,
     )
     staff.run_by_turns(games, scripted=scripted)
