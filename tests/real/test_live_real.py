@@ -186,7 +186,7 @@ def test_staff_run_a_live_game_by_lines_and_the_log_says_who_did_what(folder: Pa
     lines = [
         "pause", "where", "go on", "wait until called", "stop the robot", "drive left", "go on",
         "drive left 1", "wait until called", "call again", "call back", "take over",
-        "wait until asked", "tell a joke", "y", "ask for user1", "wait 2", "end",
+        "wait until asked", "tell a joke", "y", "ask for user1", "wait 20", "end",
     ]  # fmt: skip
     done = subprocess.run(  # noqa: S603
         [TANGY, "live", "--bench", "--plain", "--pace", "2", "--seed", "4", "--teacher", "Ada",
