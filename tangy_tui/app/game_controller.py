@@ -244,8 +244,7 @@ class GameController:
             case TakeBackCall():
                 return [self.robot.do(command)]
             case CallAgain() | Drive():
-                refused = self._refused(asking=False)
-                return [refused or self.robot.do(command)]
+                return [self.refuses(command) or self.robot.do(command)]
             case VoidResponse(person):
                 return [self._voided(person)]
             case Acknowledge() | CallExpert() | Clear() | Accept():
@@ -348,10 +347,7 @@ class GameController:
         return [StaffNote("ended"), *events]
 
     def abandon(self, patience: float = LEAVES_SECONDS) -> list[Event]:
-        """Stop the robot, and let the log say that the game was left: whoever watches it leaves.
-
-        What is being done has `patience` s to be broken off; then it is left as it is.
-        """
+        """Stop the robot, and log that the game was left; what is done has s to be broken off."""
         self.stopped = True
         self.break_off()
         if not self._turn.acquire(timeout=patience):
@@ -368,6 +364,10 @@ class GameController:
         """What has to be done before staff can do more, None if nothing has."""
         return self._refused()
 
+    def refuses(self, command: GameCommand) -> StaffNote | None:
+        """Say whether a command that moves the robot is refused already as it is given."""
+        return self._refused(asking=False) if isinstance(command, CallAgain | Drive) else None
+
     def _refused(self, *, asking: bool = True) -> StaffNote | None:
         """Say what has to be done first, None if nothing has."""
         if self.stopped:
@@ -377,8 +377,6 @@ class GameController:
         if asking and self.supervision.question is not None:
             return StaffNote("asks first")
         return None
-
-    # ----------------------------------------------------------------------------- the question
 
     def answer(self, behaviour: Behaviour, target: str | None) -> list[Result]:
         """Have done what was answered, and learn from it; it takes its time.

@@ -324,8 +324,9 @@ class StaffLines:
         if isinstance(command, CallExpert) and self._game.halted is not None:
             self._write(expert_line(self._game))
         self._ended |= isinstance(command, EndGame)
-        if self._by_turns or isinstance(command, AT_ONCE):
-            self._tell(self._controller.apply(command))
+        refused = self._controller.refuses(command)
+        if refused or self._by_turns or isinstance(command, AT_ONCE):
+            self._tell([refused] if refused else self._controller.apply(command))
             return
         if isinstance(command, EndGame):
             self._controller.break_off()

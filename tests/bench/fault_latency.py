@@ -85,7 +85,7 @@ async def one(
         await pilot.press("p")
         screen = program.screen
         assert isinstance(screen, PlayScreen)
-        game = screen._supervision
+        game = screen.control.supervision
         assert isinstance(game.world, FaultyWorld)
         await asyncio.sleep(0.5 + chance.random() * 0.2)
         observed: list[float] = []

@@ -42,9 +42,9 @@ def playing(
 def game_of(pilot: TangyPilot) -> tuple[PlayScreen, Supervision, FaultyWorld]:
     """Return the playing screen, what supervises its games, and their world."""
     screen = next(s for s in pilot.app.screen_stack if isinstance(s, PlayScreen))
-    world = screen._supervision.world
+    world = screen.control.supervision.world
     assert isinstance(world, FaultyWorld)
-    return screen, screen._supervision, world
+    return screen, screen.control.supervision, world
 
 
 async def halted(pilot: TangyPilot) -> CriticalDialog:

@@ -130,6 +130,6 @@ async def settled(pilot: TangyPilot, drawn: Callable[[], str]) -> None:
 
 async def paused_after(pilot: TangyPilot, link: HeldLink, steps: int) -> None:
     """Let it do some steps, and pause."""
-    await until_shown(pilot, lambda: live(pilot)._supervision.steps >= steps)
+    await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= steps)
     live(pilot).control.apply(Pause())
     await until_shown(pilot, lambda: not live(pilot).working)

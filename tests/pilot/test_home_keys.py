@@ -84,7 +84,7 @@ async def test_v_asks_first_and_plays_on_the_bench_where_no_robot_is_named(
             await pilot.press(answer)
             await until_shown(pilot, lambda: not screen_text(pilot.app).count("Play on the bench?"))
         await until_shown(pilot, lambda: isinstance(pilot.app.screen, LiveScreen))
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
         assert opened == [True]
         await pilot.press("escape")
         await until_shown(pilot, lambda: "Leave in the middle" in screen_text(pilot.app))

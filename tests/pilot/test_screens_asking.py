@@ -91,7 +91,7 @@ async def answer(pilot: TangyPilot, words: str = "call number") -> None:
 
 async def over(pilot: TangyPilot, screen: PlayScreen) -> None:
     """Wait until the game is over."""
-    while not screen._supervision.over:
+    while not screen.control.supervision.over:
         await pilot.pause(0.02)
     await pilot.pause()
 
@@ -167,7 +167,7 @@ async def test_nothing_happens_before_a_yes(run: Run, workspace: Workspace, gapp
         await pilot.press("escape")
         await pilot.pause()
         assert list(workspace.store.events()) == before
-        assert screen._supervision.question is not None
+        assert screen.control.supervision.question is not None
 
 
 async def test_keys_typed_ahead_answer_nothing(
@@ -183,7 +183,7 @@ async def test_keys_typed_ahead_answer_nothing(
         screen = await asked(pilot)
         await pilot.pause()
         assert screen.query_one(CommandBar).text == ""
-        assert screen._supervision.question is not None
+        assert screen.control.supervision.question is not None
         assert isinstance(pilot.app.screen, PlayScreen)
 
 
@@ -228,7 +228,7 @@ async def test_the_game_is_given_up_on_purpose(
         assert isinstance(pilot.app.screen, ConfirmDialog)
         await pilot.press("n")
         await pilot.pause()
-        assert screen._supervision.question is not None
+        assert screen.control.supervision.question is not None
         if way == "word":
             pilot.type(*"quit", "enter")
         else:
@@ -263,14 +263,14 @@ async def test_stop_while_tangy_asks_holds_the_answer_until_it_may_go_on(
         await pilot.press("colon", "enter")
         await pilot.pause()
         assert list(workspace.store.events()) == before
-        assert screen._supervision.question is not None
+        assert screen.control.supervision.question is not None
         await pilot.press("escape", "p")
         await pilot.pause()
         assert "STOPPED" not in screen_text(pilot.app)
         await pilot.press("enter")
         await questioned(pilot)
         await pilot.press("y")
-        while screen._supervision.question is not None:
+        while screen.control.supervision.question is not None:
             await pilot.pause(0.02)
 
 
@@ -283,7 +283,7 @@ async def test_a_stop_that_is_typed_for_an_answer_stops(
         pilot.type(*words, "enter")
         await pilot.pause()
         assert "STOPPED" in screen_text(pilot.app)
-        assert pilot.app.screen is screen and screen._supervision.question is not None
+        assert pilot.app.screen is screen and screen.control.supervision.question is not None
 
 
 async def test_pausing_while_tangy_asks_pauses_after_the_answer(
@@ -350,7 +350,7 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
 
     async with run(app=playing(workspace, gappy)) as pilot:
         screen = await asked(pilot)
-        policy = screen._supervision.policy
+        policy = screen.control.supervision.policy
         with monkeypatch.context() as broken:
             broken.setattr(workspace.store, "append", refuse)
             await answer(pilot)
@@ -358,15 +358,15 @@ async def test_a_log_that_cannot_be_written_holds_the_game_and_is_tried_again(
                 await pilot.pause(0.02)
         await pilot.pause()
         assert "the disk is full" in screen_text(pilot.app)
-        assert screen._supervision.policy is policy
+        assert screen.control.supervision.policy is policy
         await pilot.press("enter")
         await pilot.pause()
         await pilot.press("p")
         await asked(pilot)
         await answer(pilot)
-        while screen._supervision.policy is policy:  # until it has learnt from the answer
+        while screen.control.supervision.policy is policy:  # until it has learnt from the answer
             await pilot.pause(0.02)
-        assert screen._supervision.question is None
+        assert screen.control.supervision.question is None
 
 
 async def test_leaving_the_program_while_tangy_asks_ends_the_game_in_the_log(

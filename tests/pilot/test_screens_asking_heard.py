@@ -74,7 +74,7 @@ async def test_an_answer_is_said_asked_about_and_learnt(
         await pilot.pause()
         assert isinstance(pilot.app.screen, QuestionDialog)
         await pilot.press("y")
-        while screen._supervision.question is not None:
+        while screen.control.supervision.question is not None:
             await pilot.pause(0.02)
         while "Learnt from ann" not in " ".join(screen.query_one(LogView).sentences):
             await pilot.pause(0.02)
@@ -92,7 +92,7 @@ async def test_a_spoken_no_gives_the_words_back(
         ears.hear(Reply(False))
         await pilot.pause()
         assert screen.query_one(CommandBar).text == "call number"
-        assert screen._supervision.question is not None
+        assert screen.control.supervision.question is not None
         assert screen.query_one(AskingPanel).listens
 
 

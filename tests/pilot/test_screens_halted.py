@@ -255,7 +255,7 @@ async def test_skipping_stops_where_tangy_stands_still(
         await until_shown(pilot, lambda: pilot.app.screen is screen)
         assert screen.query_one(Transcript).count - count <= 1
         await pilot.press("e")
-        await until_shown(pilot, lambda: screen._supervision.over)
+        await until_shown(pilot, lambda: screen.control.supervision.over)
         assert "The game is over" in screen.query_one(LogView).sentences[-1]
 
 

@@ -91,7 +91,7 @@ async def test_where_it_drives_to_is_seen_in_a_small_window(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program, size=(80, 24)) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         link.free = False
         try:
             await until_shown(pilot, lambda: live(pilot).working > 0)
@@ -124,7 +124,7 @@ async def test_a_robot_that_does_not_know_where_it_stands_is_said_to_look_round(
         finally:
             link.state = replace(link.state, health=well)
             link.free = True
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
 
 
 @pytest.mark.parametrize("hands_free", [True, False])
@@ -138,7 +138,7 @@ async def test_a_stop_that_is_said_goes_to_the_robot_itself(
 ) -> None:
     ears = FakeEars(hands_free=hands_free)
     async with run(app=live_program(workspace, world, policy, ears)) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         line = pilot.app.screen.query_one(MicrophoneLine)
         assert ears.asks and ("listening for stop" if hands_free else "t talk") in line.text
         link.free = False
@@ -159,7 +159,7 @@ async def test_stop_goes_to_the_robot_itself_and_p_lets_it_go_on(
     run: Run, program: Program, link: HeldLink
 ) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         link.free = False
         await until_shown(pilot, lambda: live(pilot).working > 0)
         await pilot.press("ctrl+x")
@@ -174,7 +174,7 @@ async def test_each_stop_is_logged_once_and_told_once(
     run: Run, program: Program, workspace: Workspace
 ) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         for count in (1, 2):
             await pilot.press("ctrl+x")
             await until_shown(pilot, lambda: "STOPPED" in screen_text(pilot.app))
@@ -240,12 +240,12 @@ async def test_between_two_calls_staff_can_step_in_and_who_asks_does_not_wait(
 
 async def test_the_dial_has_staff_asked_before_everything(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("i", "i")
         await asked_about_the_next(pilot)
-        steps = live(pilot)._supervision.steps
+        steps = live(pilot).control.supervision.steps
         await pilot.press("y")
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps == steps + 1)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps == steps + 1)
         await asked_about_the_next(pilot)
         await pilot.press("n")
         await until_shown(pilot, lambda: bool(live(pilot).query(AskingPanel)))
@@ -256,7 +256,7 @@ async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
 ) -> None:
     link.cards["user2"] = LaidCard(7)
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("i", "i")
         await asked_about_the_next(pilot)
         assert "Next: call number?" in screen_text(pilot.app)
@@ -275,25 +275,25 @@ async def test_a_yes_to_one_thing_is_no_yes_to_another_that_came_up_meanwhile(
 
 async def test_staff_can_say_what_is_done_next(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
         await until_shown(pilot, lambda: "You say what Tangy does next." in screen_text(pilot.app))
-        assert live(pilot)._supervision.question is not None
+        assert live(pilot).control.supervision.question is not None
 
 
 async def test_esc_lets_tangy_go_on_where_staff_wanted_to_say_what_it_does(
     run: Run, program: Program
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 2)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 2)
         await pilot.press("o")
         await until_shown(pilot, lambda: any(one._open for one in live(pilot).query(AskingPanel)))
         await pilot.press("escape")  # out of the line
         await until_shown(pilot, lambda: "esc let Tangy go on by itself" in screen_text(pilot.app))
-        steps = live(pilot)._supervision.steps
+        steps = live(pilot).control.supervision.steps
         await pilot.press("escape")
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps > steps)
-        assert not live(pilot)._supervision.over and live(pilot).is_current
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps > steps)
+        assert not live(pilot).control.supervision.over and live(pilot).is_current
         assert not live(pilot).query(AskingPanel)
         assert "Tangy goes on by itself." in screen_text(pilot.app)
 
@@ -361,7 +361,7 @@ async def test_after_a_game_p_lets_a_robot_that_was_frozen_move_again(
 ) -> None:
     async with run(app=program, size=(120, 40)) as pilot:
         await paused_after(pilot, link, 2)
-        live(pilot)._supervision.leave()
+        live(pilot).control.supervision.leave()
         assert live(pilot)._at_rest
         link.state = replace(link.state, frozen=5.0)
         link.released.clear()
@@ -409,7 +409,7 @@ async def test_the_screen_says_that_it_lives_also_where_something_lies_over_it(
 
 async def test_the_keys_of_a_simulated_game_are_not_there(run: Run, program: Program) -> None:
     async with run(app=program) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 1)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 1)
         for action in ("one_step", "speed", "skip"):
             assert live(pilot).check_action(action, ()) is False
 
@@ -420,7 +420,7 @@ async def test_the_live_picture_in_the_readme_shows_the_program_as_it_is(
     kept = Path(__file__).parent / "pictures" / "live.svg"
     link.most = 6
     async with run(app=program, size=(120, 40)) as pilot:
-        await until_shown(pilot, lambda: live(pilot)._supervision.steps >= 6)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.steps >= 6)
         await until_shown(pilot, lambda: live(pilot).working > 0)
         link.sign(2)
         link.state = replace(

@@ -114,7 +114,7 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
         finally:
             link.free = True
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
-        assert live(pilot)._supervision.halted is None
+        assert live(pilot).control.supervision.halted is None
 
 
 async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
@@ -127,7 +127,7 @@ async def test_who_clears_a_fault_does_not_let_go_what_staff_stopped(
         link.ail("stop_button")
         await pilot.press("a", "c")
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))
-        assert live(pilot)._supervision.halted is None
+        assert live(pilot).control.supervision.halted is None
         done = len(link.done)
         await lives(pilot, link)
         assert STAFF in link.held_by and "STOPPED" in pilot.lines()[0]
@@ -148,7 +148,7 @@ async def test_what_is_cleared_while_help_lies_over_it_closes_when_that_goes(
             await until_shown(pilot, lambda: isinstance(pilot.app.screen, HelpScreen))
         finally:
             link.free = True
-        await until_shown(pilot, lambda: live(pilot)._supervision.halted is None)
+        await until_shown(pilot, lambda: live(pilot).control.supervision.halted is None)
         await pilot.pause()
         await pilot.press("escape")
         await until_shown(pilot, lambda: pilot.app.screen is live(pilot))

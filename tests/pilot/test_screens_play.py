@@ -92,7 +92,7 @@ async def test_skipping_plays_the_game_to_its_end(
     async with run(app=playing(workspace, policy)) as pilot:
         screen = await pause_at_once(pilot)
         await pilot.press("e")
-        while not screen._supervision.over:
+        while not screen.control.supervision.over:
             await pilot.pause(0.02)
         await pilot.pause()
         assert "The game is over" in screen.query_one(LogView).sentences[-1]

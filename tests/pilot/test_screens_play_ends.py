@@ -71,7 +71,7 @@ async def over(pilot: TangyPilot) -> PlayScreen:
     screen = pilot.app.screen
     assert isinstance(screen, PlayScreen)
     await pilot.press("e")
-    while not screen._supervision.over:
+    while not screen.control.supervision.over:
         await pilot.pause(0.02)
     await pilot.pause()
     return screen

@@ -254,7 +254,7 @@ async def test_a_game_that_is_skipped_to_its_end_is_silent(
         assert isinstance(screen, PlayScreen)
         await until_shown(pilot, lambda: bool(voices[0].lines))
         await pilot.press("e")
-        await until_shown(pilot, lambda: screen._supervision.over)
+        await until_shown(pilot, lambda: screen.control.supervision.over)
         assert len(voices[0].lines) <= 2
         assert not voices[0].speaking
 
