@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 
 ENDING = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 """By which a person or a system ends a program."""
+HEARD_AFTER = 0.05
+"""The longest a signal waits, in s.
+
+One that comes just as a thread begins to wait for another interrupts nothing: Python hears it when
+that wait is over, which took as long as the opening.
+"""
 SIGNALLED = 128
 """The exit status of a program that a signal has ended is this and the signal's number."""
 
@@ -71,8 +77,10 @@ def switched_on(opening: Opening, *, stepped: bool) -> Iterator[LiveWorld]:
     robot = SwitchingOn(opening, stepped=stepped)
     with _Signals(robot.cancel) as signals:
         try:
-            with ThreadPoolExecutor(1, "opening") as thread:  # which is waited for
+            with ThreadPoolExecutor(1, "opening") as thread:
                 opened = thread.submit(robot.open)
+                while not wait([opened], HEARD_AFTER).done:
+                    pass
             signals.raise_from_now_on()
             yield opened.result()
         finally:

@@ -259,7 +259,7 @@ class StaffLines:
                 continue
             if self._alone:
                 if self._begun.wait(LOOK_SECONDS):
-                    playing.join()
+                    playing.join(LOOK_SECONDS)  # a longer wait may not hear a signal
                 continue
             try:
                 line = self._lines.get(timeout=LOOK_SECONDS)

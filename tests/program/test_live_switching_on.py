@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import cast
 
@@ -123,6 +123,19 @@ def test_ctrl_c_calls_it_off_without_a_screen() -> None:
 
 
 @pytest.mark.slow
+def test_a_signal_that_interrupts_no_wait_calls_it_off_as_well() -> None:
+    robot = Robot()
+
+    def opening(stepped: bool, cancellation: Cancellation) -> AbstractContextManager[LiveWorld]:
+        signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # this thread's, not the main's
+        return robot(stepped, cancellation)
+
+    with pytest.raises(SystemExit) as ended, switched_on(opening, stepped=False):
+        pass
+    assert ended.value.code == 128 + signal.SIGTERM
+    assert robot.did == ["begins", "is off"]
+
+
 def test_a_signal_in_a_game_switches_the_robot_off() -> None:
     robot = Robot()
     robot.answers.set()
