@@ -190,6 +190,17 @@ def at_least(least: int) -> Reader:
     return check
 
 
+def between(least: int, most: int) -> Reader:
+    """Let whole numbers of a range pass, both ends among them."""
+
+    def check(value: Any) -> Any:
+        if not least <= value <= most:
+            raise Unreadable(f"is not a count from {least:,} to {most:,}")
+        return value
+
+    return check
+
+
 Count = Annotated[int, at_least(0)]
 """A whole number from 0 on."""
 

@@ -62,7 +62,7 @@ def _bodies(db: sqlite3.Connection, eraser: NameEraser) -> Iterator[tuple[int, s
             (),
         )
         for seq, kind, body in rows:
-            if isinstance(body, str) and eraser.may_hold(body):
+            if isinstance(body, str) and eraser.may_change(body):
                 yield seq, str(kind), body
         if not rows:
             return

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
-from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from tangy_profiles.errors import ProfileError
 from tangy_profiles.reading import plain
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 Group = Literal["drivers", "activities", "methods"]
 GROUPS: tuple[Group, ...] = get_args(Group)
@@ -52,6 +53,8 @@ class Extension:
 @cache
 def extensions(group: Group) -> Mapping[str, Extension]:
     """Return what other packages add to a group, by its name; of two with one name the first."""
+    from importlib.metadata import entry_points  # here, or every start reads how packages are kept
+
     found: dict[str, Extension] = {}
     for point in sorted(entry_points(group=f"tangy.{group}"), key=lambda point: point.value):
         dist = point.dist
@@ -62,6 +65,8 @@ def extensions(group: Group) -> Mapping[str, Extension]:
 
 def activity_files() -> dict[str, Path]:
     """Return the activities that other packages bring: NAME.toml in the package that is named."""
+    from importlib.resources import files
+
     found: dict[str, Path] = {}
     for name, extension in extensions("activities").items():
         try:

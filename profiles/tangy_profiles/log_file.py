@@ -14,7 +14,9 @@ from pathlib import Path
 
 from tangy_profiles import seal
 from tangy_profiles.errors import StoreBusy, StoreError
+from tangy_profiles.people_records import EventsLost
 from tangy_profiles.reading import plain
+from tangy_profiles.salvage import salvage
 
 FILE = "tangy.db"
 ALWAYS_CHECKED = 16_000_000  # bytes: 13 ms of quick_check
@@ -58,6 +60,8 @@ class LogFile:
         self.notices: list[str] = []
         self.db: sqlite3.Connection | None = None
         self.damaged = False  # a damaged log is not vouched for when it is closed
+        self.lost: list[EventsLost] = []
+        """The events of a damaged log that could not be taken over into this one."""
         self._behind = False  # a reader's log is of an older version
         self._held: FileIO | None = None
         self._now = now
@@ -68,9 +72,13 @@ class LogFile:
             self.folder.mkdir(parents=True)
             self.folder.chmod(0o700)  # whatever the umask
         self._held, left = _hold(self.folder / "tangy.lock")
-        if not self._sound(left):
-            self._set_aside()
-        return self._take_up()
+        if self._sound(left):
+            return self._take_up()
+        sealed = seal.Seal(self.folder).read()
+        aside = self._set_aside()
+        db = self._take_up()
+        self._take_over(aside, db, sealed)
+        return db
 
     def _take_up(self) -> sqlite3.Connection:
         """Open the log for its writer, and bring it up to date."""
@@ -193,7 +201,7 @@ class LogFile:
             problem = f"cannot be used ({error}); choose another folder with --data"
             if _tells_damage(error):
                 self.damaged = True
-                problem = "is damaged; `tangy teach` sets it aside, and begins a new one"
+                problem = "is damaged; `tangy teach` takes what can be read into a new one"
             if "is full" in str(error):
                 problem = "could not be added to, for the disk is full; make room and try again"
             raise self.wrong(problem) from None
@@ -243,7 +251,21 @@ class LogFile:
                     raise
                 return False
 
-    def _set_aside(self) -> None:
+    def _take_over(
+        self, aside: Path, db: sqlite3.Connection, sealed: tuple[str, int] | None
+    ) -> None:
+        """Take what can be read of a damaged log, and say what became of it."""
+        kept, lost = salvage(aside, db, sealed[1] if sealed else 0)
+        self.lost = [EventsLost(first=first, last=last, damaged=True) for first, last in lost]
+        notice = f"The log was damaged: it is kept as {aside}, and a new one was begun."
+        if sealed:
+            db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", sealed[:1])
+        if kept:
+            db.execute("DELETE FROM meta WHERE key = 'sealed'")  # the count went aside, too
+            notice = f"{notice[:-1]} with the {kept} events that could be read."
+        self.notices.append(plain(notice))
+
+    def _set_aside(self) -> Path:
         """Rename a damaged log, its tail first: SQLite would replay a tail into a new log."""
         aside = self._unused("damaged")
         for end in ("-wal", "-shm", ""):
@@ -251,8 +273,7 @@ class LogFile:
                 (self.folder / (FILE + end)).rename(self.folder / (aside.name + end))
         with suppress(OSError):  # what it counts is not in the new log
             (self.folder / seal.FILE).rename(self.folder / aside.name.replace(FILE, seal.FILE, 1))
-        notice = f"The log was damaged: it is kept as {aside}, and a new one was begun."
-        self.notices.append(plain(notice))
+        return aside
 
     def _migrate(self, db: sqlite3.Connection) -> None:
         """Bring the log to this version, all steps or none, after copying it as it was.

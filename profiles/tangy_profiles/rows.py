@@ -16,6 +16,9 @@ from tangy_profiles.codec import Unreadable
 from tangy_profiles.events import KINDS, EventRecord, Unknown, read_record
 from tangy_profiles.reading import plain
 
+LARGEST_BODY = 8_000_000
+"""Characters of a body; the largest of a game or a policy have some thousands."""
+
 R = TypeVar("R", bound=EventRecord, covariant=True)
 
 
@@ -93,8 +96,13 @@ def _empty(kind: str) -> EventRecord:
 
 def left_out(seq: int, kind: object, why: str, rest: str = "") -> str:
     """Say in a sentence which row is left out (but for the `rest`), and why."""
+    return wrong_row(seq, kind, f" is damaged and left out{rest}: {why}")
+
+
+def wrong_row(seq: int, kind: object, wrong: str) -> str:
+    """Say in a sentence of which row something is wrong; `wrong` follows its number and kind."""
     of = f" ({kind[:40]})" if isinstance(kind, str) else ""
-    said = f"tangy.db: event {seq}{of} is damaged and left out{rest}: {why}."
+    said = f"tangy.db: event {seq}{of}{wrong}."
     return plain(said.encode(errors="replace").decode())
 
 
@@ -104,6 +112,8 @@ def are_text(*words: object) -> bool:
 
 
 def _read_body(text: str) -> tuple[dict[str, Any], str]:
+    if len(text) > LARGEST_BODY:  # before it takes the memory of many times that
+        return {}, "its body is too long"
     try:
         body = _from_json(text)
         if "\\u" in text:  # half of a character can be written so

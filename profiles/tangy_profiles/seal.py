@@ -56,12 +56,3 @@ class Seal:
 
 def _sum(robot: str, seq: str) -> int:
     return zlib.crc32(f"{robot} {seq}".encode())
-
-
-def lost_words(first: int, last: int) -> str:
-    """Say in a sentence which of the newest events are gone."""
-    which = f"event {first}" if first == last else f"events {first} to {last}"
-    return (
-        f"tangy.db: {which} had been kept and {'is' if first == last else 'are'} gone: the end of "
-        "the log was lost, or this is a copy that was made while Tangy was writing."
-    )

@@ -25,14 +25,16 @@ from tangy_profiles.erasure import NameEraser
 from tangy_profiles.errors import ProfileError, StoreError
 from tangy_profiles.events import EventRecord, read_record
 from tangy_profiles.log_file import FILE, NAMING, LogFile
-from tangy_profiles.people_records import EventsLost, PersonForgotten, Renamed, SpeechNoted
+from tangy_profiles.losses import SEALED, loss_words, newest, unnoticed, wrong_counts
+from tangy_profiles.people_records import EventsLost, LossAccepted, PersonForgotten, Renamed
+from tangy_profiles.people_records import SpeechNoted as SpeechNoted
 from tangy_profiles.person import read_name
 from tangy_profiles.phones import read_name_phones
-from tangy_profiles.queries import ADD, COUNTS, LARGEST_SEQ, NEXT, READ, fetch, responses_among
+from tangy_profiles.queries import ADD, LARGEST_SEQ, NEXT, READ, fetch, responses_among
 from tangy_profiles.records import name_of
-from tangy_profiles.rows import BadRow, are_text, left_out, read_row
+from tangy_profiles.rows import LARGEST_BODY, BadRow, are_text, left_out, read_row
 from tangy_profiles.rows import Event as Event
-from tangy_profiles.seal import Seal, lost_words
+from tangy_profiles.seal import Seal
 from tangy_profiles.voice import VoicePreference
 
 R = TypeVar("R", bound=EventRecord)
@@ -82,7 +84,7 @@ class Store:
             with store._file.in_words():
                 store._begin() if write else store._file.reading()
             with nullcontext() if write else suppress(StoreError):  # a reader's queries will say it
-                store._tell_lost()
+                store.notices.extend(map(loss_words, store._unaccepted()))
         except BaseException:
             store._file.damaged = True  # so that closing does not vouch for it
             store.close()
@@ -101,7 +103,7 @@ class Store:
 
         Raises:
             ValueError, TypeError: the caller's mistake: a body that is not JSON (NaN, too deep) or
-                not of its kind, no kind, or `complied` without person and strategy.
+                too long, or not of its kind, no kind, or `complied` without person and strategy.
             StoreError: it could not be kept, and nothing of it was.
         """
         kind, of_nobody = record.KIND, person is None or strategy is None
@@ -114,6 +116,8 @@ class Store:
             raise ValueError("The body of an event is nested too deeply.") from None
         except Unreadable as why:
             raise ValueError(f"An event of the kind {kind!r} {why}.") from None
+        if len(text) > LARGEST_BODY:
+            raise ValueError("The body of an event is too long.")
         at = self._now().astimezone(UTC).isoformat(timespec="microseconds")
         answer = None if complied is None else int(complied)  # whether `person` followed `strategy`
         with self.transaction():
@@ -316,16 +320,8 @@ class Store:
         try:
             found = [" ".join(row.split()) for (row,) in self._rows("PRAGMA quick_check")]
             wrong += [f"{FILE}: {words}." for words in found if words != "ok"]
-            for events, newest, different, answers, indexed, guards in self._rows(COUNTS):
-                if not events == different == newest:
-                    sums = f"{newest} events were logged, {events} stand, {different} different"
-                    wrong.append(f"{FILE}: {sums}.")
-                if answers != indexed:
-                    wrong.append(f"{FILE}: {indexed} of {answers} responses are in the index.")
-                if guards < 2:
-                    wrong.append(f"{FILE}: the guard against changing events is gone.")
-            if lost := self._lost():
-                wrong.append(lost_words(*lost))
+            wrong += wrong_counts(self._rows, (e.record for e in self.events(EventsLost)))
+            wrong += map(loss_words, self._unaccepted())
             deque(self.events(), maxlen=0)
         except StoreError as error:
             wrong.append(str(error))
@@ -344,29 +340,33 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _tell_lost(self) -> None:
-        """Say if the newest events are gone; a writer notes it, and counts from there on."""
-        if lost := self._lost():
-            self.notices.append(lost_words(*lost))
-            if self.writable:
-                self.append(EventsLost(first=lost[0], last=lost[1]))
+    def accept_losses(self) -> list[EventsLost]:
+        """Note that staff know of what is lost, so that it is not told again; return that."""
+        if losses := self._unaccepted():
+            self.append(LossAccepted())
+        return losses
 
-    def _lost(self) -> tuple[int, int] | None:
-        """Return the first and the last of the newest events that were kept and are gone."""
+    def _unaccepted(self) -> list[EventsLost]:
+        """Return what is lost of this log and was not accepted yet."""
         sealed = self._seal.read()  # before the events: so it never leads
-        robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")
-        if sealed is None or (robot and robot[0][0] != sealed[0]):
-            return None  # there is no count, or it is another log's
-        newest = self._rows("SELECT coalesce(max(seq), 0) FROM event") or [(0,)]
-        return (newest[0][0] + 1, sealed[1]) if newest[0][0] < sealed[1] else None
+        noted = self._noted()
+        return [*noted, *unnoticed(self._rows, sealed, noted)]
+
+    def _noted(self) -> list[EventsLost]:
+        accepted = self.last(LossAccepted)
+        return [e.record for e in self.events(EventsLost, after=accepted.seq if accepted else 0)]
 
     def _begin(self) -> None:
-        """Become the writer, and learn which robot's folder this is."""
+        """Become the writer, learn which robot's folder this is, and note what is lost of it."""
         db = self._file.begin()
         sealed = self._seal.read()  # of a log whose very beginning is gone
         robot = sealed[0] if sealed else str(uuid.uuid4())
         db.execute("INSERT OR IGNORE INTO meta VALUES ('robot', ?)", (robot,))
         self._robot = self._rows("SELECT value FROM meta WHERE key = 'robot'")[0][0]
+        for loss in (*self._file.lost, *unnoticed(self._rows, sealed, self._noted())):
+            self.append(loss)
+        db.execute(SEALED)
+        self._seal.write(self._robot, newest(self._rows))
 
     def _rows(self, sql: str, *values: object) -> list[Any]:
         """Return all rows of a query; none where there is no log yet."""

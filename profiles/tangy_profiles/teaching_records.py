@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
 
-from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least
+from tangy_profiles.codec import Count, Flat, Sparse, Unlogged, at_least, between
 from tangy_profiles.demonstration import Demonstration, Origin, Resolution, Step
 from tangy_profiles.records import EventRecord, kind
 from tangy_profiles.state import Request, Situation
@@ -145,13 +145,16 @@ class DemonstrationsEditRedone(EventRecord):
 
 @dataclass(frozen=True, slots=True)
 class ForestSettings:
-    """How the forest is grown: see scikit-learn's RandomForestClassifier."""
+    """How the forest is grown: see scikit-learn's RandomForestClassifier.
+
+    The limits are far beyond any use, so that a damaged row costs neither time nor memory.
+    """
 
     ONLY: ClassVar[bool] = True
 
-    trees: Count = 100
+    trees: Annotated[int, between(1, 1_000)] = 100
     bootstrap: bool = False
-    min_samples_leaf: Count = 1
+    min_samples_leaf: Annotated[int, between(1, 1_000_000)] = 1
     seed: int = 0
 
 
@@ -186,3 +189,14 @@ class PolicyLearnt(EventRecord):
     """Where it asks, which the first logs do not tell."""
     at: Unlogged[str] = ""
     """When it was logged (ISO 8601, UTC)."""
+
+    def misfit(self) -> str:
+        """Say what does not fit together, as the tail of a sentence ("": nothing).
+
+        Each repetition would be learnt from again, and a damaged row may have millions.
+        """
+        if len(set(self.demonstrations)) < len(self.demonstrations):
+            return "names a demonstration twice"
+        if len({row.situation for row in self.rows}) < len(self.rows):
+            return "has two rows for a situation"
+        return ""

@@ -2,22 +2,84 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from tangy_profiles.activity import Activity, load_activity
+from tangy_profiles.errors import ProfileError
 from tangy_profiles.events import KINDS
-from tangy_profiles.game_records import GameBeginning
+from tangy_profiles.game_records import GameBeginning, GameStep
 from tangy_profiles.reading import plain
+from tangy_profiles.rows import wrong_row
+from tangy_profiles.state import ActivityState
 from tangy_profiles.store import Store
-from tangy_profiles.teaching_records import DemonstrationBegun, DemonstrationsEdited, PolicyLearnt
+from tangy_profiles.teaching_records import (
+    DemonstrationBegun,
+    DemonstrationsEdited,
+    DemonstrationStep,
+    PolicyLearnt,
+)
 from tangy_tui.learning import library
+from tangy_tui.learning.policies import MANY, without_strange_steps
 
 
 def log_problems(store: Store) -> list[str]:
     """Read a whole log and return what is wrong with it, a sentence each ([]: nothing)."""
     wrong = store.check()
     known = set(store.aside)
+    strange = list(_strange_people(store))
     for activity in _activities(store):
-        library.read_library(store, activity)
-    out_of_place = sorted(store.aside.keys() - known)
-    return wrong + [store.aside[seq] for seq in out_of_place] + unknown_kinds(store)
+        strange += _strange_steps(store, activity)
+    out_of_place = [store.aside[seq] for seq in sorted(store.aside.keys() - known)]
+    return wrong + out_of_place + strange + unknown_kinds(store)
+
+
+def _strange_steps(store: Store, name: str) -> list[str]:
+    """Name the steps of an activity's demonstrations and games that the activity does not know."""
+    demonstrations = library.read_demonstrations(store, name)
+    try:
+        activity = load_activity(name)
+    except ProfileError:  # it is not here, so that nobody can tell
+        return []
+    return without_strange_steps(activity, demonstrations)[1] + _strange_game_steps(store, activity)
+
+
+def _strange_game_steps(store: Store, activity: Activity) -> list[str]:
+    """Name the steps of games that an activity does not know; many: the activity was changed."""
+    games, steps, strange = set[str](), 0, list[str]()
+    for event in store.events(GameBeginning, GameStep):
+        match event.record:
+            case GameBeginning(game=game, activity=activity.name):
+                games.add(game)
+            case GameStep(game=game, behaviour=behaviour) if game in games:
+                steps += 1
+                if behaviour not in activity.behaviours:
+                    wrong = f": {activity.title} has no {behaviour[:40]!r}"
+                    strange.append(wrong_row(event.seq, event.kind, wrong))
+    return strange if len(strange) * MANY <= steps else []
+
+
+def _strange_people(store: Store) -> Iterator[str]:
+    """Name the steps that tell of people who do not take part in the game."""
+    people = dict[str, frozenset[str]]()
+    for event in store.events(DemonstrationBegun, DemonstrationStep, GameBeginning, GameStep):
+        match event.record:
+            case DemonstrationBegun(demonstration=of, people=ids):
+                people[of] = frozenset(ids)
+            case GameBeginning(game=of, people=ids):
+                people[of] = frozenset(ids)
+            case DemonstrationStep(demonstration=of, step=step):
+                others = _others(people.get(of), step.target, step.state)
+            case GameStep(game=of, target=target, state=state):
+                others = _others(people.get(of), target, state)
+        if isinstance(event.record, DemonstrationStep | GameStep) and others:
+            wrong = f": {', '.join(others)} took no part in the game"
+            yield wrong_row(event.seq, event.kind, wrong)
+
+
+def _others(people: frozenset[str] | None, target: str | None, state: ActivityState) -> list[str]:
+    """Return who is named in a step without being one of these people; None: nobody can tell."""
+    named = {user.id for user in state.users} | ({target} if target else set())
+    return [repr(one[:40]) for one in sorted(named - people)] if people else []
 
 
 def unknown_kinds(store: Store) -> list[str]:

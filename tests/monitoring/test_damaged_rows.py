@@ -75,6 +75,12 @@ def drop(folder: Path, seq: int, key: str) -> None:
     change(folder, f"UPDATE event SET body = json_remove(body, '$.{key}') WHERE seq = {seq}")  # noqa: S608
 
 
+def put(folder: Path, seq: int, key: str, value: object) -> None:
+    """Put something else in place of a value of an event's body."""
+    sql = "UPDATE event SET body = json_set(body, '$.' || ?, ?) WHERE seq = ?"
+    change(folder, sql, key, value, seq)
+
+
 def read_all(folder: Path) -> None:
     """Read from a log all that the verbs read; what a person can mend may be said."""
     workspace = Workspace(folder, write=False)
@@ -258,6 +264,75 @@ def test_doctor_and_store_check_name_every_bad_row(every_kind: Path, tangy: Tang
     (found,) = (f for f in examine(every_kind, lambda _: None) if f.part == "data folder")
     assert (found.ok, found.broken) == (False, True)
     assert "`tangy store check` names them" in found.text
+
+
+def test_store_check_names_a_step_that_the_activity_does_not_know(
+    every_kind: Path, tangy: Tangy
+) -> None:
+    step = seqs(every_kind, "demonstration step")[7]
+    put(every_kind, step, "behaviour", "call nummer")
+    checked = tangy("store", "check", "--data", every_kind)
+    assert checked.returncode == 1
+    assert "is left out: Bingo has no" in checked.stdout and "call nummer" in checked.stdout
+
+
+@pytest.mark.parametrize("kind", ["demonstration step", "game step"])
+@pytest.mark.parametrize(("key", "value"), [("target", "user77"), ("state.users[1][0]", "user78")])
+def test_store_check_names_a_step_that_tells_of_others_than_take_part(
+    every_kind: Path, tangy: Tangy, kind: str, key: str, value: str
+) -> None:
+    step = seqs(every_kind, kind)[5]
+    put(every_kind, step, key, value)
+    put(every_kind, step, key.replace("state", "after"), value)
+    checked = tangy("store", "check", "--data", every_kind)
+    assert checked.returncode == 1
+    assert f"event {step} ({kind}): '{value}' took no part in the game." in checked.stdout
+
+
+def test_store_check_names_a_step_of_a_game_that_the_activity_does_not_know(
+    every_kind: Path, tangy: Tangy
+) -> None:
+    step = seqs(every_kind, "game step")[5]
+    put(every_kind, step, "behaviour", "call nummer")
+    checked = tangy("store", "check", "--data", every_kind)
+    assert checked.returncode == 1
+    assert f"event {step} (game step): Bingo has no 'call nummer'." in checked.stdout
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("trees", 10**8), ("trees", 0), ("min_samples_leaf", 10**12)]
+)
+def test_a_policy_that_would_take_all_time_or_memory_is_left_out(
+    every_kind: Path, tangy: Tangy, key: str, value: int
+) -> None:
+    kept = seqs(every_kind, "policy learnt")[-1]
+    put(every_kind, kept, f"forest.{key}", value)
+    ran = tangy("policy", "--data", every_kind)
+    assert f"event {kept} (policy learnt) is damaged and left out: " in ran.stderr
+    assert "is not a count from 1 to" in ran.stderr and "Traceback" not in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "times", "told"),
+    [
+        ("demonstrations", 1000, "names a demonstration twice"),
+        ("rows", 1000, "has two rows for a situation"),
+        ("name", 1_500_000, "its body is too long"),
+    ],
+)
+def test_a_policy_with_huge_lists_or_words_is_left_out(
+    every_kind: Path, tangy: Tangy, key: str, times: int, told: str
+) -> None:
+    kept = seqs(every_kind, "policy learnt")[-1]
+    with closing(sqlite3.connect(every_kind / "tangy.db")) as db:
+        sql = "SELECT body FROM event WHERE seq = ?"
+        body = json.loads(db.execute(sql, (kept,)).fetchone()[0])
+    body[key] = body[key] * times
+    change(every_kind, "UPDATE event SET body = ? WHERE seq = ?", json.dumps(body), kept)
+    for verb in ("policy", "play"):
+        ran = tangy(verb, *(["--headless"] if verb == "play" else []), "--data", every_kind)
+        assert f"event {kept} (policy learnt) is damaged and left out: " in ran.stderr
+        assert told in ran.stderr and "Traceback" not in ran.stderr
 
 
 def test_a_kind_that_is_not_known_is_named(every_kind: Path, tangy: Tangy) -> None:

@@ -125,6 +125,7 @@ def _tell_of_people(workspace: Workspace) -> None:
 def _rehearse(workspace: Workspace) -> None:
     store: Store = workspace.store
     append_body(store, EventsLost, {"first": 1, "last": 1})
+    store.accept_losses()
     rounds = (
         AnsweredRound(
             1, "voice-dead", "no voice", "go on", ("a",), "voice-dead", "go on", 3.0, None, None
