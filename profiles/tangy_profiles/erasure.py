@@ -50,6 +50,10 @@ _HTML = re.compile(
     r"|(?P<tag><[^<>]*>)|(?P<text>[^<]+|<)",
     re.I | re.S,
 )
+_HEARD = (
+    rb'("target":"%b"(?:(?!"heard":|\dT\d\d:).){0,4000}"heard":")((?:[^"\\\x00-\x1f]|\\.)*)(?=")'
+)
+"""What was heard for a person, in the bytes of a log, before the time of another event."""
 _SHOWN = re.compile(
     r"""(?i)\b(title|alt|aria-label|content|value|label)(\s*=\s*)("[^"]*"|'[^']*')"""
 )
@@ -65,6 +69,7 @@ class NameEraser:
         *,
         said: Iterable[str] = (),
         but: Collection[str] = (),
+        commands: Collection[str] = (),
     ) -> None:
         """Learn what to look for.
 
@@ -73,9 +78,14 @@ class NameEraser:
             stand_in: what is put in its place.
             said: how the names stand where they were said.
             but: phrases and other people's names that stay as they are where they hold the name.
+            commands: the words of commands, in small letters. In a command for the person every
+                other word may be the name misspelt or misheard, and goes; none given: only those
+                that are part of the name.
         """
         self.names = tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
         self.stand_in = stand_in
+        self._commands = frozenset(commands)
+        self._heard = re.compile(_HEARD % re.escape(stand_in.encode()), re.S)
         plain = [name for name in self.names if not _is_small(name)]
         typed = {form for name in (*self.names, *said) for form in _forms(name)}
         anywhere = {form for name in plain for form in _forms(name)}
@@ -102,6 +112,10 @@ class NameEraser:
         folded = text.casefold()
         return any(anchor in folded for anchor in self._anchors)
 
+    def may_change(self, body: str) -> bool:
+        """Say at a glance whether the body of an event, as it is kept, may have to change."""
+        return self.may_hold(body) or f'"target":"{self.stand_in}"' in body
+
     def text(self, text: str) -> str:
         """Erase the name from running text, such as a report."""
         return self._put(self._running, text)
@@ -123,7 +137,8 @@ class NameEraser:
         left = {key: self._value(value, _kept_in(kind, key)) for key, value in body.items()}
         heard = left.get("heard")
         if left.get("target") == self.stand_in and isinstance(heard, str):
-            left["heard"] = self._parts.sub(self.stand_in, heard)
+            heard = self._parts.sub(self.stand_in, heard)
+            left["heard"] = _TOKEN.sub(self._command_word, heard) if self._commands else heard
         return left
 
     def is_left(self, body: Mapping[str, Any]) -> bool:
@@ -134,8 +149,11 @@ class NameEraser:
     def overwrite(self, data: bytes) -> bytes:
         """Overwrite the name in bytes that are no text, so that nothing moves.
 
-        It is looked for beside the person's id as well, as it stands in a table of names.
+        It is looked for beside the person's id as well, as it stands in a table of names, and in
+        commands for the person every word goes that is none of a command.
         """
+        if self._commands:
+            data = self._heard.sub(self._heard_bytes, data)
         for found in self._bytes:
             data = found.sub(lambda m: b"-" * len(m["name"]) if m["name"] else m[0], data)
         return data
@@ -149,6 +167,18 @@ class NameEraser:
         if isinstance(value, dict) and kept == "running":
             return {key: self._value(item, kept) for key, item in value.items()}
         return value
+
+    def _heard_bytes(self, match: re.Match[bytes]) -> bytes:
+        heard = match[2].decode(errors="surrogateescape")
+        left = _TOKEN.sub(
+            lambda m: m[0] if self._command_word(m) == m[0] else "-" * len(m[0].encode()), heard
+        )
+        return match[1] + left.encode(errors="surrogateescape")
+
+    def _command_word(self, match: re.Match[str]) -> str:
+        word = match[0].casefold()
+        stays = word in self._commands or word.isdecimal() or match[0] == self.stand_in
+        return match[0] if stays else self.stand_in
 
     def _shown(self, match: re.Match[str]) -> str:
         if match["text"]:

@@ -12,10 +12,24 @@ from tangy_profiles.records import EventRecord, kind
 
 @kind("events lost")
 class EventsLost(EventRecord):
-    """The newest events were gone when the log was opened: the first and the last of them."""
+    """Events were gone when the log was opened: the first and the last of them.
+
+    Where the last comes before the first, nobody can tell whether later ones were kept.
+    """
 
     first: Count
     last: Count
+    damaged: Sparse[bool] = False
+
+    @property
+    def unknown(self) -> bool:
+        """Whether nobody can tell how many are gone, or whether any are."""
+        return self.last < self.first
+
+
+@kind("loss accepted")
+class LossAccepted(EventRecord):
+    """Staff have seen which events are gone, and need not be told again."""
 
 
 @kind("renamed", about="person")

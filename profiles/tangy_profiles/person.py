@@ -22,6 +22,12 @@ def folded(name: str) -> str:
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
 
 
+def unaccented(name: str) -> str:
+    """Return a name as people type it who have no accents on their keyboard, in small letters."""
+    apart = unicodedata.normalize("NFKD", folded(name))
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
 def read_name(name: str, of: str = "A name") -> str:
     """Return a name that may be kept, without spaces around it; `of` says whose it is.
 

@@ -1,14 +1,16 @@
 """What lies in a data folder beside the log, and how a name is erased from it.
 
-Reports, lists and logs of processes are text; copies of the log, and damaged ones, are overwritten
-byte for byte. What is something else (sound, pictures, a PDF) is not changed.
+Only what Tangy wrote is changed: its pages and the logs of its processes are text; copies of the
+log, and damaged ones, are overwritten byte for byte. Files of others, also lists that were put
+there by a shell, stay as they are, and those that hold the name are named.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -17,12 +19,20 @@ from tangy_profiles.erasure import NameEraser
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given
 from tangy_profiles.log_file import FILE
+from tangy_profiles.process_log import LOGS
 from tangy_profiles.reading import plain
+from tangy_profiles.salvage import SALVAGE
 
 LARGEST = 64_000_000  # bytes of a file that is looked through
-PAGES = (".html", ".htm", ".svg", ".xhtml", ".xml")
 OURS = (FILE, f"{FILE}-wal", f"{FILE}-shm", "tangy.lock", "tangy.seal")
 """What the writer of the log sees to."""
+PAGE_MARK = '<meta name="generator" content="Tangy"/>'
+"""By this a page of ours is known."""
+
+_MARKS = (PAGE_MARK.encode(), b"<style>\n:root { color-scheme: light dark; --font: system-ui")
+"""The second: pages up to 0.6 had no mark."""
+_HEAD = 2000  # bytes of a page, in which its mark stands
+_COPY = re.compile(rf"{re.escape(FILE)}\.(?:damaged-|version-\d|copying)")
 
 
 class Erased(NamedTuple):
@@ -47,12 +57,16 @@ def erase_from_files(folder: Path, eraser: NameEraser) -> Erased:
         except TangyError:
             left.append(path)
             continue
-        after = _without(path, before, eraser)
-        holds = after != before or (_is_binary(before) and eraser.overwrite(before) != before)
+        erased = _erasing(folder, path, before, eraser)
+        after = erased(before) if erased else before
         if after != before and not path.is_symlink():
             _replace(path, after)
             changed.append(path)
-        elif holds or eraser.text(path.name) != path.name:
+        elif (
+            after != before
+            or (erased is None and _holds(before, eraser))
+            or eraser.text(path.name) != path.name
+        ):
             left.append(path)
     return Erased(tuple(changed), tuple(left))
 
@@ -68,15 +82,28 @@ def _files(folder: Path) -> Iterator[Path]:
                     yield path
 
 
-def _without(path: Path, content: bytes, eraser: NameEraser) -> bytes:
-    """Return the content of a file without the name."""
-    if path.name.startswith(f"{FILE}."):  # a copy of the log, or a damaged one
-        return eraser.overwrite(content)
+def _erasing(
+    folder: Path, path: Path, content: bytes, eraser: NameEraser
+) -> Callable[[bytes], bytes] | None:
+    """Return what erases the name from a file that Tangy wrote; None where others wrote it."""
+    is_copy = path.parent == folder and _COPY.match(path.name)
+    if is_copy or (path.parent.parent == folder and path.parent.name.startswith(SALVAGE)):
+        return eraser.overwrite
     if _is_binary(content):
-        return content
+        return None
+    if path.parent == folder and path.name in LOGS:
+        return lambda text: eraser.text(text.decode()).encode()
+    if any(mark in content[:_HEAD] for mark in _MARKS):
+        return lambda text: eraser.page(text.decode()).encode()
+    return None
+
+
+def _holds(content: bytes, eraser: NameEraser) -> bool:
+    """Say whether the name stands in a file of others."""
+    if _is_binary(content):
+        return eraser.overwrite(content) != content
     text = content.decode()
-    is_page = path.suffix.casefold() in PAGES
-    return (eraser.page(text) if is_page else eraser.text(text)).encode()
+    return eraser.text(text) != text
 
 
 def _is_binary(content: bytes) -> bool:

@@ -12,7 +12,7 @@ from tangy_profiles.person import Person
 from tangy_profiles.saved_files import erase_from_files
 from tangy_profiles.store import Store
 from tangy_tui.language.commands import Phrasebook
-from tangy_tui.language.words import spoken, words_of
+from tangy_tui.language.words import FILLERS, spoken, words_of
 
 
 class Forgotten(NamedTuple):
@@ -75,4 +75,8 @@ def name_eraser(
     stay += [phrase.said for phrase in table.all() if phrase.user is None]
     stay += [" ".join(phrase.words) for phrase in table.all() if phrase.user is None]
     stay += [text for b in activity.behaviours.values() for text in (b.name, b.question)]
-    return NameEraser(own, person.id, said=said, but=stay)
+    named = {word for name in own for word in words_of(name)}
+    of_people = {word for phrase in table.all() if phrase.user for word in phrase.words}
+    of_others = {word for text in stay for word in words_of(text)}
+    commands = (of_people - named) | of_others | FILLERS
+    return NameEraser(own, person.id, said=said, but=stay, commands=commands)

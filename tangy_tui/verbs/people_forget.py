@@ -13,7 +13,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE
 from tangy_profiles.reading import plain
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.forgetting import forgotten_lines, not_forgotten, what_goes
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import find_anybody
 from tangy_tui.verbs.opening import open_workspace
@@ -41,20 +41,21 @@ def people_forget(
 ) -> None:
     """Forget a person: name, how it is said, voice and face. It cannot be taken back.
 
-    The name also goes from what was typed or said, in the log and in the reports and other files
-    of the data folder. What worked with them is still counted, under an id that says nobody's
-    name. Copies in other folders are yours to delete.
+    The name also goes from what was typed or said, in the log and in Tangy's own reports and logs
+    in the data folder; other files there that hold it are named and stay as they are. What worked
+    with them is still counted, under an id that says nobody's name. Copies in other folders are
+    yours to delete.
     """
     with open_workspace(data, DEFAULT_ACTIVITY, MOST_PEOPLE) as workspace:
         known = find_anybody(workspace, person)
         if not yes and not _agreed(workspace, known):
-            print(plain(f"Nothing was forgotten: {known.name} is known as before."))
+            print(plain(not_forgotten(known)))
             raise typer.Exit(1)
         forgotten = workspace.forget(known, also or ())
         if as_json:
             print_json(_document(known, forgotten))
             return
-        for line in _lines(known, forgotten):
+        for line in forgotten_lines(known, forgotten):
             print(plain(line))
 
 
@@ -71,15 +72,9 @@ def _agreed(workspace: Workspace, person: Person) -> bool:
                 "add --yes."
             )
         )
-    called = person.name if person.name == person.id else f"{person.name} ({person.id})"
-    what_goes = (
-        f"This deletes who {called} is: the name, how it is said, their voice and their face. "
-        f"Where the name was typed or said, or stands in a file in {workspace.store.folder}, "
-        f"{person.id} takes its place. What worked with them stays, counted for {person.id}. "
-        "This cannot be taken back."
-    )
+    goes = plain(what_goes(person, workspace.store.folder))
     width = min(100, get_terminal_size().columns - 1)
-    print(fill(plain(what_goes), width, break_on_hyphens=False), file=sys.stderr)
+    print(fill(goes, width, break_on_hyphens=False), file=sys.stderr)
     return typer.confirm(plain(f"Forget {person.name}?"), default=False, err=True)
 
 
@@ -92,20 +87,3 @@ def _document(person: Person, forgotten: Forgotten) -> dict[str, object]:
         "files_changed": [str(path) for path in forgotten.files],
         "files_left": [str(path) for path in forgotten.files_left],
     }
-
-
-def _lines(person: Person, forgotten: Forgotten) -> list[str]:
-    lines = [f"{person.id}: name, how it is said, voice and face are forgotten."]
-    changed = []
-    if forgotten.events:
-        changed.append(counted(forgotten.events, "entry of the log", "entries of the log"))
-    if forgotten.files:
-        changed.append(counted(len(forgotten.files), "file"))
-    if changed:
-        there = listed(changed)
-        lines.append(f"{person.id} now stands in place of the name in {there}.")
-    if forgotten.events_left:
-        entries = counted(forgotten.events_left, "entry", "entries")
-        lines.append(f"The name stays in {entries} of the log where it is a teacher's.")
-    lines += [f"Look through this file yourself: {path}" for path in forgotten.files_left]
-    return lines

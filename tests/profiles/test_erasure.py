@@ -80,6 +80,16 @@ def test_of_a_body_only_words_change() -> None:
     assert NameEraser(["Delete"], "user2").body("demonstrations edited", chosen) == chosen
 
 
+def test_in_a_command_for_the_person_a_misspelt_name_goes_as_well() -> None:
+    eraser = NameEraser(["Rosa Weber"], "user2", commands={"go", "to", "please"})
+    for heard in ("Go to rsoa", "go to Frau Wbeer please", "go to roza 2", "go to réosa"):
+        body = {"behaviour": "go", "target": "user2", "heard": heard}
+        after = eraser.body("demonstration step", body)["heard"]
+        assert set(after.casefold().split()) <= {"go", "to", "please", "user2", "2"}
+        other = {**body, "target": "user1"}
+        assert eraser.body("demonstration step", other) == other
+
+
 def test_a_page_changes_where_it_is_read_and_not_in_its_tags_or_styles() -> None:
     page = '<style>.rosa{}</style><p class="rosa" title="Rosa">to rosa</p><rosa>'
     assert ROSA.page(page) == (

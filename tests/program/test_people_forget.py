@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pty
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from tangy_profiles.errors import StoreError
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Reply, Say
+from tangy_tui.pages.page import document
 from tests.support.append_body import append_body
 
 Tangy = Callable[..., CompletedProcess[str]]
@@ -59,10 +61,9 @@ def data(tmp_path: Path) -> Path:
             strategy="praise",
         )
     teach(folder, "greet everyone", "go to XANTHIPPE", "go to xanthippe rose")
-    (folder / "report.html").write_text(f"<p title='{NAME}'>{NAME}'s card, xanthippean</p>")
+    shown = f"<p title='{NAME}'>{NAME}'s card, xanthippean</p>"
+    (folder / "report.html").write_text(document("A report", f"of {NAME}", [shown]))
     (folder / "robot.log").write_text(f"said: {NAME}, I am coming to you.\n")
-    (folder / "sub").mkdir()
-    (folder / "sub" / "list.json").write_text(json.dumps({"said": "go to xanthippe"}))
     (folder / "tangy.db.damaged-20260101T000000Z").write_bytes(b"\x00\x9auser2Xanthippe\x00")
     return folder
 
@@ -78,7 +79,7 @@ def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, 
     done = tangy("people", "forget", NAME, "--yes", "--json", "--data", data)
     told = json.loads(done.stdout)
     assert (done.returncode, told["id"], told["name_left_in_events"]) == (0, "user2", 0)
-    assert told["events_changed"] == 2 and len(told["files_changed"]) == 4
+    assert told["events_changed"] == 2 and len(told["files_changed"]) == 3
     left = bytes_of(data).lower().replace(b"xanthippe rose", b"").replace(b"xanthippean", b"")
     assert b"xanthippe" not in left and b"z ae n th" not in left
     with Store.open(data) as store:
@@ -91,6 +92,42 @@ def test_after_forgetting_no_byte_of_the_data_folder_has_the_name(tangy: Tangy, 
         assert heard == ["greet everyone", "go to user2", "go to xanthippe rose"]
         with pytest.raises(StoreError, match="append only"):
             store._write("UPDATE event SET body = '{}'")
+
+
+def test_files_that_tangy_did_not_write_stay_and_are_named(tangy: Tangy, data: Path) -> None:
+    (data / "sub").mkdir()
+    others = {
+        data / "diary.txt": f"Lunch with {NAME} on Friday.",
+        data / "sub" / "list.json": json.dumps({"said": "go to xanthippe"}),
+        data / "sub" / "robot.log": f"said: {NAME}",
+        data / "page.html": f"<p>{NAME}</p>",
+        data / "tangy.db.notes": NAME,
+    }
+    for path, text in others.items():
+        path.write_text(text)
+    done = tangy("people", "forget", NAME, "--yes", "--json", "--data", data)
+    told = json.loads(done.stdout)
+    assert {path: path.read_text() for path in others} == others
+    assert set(told["files_left"]) == set(map(str, others))
+    assert len(told["files_changed"]) == 3
+
+
+def test_a_misspelt_name_goes_from_copies_of_the_log_as_well(tangy: Tangy, tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    with Store.open(folder) as store:
+        store.rename("user2", "Renée")
+    teach(folder, "greet everyone", "go to rennee", "go to front", "go to user 1")
+    for name in ("tangy.db.damaged-20260101T000000Z", "salvage-x/log"):
+        (folder / name).parent.mkdir(exist_ok=True)
+        shutil.copy(folder / "tangy.db", folder / name)
+    assert bytes_of(folder).count(b"rennee") == 3
+    done = tangy("people", "forget", "Renee", "--yes", "--json", "--data", folder)
+    assert done.returncode == 0 and json.loads(done.stdout)["files_left"] == []
+    left = bytes_of(folder)
+    assert b"rennee" not in left and "Renée".encode() not in left
+    assert left.count(b"go to user 1") == 3 and left.count(b"greet everyone") == 3
+    with closing(sqlite3.connect(folder / "salvage-x" / "log")) as db:
+        assert db.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
 
 
 def test_while_another_program_writes_nothing_is_half_forgotten(tangy: Tangy, data: Path) -> None:
@@ -144,7 +181,7 @@ def test_a_teacher_of_that_name_stays_and_it_says_so(tangy: Tangy, data: Path) -
     with Store.open(data) as store:
         store.rename("user2", "Ada")
     done = tangy("people", "forget", "Ada", "--yes", "--data", data)
-    assert "The name stays in 1 entry of the log where it is a teacher's." in done.stdout
+    assert "The name stays in 1 entry of the log, as a teacher's name." in done.stdout
     with Store.open(data, write=False) as store:
         begun = store.last("demonstration begun")
     assert begun is not None and begun.body["teacher"] == "Ada"

@@ -1,0 +1,46 @@
+"""What is said when a person is forgotten: what goes, what went, and what is left."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tangy_tui.text.numbers import counted, listed
+
+if TYPE_CHECKING:
+    from tangy_profiles.person import Person
+    from tangy_tui.interaction.forgetting import Forgotten
+
+
+def what_goes(person: Person, folder: Path) -> str:
+    """Say before a person is forgotten what is deleted, and what stays."""
+    called = person.name if person.name == person.id else f"{person.name} ({person.id})"
+    return (
+        f"This deletes who {called} is: the name, how it is said, their voice and their face. "
+        f"{person.id} replaces the name where it was typed or said, and in files that Tangy "
+        f"wrote in {folder}. "
+        f"What worked with them is kept for {person.id}. This cannot be taken back."
+    )
+
+
+def not_forgotten(person: Person) -> str:
+    """Say that a person is known as before."""
+    return f"Nothing was forgotten. Tangy knows {person.name} as before."
+
+
+def forgotten_lines(person: Person, forgotten: Forgotten) -> list[str]:
+    """Say what went, and where the name still stands."""
+    lines = [f"{person.id}: the name, how it is said, the voice and the face are forgotten."]
+    changed = []
+    if forgotten.events:
+        changed.append(counted(forgotten.events, "entry of the log", "entries of the log"))
+    if forgotten.files:
+        changed.append(counted(len(forgotten.files), "file"))
+    if changed:
+        there = listed(changed)
+        lines.append(f"{person.id} replaces the name in {there}.")
+    if forgotten.events_left:
+        entries = counted(forgotten.events_left, "entry", "entries")
+        lines.append(f"The name stays in {entries} of the log, as a teacher's name.")
+    lines += [f"Check this file yourself: {path}" for path in forgotten.files_left]
+    return lines
