@@ -72,6 +72,8 @@ class Activity:
     """How spoken words are matched, one of LISTENING."""
     pressing: tuple[str, ...] = ()
     """The strategies that are not used any more in a visit in which a person has refused."""
+    names_pressing: bool = False
+    """Whether the file says which strategies press people, or that none does."""
 
     @cached_property
     def unread(self) -> str:
@@ -246,6 +248,7 @@ def read_activity(path: Path) -> Activity:
             read_pronunciations(top.table("pronunciations", optional=True))
         ),
         listening=listening.choice("mode", LISTENING, LISTENING[0]),
+        names_pressing="pressing_strategies" in top,
         pressing=_pressing(top, strategies),
     )
     listening.close()

@@ -44,8 +44,25 @@ def check_activity(activity: Activity, robot: Robot, people: Sequence[Person]) -
     mistakes += [*_phrases(activity, phrasebook), *_reserved(activity, phrasebook)]
     mistakes += _fillers(activity, phrasebook)
     mistakes += _sounds(activity, phrasebook)
-    warnings = [*_stages(activity), *_unused(activity, phrasebook), *_near(activity, phrasebook)]
+    warnings = [
+        *_pressing(activity),
+        *_stages(activity),
+        *_unused(activity, phrasebook),
+        *_near(activity, phrasebook),
+    ]
     return CheckedFile(activity.source, tuple(map(plain, mistakes)), tuple(map(plain, warnings)))
+
+
+def _pressing(activity: Activity) -> Iterator[str]:
+    """Tell of ways of asking that may press people, where the file does not say which ones do."""
+    used = [
+        s for s in activity.strategies if s not in (*activity.pressing, activity.plain_strategy)
+    ]
+    if used and not activity.names_pressing:
+        yield (
+            f"{activity.source}: pressing_strategies is not there: after a refusal Tangy still uses"
+            f" {', '.join(used)}. Name those that press people, or [] if none does."
+        )
 
 
 def _stages(activity: Activity) -> Iterator[str]:

@@ -19,6 +19,7 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.monitoring.rules import check_rules
 from tangy_tui.speech.activity_check import CheckedFile, check_activity
 from tangy_tui.speech.lexicon import Lexicon
+from tangy_tui.text.rules import together_words
 
 Tangy = Callable[..., CompletedProcess[str]]
 SHIPPED = shipped_activities()["bingo"].read_text(encoding="utf-8")
@@ -129,7 +130,7 @@ def test_what_only_comes_of_two_kinds_together_can_be_brought_about(tangy: Tangy
     assert together == {"mute": ["voice-dead", "screen-dead"]}
     assert not {"mute", "unknown-situation"} & set(rules["rules_without_kind"])
     said = tangy("activity", "check").stdout
-    assert "Only together do voice-dead and screen-dead bring about: mute." in said
+    assert together_words(["voice-dead", "screen-dead"], "mute") in said
 
 
 @pytest.mark.parametrize(
@@ -179,6 +180,15 @@ def test_a_phrase_that_means_something_else_is_told(tmp_path: Path) -> None:
     assert all("behaviours[joke].phrases" in line for line in found)
     assert all("is heard as 'greeting'" in line for line in found)
     assert not warnings(tmp_path, SHIPPED)
+
+
+def test_ways_of_asking_that_may_press_people_are_told_where_none_is_named(tmp_path: Path) -> None:
+    (line,) = [line for line in SHIPPED.splitlines() if line.startswith("pressing_strategies")]
+    guilt = SHIPPED.replace(line, "").replace("scarcity", "guilt")
+    (told,) = warnings(tmp_path, guilt)
+    assert "pressing_strategies" in told and "guilt" in told
+    assert not warnings(tmp_path, SHIPPED.replace("scarcity", "guilt"))
+    assert not warnings(tmp_path, SHIPPED.replace(line, "pressing_strategies = []"))
 
 
 def test_a_behaviour_that_nobody_can_ask_for_is_told(tmp_path: Path) -> None:
