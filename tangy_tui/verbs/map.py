@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -14,7 +14,9 @@ from tangy_profiles.reading import plain
 from tangy_tui.verbs.common import Ascii, Data, Json, Seed, print_json
 
 if TYPE_CHECKING:
+    from tangy_hw.navigation.agreement import Verdict
     from tangy_hw.navigation.occupancy import OccupancyMap
+    from tangy_hw.navigation.revisits import Revisits
 
 YAML = (".yaml", ".yml")
 
@@ -66,7 +68,8 @@ def draw_map(
     elif source is not None and source.suffix in YAML:
         map_, found = _of_file(source)
     elif source is not None:
-        map_, found = _of_log(source, resolution, match, tell=not as_json and sys.stderr.isatty())
+        tell = not as_json and sys.stderr.isatty()
+        map_, found = _of_log(source, resolution, match, png, tell=tell)
     width, depth = map_.size
     found |= {
         "resolution": map_.resolution,
@@ -100,11 +103,12 @@ def _of_file(path: Path) -> tuple[OccupancyMap, dict[str, Any]]:
 
 
 def _of_log(
-    path: Path, resolution: float, match: bool, *, tell: bool
+    path: Path, resolution: float, match: bool, png: Path | None, *, tell: bool
 ) -> tuple[OccupancyMap, dict[str, Any]]:
-    from tangy_hw.navigation.agreement import TORN, contradicted
+    from tangy_hw.navigation.agreement import contradicted, verdict
     from tangy_hw.navigation.alignment import aligned
     from tangy_hw.navigation.mapping import Placed, map_of_scans, sparse
+    from tangy_hw.navigation.revisits import revisits
     from tangy_hw.navigation.scan_log import read_log
 
     logged = read_log(path)
@@ -118,16 +122,32 @@ def _of_log(
     if match:
         scans = aligned(scans, done)
     map_ = map_of_scans(scans, resolution)
-    share = contradicted(scans, map_)
-    if match and share > TORN:
-        raise TangyError(
-            plain(f"{path}: the map does not close. After matching, {share:.0%} of the beams ")
-            + f"contradict it (at most {TORN:.0%} in a map that closed), so walls stand in it "
-            "twice. Give a log of a smaller area, or one that a mapping program has corrected, "
-            "without --match."
-        )
+    share, found = contradicted(scans, map_), revisits(scans)
+    closes = verdict(share, found)
+    if match and closes in ("torn", "unknown"):
+        _written(map_, None, png)
+        _refuse(path, closes, share, found, "" if png is None else png.name)
     document = {"source": "log", "file": str(path), "scans": len(logged), "used": len(scans)}
-    return map_, {**document, "matched": match, "contradicted": round(share, 4)}
+    loops = {"verdict": closes, "loops_closed": found.closed, "loops_torn": found.torn}
+    return map_, {**document, "matched": match, "contradicted": round(share, 4), **loops}
+
+
+def _refuse(path: Path, closes: Verdict, share: float, found: Revisits, picture: str) -> NoReturn:
+    """Say why a matched map is not taken, and which picture shows it.
+
+    Raises:
+        TangyError: always.
+    """
+    from tangy_hw.navigation.agreement import TORN
+    from tangy_tui.text import maps
+
+    if closes == "unknown":
+        why = maps.unknown_words()
+    elif found.tears:
+        why = maps.apart_words(found.off, found.torn, found.closed)
+    else:
+        why = maps.contradicted_words(share, TORN)
+    raise TangyError(maps.refusal(str(path), why, picture))
 
 
 def _written(map_: OccupancyMap, yaml: Path | None, png: Path | None) -> list[str]:
@@ -158,6 +178,7 @@ def _show(map_: OccupancyMap, found: dict[str, Any], ascii_only: bool) -> None:
     if "scans" in found:
         told += f"; {found['used']} of {found['scans']} scans drawn"
         told += f"; {found['contradicted']:.0%} of the beams contradict the map"
+        told += f"; loops: {found['loops_closed']} closed, {found['loops_torn']} torn"
     print(f"{told}.")
     if found["written"]:
         print(plain("Written: " + ", ".join(found["written"])))

@@ -7,6 +7,7 @@ pass looks through the wall that the other saw, and sees its own where the other
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -14,6 +15,7 @@ from scipy.ndimage import distance_transform_edt
 from tangy_hw.navigation.mapping import Placed
 from tangy_hw.navigation.occupancy import OCCUPIED, OccupancyMap
 from tangy_hw.navigation.poses import Floats, endpoints, placed
+from tangy_hw.navigation.revisits import Revisits
 
 TORN = 0.15
 """The share of contradicted beams from which a map counts as torn.
@@ -23,11 +25,28 @@ not .23 at least. Of Freiburg's building 079, on which nothing was chosen, the c
 and its scans matched anew, which tears it, .30.
 """
 
+UNSURE = 0.025
+"""The share from which on a map whose loops nothing confirms is not believed to be closed."""
+
 REACH = 20.0  # metres beyond which beams end too far from one another
 NEAR = 0.2  # metres from a beam's end within which a wall must stand
 SHORT = 0.3  # metres before its end within which a beam may graze a wall
 STEP = 0.1  # metres between the points of a beam that are looked at
 MOST_SCANS = 400  # that are looked at, evenly
+
+
+Verdict = Literal["closed", "open", "torn", "unknown"]
+"""closed: it came back to places, and its poses say so; open: it never came back; torn: it came
+back, and its poses say otherwise; unknown: nobody can tell which."""
+
+
+def verdict(share: float, found: Revisits) -> Verdict:
+    """Say whether a map closes, from the share of beams that contradict it and from its loops."""
+    if share > TORN or found.tears:
+        return "torn"
+    if found.closed:
+        return "closed"
+    return "unknown" if found.unconfirmed and share > UNSURE else "open"
 
 
 def contradicted(scans: Sequence[Placed], map_: OccupancyMap) -> float:

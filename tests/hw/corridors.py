@@ -1,0 +1,58 @@
+"""Logs of corridors: rings, and two rings that share one, driven by wheels that may slip."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tangy_hw.device_protocols import Pose, Twist
+from tangy_hw.navigation.mapping import Placed, sparse
+from tangy_hw.navigation.poses import compose
+from tests.hw.raycast import Segments, Wheels, driven, look, sides, tour
+
+Way = list[tuple[float, float]]
+
+
+class Slip(NamedTuple):
+    """From which share of the way on, and for which share of it, wheels count nothing."""
+
+    begins: float
+    lasts: float
+
+
+def ring(side: float, width: float, beyond: float) -> tuple[Segments, Way]:
+    """Return the walls of a square corridor, and a way around it that ends beyond its start."""
+    near, far = width / 2, side - width / 2
+    walls = sides((0, 0, side, side), (width, width, side - width, side - width))
+    start = (side / 2, near)
+    around = [(far, near), (far, far), (near, far), (near, near), start]
+    return walls, [start, *around, (min(side / 2 + beyond, far), near)]
+
+
+def two_rings(side: float, width: float) -> tuple[Segments, Way]:
+    """Return the walls of two square corridors that share one, and a way around both."""
+    near, far, middle = width / 2, side - width / 2, side - width / 2
+    right = 2 * side - width - near
+    walls = sides(
+        (0, 0, 2 * side - width, side),
+        (width, width, side - width, side - width),
+        (side, width, 2 * side - 2 * width, side - width),
+    )
+    first = [(middle, near), (middle, far), (near, far), (near, near), (middle, near)]
+    second = [(right, near), (right, far), (middle, far), (middle, near), (middle, side / 2)]
+    return walls, first + second
+
+
+def logged(walls: Segments, way: Way, seed: int, slip: Slip | None = None) -> list[Placed]:
+    """Drive along a way; return the scans at the poses that the wheels counted."""
+    rng = np.random.default_rng(seed)
+    pose = start = Pose(*way[0], 0.0)
+    wheels, commands, scans = Wheels(rng, 1.01, 0.03), tour(way), []
+    for number, twist in enumerate(commands):
+        pose, at = driven(pose, twist, 0.1), number / len(commands)
+        slips = slip is not None and slip.begins <= at < slip.begins + slip.lasts
+        counted = wheels.turn(Twist(0.0, twist.turn) if slips else twist, 0.1)
+        if number % 6 == 0:
+            scans.append(Placed(look(walls, pose, rng), compose(start, counted)))
+    return sparse(scans)

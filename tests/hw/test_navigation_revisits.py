@@ -1,0 +1,61 @@
+"""A loop that is torn is told from one that closes, also where no beam contradicts the map."""
+
+from __future__ import annotations
+
+import pytest
+
+from tangy_hw.navigation.agreement import TORN, contradicted, verdict
+from tangy_hw.navigation.alignment import aligned
+from tangy_hw.navigation.mapping import Placed, map_of_scans
+from tangy_hw.navigation.revisits import Revisits, revisits
+from tests.hw.corridors import Slip, logged, ring, two_rings
+
+SLIP = Slip(0.3, 0.06)
+
+
+def judged(scans: list[Placed]) -> tuple[float, Revisits]:
+    found = aligned(scans)
+    return contradicted(found, map_of_scans(found, 0.1)), revisits(found)
+
+
+@pytest.mark.parametrize(("side", "seed"), [(12.0, 31), (18.0, 32)])
+def test_a_ring_corridor_closes_unless_its_wheels_slipped(side: float, seed: int) -> None:
+    walls, way = ring(side, 2.0, 4.0)
+    share, found = judged(logged(walls, way, seed))
+    assert verdict(share, found) == "closed" and found.closed >= 3
+    share, found = judged(logged(walls, way, seed, SLIP))
+    assert share < TORN, "the copies of the corridor lie apart"
+    assert verdict(share, found) == "torn" and found.off > 1.0
+
+
+def test_of_two_rings_one_that_is_torn_is_enough() -> None:
+    walls, way = two_rings(11.0, 2.0)
+    assert verdict(*judged(logged(walls, way, 33))) == "closed"
+    assert verdict(*judged(logged(walls, way, 33, Slip(0.6, 0.06)))) == "torn"
+
+
+def test_who_never_comes_back_closes_nothing() -> None:
+    walls, way = ring(14.0, 2.0, 0.0)
+    share, found = judged(logged(walls, way[:3], 34))
+    assert (found.closed, found.torn, found.crossed) == (0, 0, 0)
+    assert verdict(share, found) == "open"
+
+
+@pytest.mark.parametrize(
+    ("share", "found", "says"),
+    [
+        (0.01, Revisits(), "open"),
+        (0.2, Revisits(closed=9), "torn"),
+        (0.01, Revisits(closed=3, torn=3), "closed"),
+        (0.01, Revisits(closed=3, torn=4), "torn"),
+        (0.01, Revisits(closed=9, torn=3, last=2), "torn"),
+        (0.05, Revisits(crossed=5), "unknown"),
+        (0.01, Revisits(crossed=5), "open"),
+    ],
+)
+def test_what_speaks_for_a_loop_and_what_against(share: float, found: Revisits, says: str) -> None:
+    assert verdict(share, found) == says
+
+
+def test_of_nothing_nothing_is_said() -> None:
+    assert revisits([]) == Revisits()
