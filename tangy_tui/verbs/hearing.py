@@ -62,9 +62,22 @@ class Listening:
             raise TangyError("There is nothing to listen to: name a microphone with --mic.")
 
     def ears(
-        self, workspace: Workspace, phrasebook: Phrasebook, who: str, *, sound: int
+        self,
+        workspace: Workspace,
+        phrasebook: Phrasebook,
+        who: str,
+        *,
+        sound: int,
+        spoken: bool = False,
     ) -> SpeechInput | None:
-        """Open the ears, if any are wanted; `sound` is the descriptor that - stands for.
+        """Open the ears, if any are wanted.
+
+        Args:
+            workspace: whose settings and recordings they have.
+            phrasebook: what can be said.
+            who: the teacher who speaks.
+            sound: the descriptor that - stands for.
+            spoken: a recording is heard as if somebody said it now.
 
         Raises:
             TangyError: the microphone cannot be used, or nobody can be asked for consent.
@@ -83,6 +96,7 @@ class Listening:
             recorder=_recorder(workspace, who) if self.record else None,
             hands_free=self.hands_free,
             answers=self.answers,
+            spoken=spoken,
             stdin=sound,
             folder=workspace.store.folder,
         )

@@ -33,6 +33,10 @@ class TestNames:
         assert find_camera(str(tmp_path / "video.avi")).kind == "file"
         assert not find_camera(str(tmp_path)).live
 
+    def test_a_file_in_memory_is_no_device_although_it_stands_under_dev(self) -> None:
+        with pytest.raises(CameraError, match="there is no such file"):
+            find_camera("/dev/shm/nowhere/video.avi")  # noqa: S108 - it is not there
+
     def test_a_password_is_not_shown(self) -> None:
         source = find_camera("rtsp://staff:secret@10.0.0.7/1")
         assert source.name == "rtsp://10.0.0.7/1"

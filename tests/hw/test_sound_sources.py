@@ -17,7 +17,7 @@ import pytest
 from tangy_hw.audio.arecord import LocalMicrophone
 from tangy_hw.audio.format_sniffing import odd_kind
 from tangy_hw.audio.piped_source import open_standard_input
-from tangy_hw.audio.source import Source, WholeSamples
+from tangy_hw.audio.source import Recording, Source, WholeSamples
 from tangy_hw.audio.sources import open_source
 from tangy_hw.audio.wav import RATE, SoundError
 from tests.hw.sounds import bursts, pcm, tone, wav, written
@@ -40,6 +40,20 @@ class TestNames:
         source = open_source(str(path))
         assert (source.name, source.live) == (str(path), False)
         assert await heard(source) == SOUND
+
+    async def test_a_recording_is_spoken_piece_by_piece_once_it_is_begun(self) -> None:
+        source = Recording("two.wav", SOUND[:9_600]).spoken()
+        assert source.live
+        first = asyncio.ensure_future(anext(source))
+        done, _ = await asyncio.wait({first}, timeout=0.1)
+        assert not done
+        source.begin()
+        began = asyncio.get_running_loop().time()
+        pieces = [await first, *[piece async for piece in source]]
+        await source.close()
+        assert b"".join(pieces) == SOUND[:9_600]
+        assert max(map(len, pieces)) <= RATE // 10 * 2
+        assert asyncio.get_running_loop().time() - began > 0.25  # of .3 s
 
     @pytest.mark.parametrize(
         ("name", "word"),

@@ -6,6 +6,7 @@ import json
 import shutil
 import threading
 import time
+import wave
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -139,3 +140,31 @@ def test_who_says_stop_the_robot_while_it_drives_stops_its_wheels_at_once(
     took = wheels.still_since() - (began + last)
     assert took <= STOPS
     assert wheels.speed < 1e-3
+
+
+def test_a_recording_is_heard_as_if_it_were_said_once_the_robot_is_on(
+    folder: Path, family: Family, tmp_path: Path
+) -> None:
+    said = tmp_path / "said.wav"
+    speech = Voices(tmp_path).say("stop the robot", "slt")
+    with wave.open(str(said), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(RATE)
+        file.writeframes(bytes(12 * 2 * RATE) + speech)
+    command = [TANGY, "live", "--bench", "--seed", "5", "--data", str(folder)]
+    terminal = Terminal(
+        [*command, "--hands-free", "--mic", str(said)],
+        columns=110,
+        lines=40,
+        environment=family.environment,
+    )
+    try:
+        terminal.until("Steps")
+        began = time.monotonic()
+        terminal.until("STOPPED")
+        terminal.until("Heard: stop the robot")
+        assert time.monotonic() - began > 9  # s: not read out before it was said
+        terminal.until("The recording is over.")
+    finally:
+        terminal.end()

@@ -12,6 +12,9 @@ from collections.abc import AsyncGenerator, AsyncIterator, Callable
 
 Chunks = AsyncGenerator[bytes, None]
 
+BYTES_PER_SECOND = 2 * 16_000
+SPOKEN_PIECE = BYTES_PER_SECOND // 20  # bytes; 50 ms, as a microphone hands them on
+
 
 def _nobody(sentence: str) -> None:
     """Tell nobody."""
@@ -29,6 +32,8 @@ class Source:
         """As it was given: FILE.wav, -, arecord, socket."""
         self.live = live
         """Whether somebody is speaking now, rather than on a recording."""
+        self.recorded = not live
+        """Whether it was spoken at another time."""
         self.tell: Callable[[str], None] = _nobody
         """Is called with a sentence when something must be said about the source."""
         self._taken: asyncio.Queue[bytes] = asyncio.Queue(1)
@@ -67,6 +72,9 @@ class Source:
             await asyncio.wait({self._task})
         self._release()
 
+    def begin(self) -> None:
+        """Begin to speak, where that is waited for: nowhere but with a recording."""
+
     def _sound(self) -> Chunks:
         """Give the sound; each kind of source does it in its own way."""
         raise NotImplementedError
@@ -93,8 +101,35 @@ class Recording(Source):
         super().__init__(name, live=False)
         self._pcm = pcm
 
+    def spoken(self) -> SpokenRecording:
+        """Return it as somebody would say it now."""
+        return SpokenRecording(self.name, self._pcm)
+
     async def _sound(self) -> Chunks:
         yield self._pcm
+
+
+class SpokenRecording(Source):
+    """A recording that comes as fast as it was spoken, once it is begun."""
+
+    def __init__(self, name: str, pcm: bytes) -> None:
+        super().__init__(name, live=True)
+        self.recorded = True
+        self._pcm = pcm
+        self._begun = asyncio.Event()
+
+    def begin(self) -> None:
+        """Begin to speak."""
+        self._begun.set()
+
+    async def _sound(self) -> Chunks:
+        await self._begun.wait()
+        clock = asyncio.get_running_loop().time
+        began = clock()
+        for place in range(0, len(self._pcm), SPOKEN_PIECE):
+            piece = self._pcm[place : place + SPOKEN_PIECE]
+            await asyncio.sleep(began + (place + len(piece)) / BYTES_PER_SECOND - clock())
+            yield piece
 
 
 class WholeSamples:

@@ -20,17 +20,25 @@ __all__ = ["SOCKET_NAME", "Source", "open_source"]
 SOCKET_NAME = "mic.sock"  # in the data folder
 
 
-def open_source(name: str, *, stdin: int = 0, folder: Path | None = None) -> Source:
+def open_source(
+    name: str, *, stdin: int = 0, folder: Path | None = None, spoken: bool = False
+) -> Source:
     """Open a source by its name.
 
     Args:
         name: one of those above.
         stdin: the file descriptor that `-` stands for.
         folder: the data folder, which `socket` is in.
+        spoken: a recording comes as if somebody said it now (see `Recording.spoken`).
 
     Raises:
         SoundError: it cannot be used; one sentence that says why.
     """
+    source = _opened(name, stdin, folder)
+    return source.spoken() if spoken and isinstance(source, Recording) else source
+
+
+def _opened(name: str, stdin: int, folder: Path | None) -> Source:
     kind, colon, rest = name.partition(":")
     if name == "arecord" or (kind == "arecord" and rest):
         from tangy_hw.audio.arecord import LocalMicrophone

@@ -76,7 +76,7 @@ def find_camera(
     if "://" in name:
         return CameraSource(_without_password(name), "stream", _stream(name))
     path = Path(name)
-    if re.match(r"/dev/", name):
+    if re.match(r"/dev/(?!shm/)", name):  # in /dev/shm are files
         return CameraSource(shown, "device", name)
     try:
         is_folder, is_file, there = path.is_dir(), path.is_file(), path.exists()

@@ -349,14 +349,11 @@ class LiveRobot:
         if self.watch.tick():
             self._was_frozen()
         odometry, scan = base.odometry, laser.scan
-        command = STILL
+        command, seen = STILL, None if scan is None else scan.value
         if odometry is not None:
-            seen = None if scan is None else scan.value
             command = self.navigator.tick(odometry.value, seen, passed)
             self._evidence.note()
-        by_hand = self.hand.command(
-            None if scan is None else scan.value, now, self.navigator.unseen
-        )
+        by_hand = self.hand.command(seen, now, self.navigator.unseen)
         command = command if by_hand is None else by_hand
         self._mind()
         if self.hazard:
@@ -377,6 +374,8 @@ class LiveRobot:
         """Look for hazards between ticks, too: a robot that drives has no time to lose."""
         while True:
             await asyncio.sleep(WATCH_SECONDS)
+            if self.watch.overdue and self.watch.tick():  # that explains what else is amiss
+                self._was_frozen()
             self._mind()
             if (self._wheels.driven != STILL or self.navigator.drives) and self.hazard:
                 self._stand()
