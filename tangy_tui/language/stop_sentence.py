@@ -14,17 +14,17 @@ from collections.abc import Collection, Iterable
 from functools import cache
 
 from tangy_tui.language.stop_patterns import (
-    ALARM,
     ASKS_FIRST,
-    BEFORE,
     CRIES,
-    CRY,
     ENDS_A_THOUGHT,
     FORBIDS,
     NO_CRY_AFTER,
     NO_CRY_BEFORE,
-    OWN_WORDS,
-    SENTENCE,
+    alarm,
+    before,
+    cry,
+    own_words,
+    sentence,
 )
 from tangy_tui.language.words import LONGEST_TEXT, likeness, run_together, words_of
 
@@ -36,7 +36,16 @@ STOPS = (
     *("robot stop", "make the robot stop", "emergency stop", "emergency", "stop the game"),
     *("stop this game", "stop the game now", "make it stop", "stop right away", "stop at once"),
     *("stop immediately", "stop this", "stop everything", "stop driving", "stop where you are"),
-    *("stop the machine", "stand still", "freeze"),
+    *("stop the machine", "stand still", "freeze", "halt the robot", "stop that machine"),
+    *("stop that thing", "stop this thing", "stop it right there", "stop it now", "stop it please"),
+    *("get it to stop", "tell it to stop", "get the robot to stop", "tell the robot to stop"),
+    *("i want it to stop", "i want the robot to stop", "i want you to stop"),
+    *("can you stop the robot", "could you stop that", "would you stop it please"),
+    *("can we stop now", "can we stop the game", "we want to stop", "you have to stop"),
+    *("somebody stop it", "somebody stop the robot", "everybody stop", "no no stop"),
+    *("tangy stop moving", "stop moving now", "stop turning", "stop rolling", "stop going"),
+    *("switch it off", "switch the robot off", "turn it off", "turn the robot off"),
+    *("do not move", "do not come closer", "emergency stop now", "tangy stand still"),
 )
 """What is listened for in the first place: as it is said most, with the words that it takes."""
 
@@ -64,6 +73,11 @@ def stops(text: str, game: Collection[str] = ()) -> bool:
     return aimed or whole.replace(" ", "") in _run_together()
 
 
+def prepare() -> None:
+    """Make ready for the first sentence, which takes a tenth of a second, before somebody waits."""
+    stops(STOPS[0])
+
+
 def stops_whatever_follows(words: str) -> bool:
     """Say whether what was said so far stops the robot, and no word after it can change that."""
     return bool(_CLEAR.search(words)) and stops(words)
@@ -74,9 +88,9 @@ def _is_aimed(clause: str) -> bool:
     seen, reached = {0}, [0]
     while reached:
         at = reached.pop()
-        if SENTENCE.fullmatch(clause, at):
+        if sentence().fullmatch(clause, at):
             return True
-        ends = {found.end() for found in (p.match(clause, at) for p in BEFORE) if found}
+        ends = {found.end() for found in (p.match(clause, at) for p in before()) if found}
         reached += ends - seen
         seen |= ends
     return _is_two_words(clause) or _ends_in_a_cry(clause)
@@ -94,17 +108,17 @@ def _is_two_words(clause: str) -> bool:
 
 def _ends_in_a_cry(clause: str) -> bool:
     """Say whether a clause ends in a cry to stop, of which what comes before says nothing."""
-    cry = CRY.fullmatch(clause)
-    if cry is None or ASKS_FIRST.match(clause):
+    found = cry().fullmatch(clause)
+    if found is None or ASKS_FIRST.match(clause):
         return False
-    before = cry["before"].split(" ")
-    if cry["what"] and before[-1] in ENDS_A_THOUGHT and not FORBIDS.search(cry["before"]):
+    words = found["before"].split(" ")
+    if found["what"] and words[-1] in ENDS_A_THOUGHT and not FORBIDS.search(found["before"]):
         return True
-    named = cry["what"] not in (None, " it")
-    if before[-1] in NO_CRY_AFTER or (not named and {"a", "an"}.intersection(before[-3:])):
+    named = found["what"] not in (None, " it")
+    if words[-1] in NO_CRY_AFTER or (not named and {"a", "an"}.intersection(words[-3:])):
         return False
-    asks = len(before) > 2 and before[-1] == "please" and before[-2] not in NO_CRY_AFTER
-    return asks or bool(cry["what"]) or ALARM.fullmatch(cry["before"]) is not None
+    asks = len(words) > 2 and words[-1] == "please" and words[-2] not in NO_CRY_AFTER
+    return asks or bool(found["what"]) or alarm().fullmatch(found["before"]) is not None
 
 
 def _joined(words: Iterable[str]) -> str:
@@ -117,7 +131,7 @@ def _mended(clause: str, game: Collection[str]) -> str:
 
 
 def _mend(word: str, game: Collection[str]) -> str:
-    if word in OWN_WORDS:
+    if word in own_words():
         return word
     if word in game:
         return "game"

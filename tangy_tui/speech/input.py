@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from tangy_hw.audio.meter import Meter
+from tangy_hw.audio.source import SpokenRecording
 from tangy_hw.audio.sources import open_source
 from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
@@ -17,7 +18,7 @@ from tangy_tui.speech.evidence import LONGEST, RATE, USUAL, AcousticEvidence, Ev
 from tangy_tui.speech.lexicon import Lexicon
 from tangy_tui.speech.recogniser import Recogniser, SpeechUnavailable
 from tangy_tui.speech.recordings import Recorder
-from tangy_tui.speech.understanding import answer, understand, wanted
+from tangy_tui.speech.understanding import commanded, replied, sounds_of, understand, wanted
 from tangy_tui.speech.utterance import LONGEST_TALK, Utterance
 
 MOST_TALK = LONGEST_TALK + 0.5  # s, by the clock: also where no more sound comes
@@ -47,6 +48,7 @@ class SpeechInput:
         settings: EvidenceSettings = USUAL,
         hands_free: bool = False,
         answers: bool = False,
+        spoken: bool = False,
         recorder: Recorder | None = None,
         stdin: int = 0,
         folder: Path | None = None,
@@ -58,6 +60,7 @@ class SpeechInput:
             phrasebook: what can be said.
             settings: how it is listened with this microphone.
             hands_free: listen all the time, and find out where an utterance begins and ends.
+            spoken: a recording is heard as if somebody said it now, from `begin` on; hands-free.
             answers: also hear yes and no while a question is open.
             recorder: keeps what is heard, with the teacher's consent.
             stdin: the file descriptor that `-` stands for.
@@ -66,7 +69,8 @@ class SpeechInput:
         Raises:
             SoundError: the source cannot be used.
         """
-        self._source = open_source(source, stdin=stdin, folder=folder)
+        self._source = open_source(source, stdin=stdin, folder=folder, spoken=spoken)
+        hands_free |= isinstance(self._source, SpokenRecording)
         self.live = self._source.live
         """Whether somebody is speaking right now, rather than on a recording."""
         self.hands_free = hands_free
@@ -119,6 +123,10 @@ class SpeechInput:
         spoken = not self.words and not self.hands_free  # who was heard spoke loudly enough
         return self.meter.words(speaking=spoken) if self.live and listens else ""
 
+    def begin(self) -> None:
+        """Let a recording that is heard as if it were said now begin."""
+        self._source.begin()
+
     def talk(self) -> None:
         """Push to talk: begin to listen, or end what is being said."""
         if not self.live or self.hands_free or not self._free.is_set():
@@ -162,7 +170,7 @@ class SpeechInput:
     def understand_by(self, phrasebook: Phrasebook) -> None:
         """Listen for these phrases, and match what is heard to them, from the next utterance on."""
         before, self._phrasebook = self._phrasebook, phrasebook
-        if _sounds_of(before) != _sounds_of(phrasebook):
+        if sounds_of(before) != sounds_of(phrasebook):
             self._renew = True
             self._talks.set()
 
@@ -221,7 +229,9 @@ class SpeechInput:
                 await pump
             if self._closed:
                 return
-            self._told("The microphone has closed." if self.live else "The recording is over.")
+            self._told(
+                "The recording is over." if self._source.recorded else "The microphone has closed."
+            )
         except SpeechUnavailable:
             if not self._closed:
                 raise
@@ -295,7 +305,8 @@ class SpeechInput:
             if evidence is None:
                 continue
             self.sound = recogniser.said
-            if not utterance.dropped or self._stops(evidence):  # that counts, whatever came between
+            command = understand(evidence, self._phrasebook, self._settings)
+            if not utterance.dropped or isinstance(command, StopCommand):  # whatever came between
                 yield evidence
             elif evidence.words and self._asking:
                 self._told(f"I heard {evidence.words!r}, but a question came between.")
@@ -360,20 +371,14 @@ class SpeechInput:
         if self._utterance is not None and self._utterance.over:
             self._now("thinking")
 
-    def _stops(self, evidence: AcousticEvidence) -> bool:
-        return isinstance(understand(evidence, self._phrasebook, self._settings), StopCommand)
-
     def _understand(self, evidence: AcousticEvidence) -> Heard | None:
+        heard: Heard | None
         if self._asking:
-            said = answer(evidence, self._settings)
-            if self.answers and said is None and evidence.seconds:
-                self._told("I heard something, but no yes, no or stop.")
-            return said if self.answers or isinstance(said, StopCommand) else None
-        if not evidence.words:
-            if self.live and evidence.seconds:
-                self._told("I heard something, but no words that I know.")
-            return None
-        return understand(evidence, self._phrasebook, self._settings)
+            heard, told = replied(evidence, self._settings, answers=self.answers)
+        else:
+            heard, told = commanded(evidence, self._phrasebook, self._settings, live=self.live)
+        self._told(told)
+        return heard
 
     def _partial(self, words: str) -> None:
         if words != self.words:
@@ -392,8 +397,3 @@ class SpeechInput:
     def _told(self, sentence: str) -> None:
         if sentence:
             self.tell(sentence)
-
-
-def _sounds_of(phrasebook: Phrasebook) -> tuple[object, object]:
-    """What is to be heard of a phrasebook; two that have the same are listened for alike."""
-    return phrasebook.spoken(), phrasebook.pronunciations()

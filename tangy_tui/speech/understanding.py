@@ -59,6 +59,11 @@ def wanted(
     )
 
 
+def sounds_of(phrasebook: Phrasebook) -> tuple[object, object]:
+    """Return what is to be heard of a phrasebook: two that have the same are listened for alike."""
+    return phrasebook.spoken(), phrasebook.pronunciations()
+
+
 def understand(
     evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings
 ) -> Say | StopCommand:
@@ -78,6 +83,29 @@ def understand(
         return Say(text, confidence, ())
     commands = tuple(replace(c, confidence=round(confidence, 3)) for c in found)
     return Say(text, round(confidence, 3), commands, sure=confidence >= SURE)
+
+
+def commanded(
+    evidence: AcousticEvidence, phrasebook: Phrasebook, settings: EvidenceSettings, *, live: bool
+) -> tuple[Say | StopCommand | None, str]:
+    """Return what an utterance commands, if it has words, and what is to be said of it, or ""."""
+    if evidence.words:
+        return understand(evidence, phrasebook, settings), ""
+    none = live and evidence.seconds
+    return None, "I heard something, but no words that I know." if none else ""
+
+
+def replied(
+    evidence: AcousticEvidence, settings: EvidenceSettings, *, answers: bool
+) -> tuple[Reply | StopCommand | None, str]:
+    """Return what an utterance answers to a question, and what is to be said of it, or "".
+
+    Where no `answers` are taken, only what stops the robot counts.
+    """
+    said = answer(evidence, settings)
+    none = answers and said is None and evidence.seconds
+    told = "I heard something, but no yes, no or stop." if none else ""
+    return (said if answers or isinstance(said, StopCommand) else None), told
 
 
 def best_words(evidence: AcousticEvidence, phrasebook: Phrasebook) -> tuple[str, float]:
