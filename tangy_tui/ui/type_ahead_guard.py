@@ -1,7 +1,8 @@
 """Telling keys that were meant for a question from keys that were typed before it was seen.
 
 A key is stamped when it is read from the terminal. It answers a dialog only if that was a moment
-after the dialog was painted; what was queued, or typed blindly, is dropped.
+after the dialog was seen: after the terminal has answered what was written behind it, or, where
+nothing answers, after it was written. What was queued, or typed blindly, is dropped.
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ from collections.abc import Callable
 from time import monotonic
 
 from textual import events
+from textual.widget import Widget
+
+from tangy_tui.ui.round_trip import RoundTrip
 
 SETTLE_SECONDS = 0.2
 """How long a person needs at the least to see that there is a question."""
@@ -24,24 +28,61 @@ def clock_of(app: object) -> Clock:
     return clock
 
 
+def round_trip_of(app: object) -> RoundTrip | None:
+    """Return what asks the terminal of Tangy's app; None where there is no terminal."""
+    return getattr(app, "round_trip", None)
+
+
+def yes_key_of(app: object) -> str:
+    """Return the key that says yes to a question that begins now: "y" or a digit."""
+    trip = round_trip_of(app)
+    return "y" if trip is None else trip.yes
+
+
 class FreshKeys:
-    """Says of each key whether it was typed after its dialog was on the screen."""
+    """Says of each key whether it was typed after its dialog was seen."""
 
     def __init__(self) -> None:
         self._from: float | None = None
+        self._trip: RoundTrip | None = None
+
+    def watch(self, dialog: Widget, clock: Clock | None = None) -> None:
+        """Let keys count from when a dialog is seen, that is being laid out now.
+
+        Args:
+            dialog: what is laid out.
+            clock: s, on the scale of `time.monotonic` (default: the app's).
+        """
+        dialog.call_after_refresh(self._drawn, dialog, clock or clock_of(dialog.app))
+
+    def _drawn(self, dialog: Widget, clock: Clock) -> None:
+        trip = round_trip_of(dialog.app)
+        if trip is None or not trip.answers or trip.needs_digit:
+            self.painted(clock)
+        else:
+            self._trip = trip
+            trip.ask(self._answered)
+
+    def _answered(self, time: float) -> None:
+        if self._from is None:
+            self._from = time
 
     def painted(self, clock: Clock) -> None:
-        """Note that the dialog has now been painted."""
+        """Note that the dialog has now been painted, where no terminal tells that it was seen."""
         if self._from is None:
             self._from = clock() + SETTLE_SECONDS
 
     @property
     def seen(self) -> bool:
-        """Whether the dialog has been painted."""
+        """Whether the dialog has been seen, or painted where nothing more can be known."""
         return self._from is not None
 
     def take(self, event: events.Key) -> bool:
         """Keep a key from going further, unless it asks for help; say whether it may answer."""
         if event.key != "question_mark":
             event.stop()
-        return self._from is not None and event.time >= self._from
+        if self._from is not None:
+            return event.time >= self._from
+        if self._trip is not None:
+            self._trip.ask_again(self._answered)  # the terminal's answer may have been lost
+        return False

@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 
 class AnswerDialog(Dialog[bool | None]):
@@ -46,7 +46,7 @@ class AnswerDialog(Dialog[bool | None]):
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, n or esc."""

@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
 
 
 class ConfirmDialog(Dialog[bool]):
@@ -39,27 +39,30 @@ class ConfirmDialog(Dialog[bool]):
         self._words = (clean(yes), clean(no))
         self._clock = clock
         self._keys = FreshKeys()
+        self._yes_key = "y"
 
     def compose(self) -> ComposeResult:
         """Lay out question, detail and keys."""
         parts: list[str | tuple[str, str] | Content] = [(self._question, "bold")]
         if self._detail:
             parts += ["\n\n", self._detail]
+        self._yes_key = yes_key_of(self.app)
         yes, no = self._words
-        parts += ["\n\n", ("Y", "$warning bold"), f"  {yes}\n", ("N", "$success bold"), f"  {no}"]
+        for key, colour, words in ((self._yes_key.upper(), "$warning", yes), ("N", "$success", no)):
+            parts += ["\n" if key == "N" else "\n\n", (key, f"{colour} bold"), f"  {words}"]
         yield Static(Content.assemble(*parts), id="confirm", classes="box")
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by y, n or esc."""
+        """Answer by its yes, n or esc."""
         if not self._keys.take(event):
             return
-        if event.key in ("y", "Y"):
+        if event.key.lower() == self._yes_key:
             self.answer(True)
-        elif event.key in ("n", "N", "escape"):
+        elif event.key.lower() in ("n", "escape"):
             self.answer(False)
 
     def action_nothing(self) -> None:

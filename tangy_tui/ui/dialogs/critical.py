@@ -15,13 +15,13 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import OVER, Fault
 from tangy_tui.monitoring.supervision import Supervision
+from tangy_tui.text import halts
+from tangy_tui.text.fault_views import ALSO_WRONG, HOW_KNOWN
 from tangy_tui.text.faults import (
     ages_of,
     evidence_of,
-    kind_words,
     known_now,
     mark_of,
-    move_words,
     still_there_words,
     whom_to_call,
 )
@@ -32,20 +32,10 @@ from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.fault import advice_lines, evidence_lines, moves_so_far
 from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import KeyLine
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
 
-SEEN_FIRST = "Press a first: it says that you have seen this."
-SEEN = "You have seen it. Press e to see whom to call, or c when all is well."
-CALL_YOURSELF = "Tangy calls nobody itself. Press c when all is well."
-SIMULATED = "The simulated expert has looked at it. Press c when all is well."
-RESTARTED = "The robot process was started again."
-STILL_THERE = "It is still there. Tangy stands still. Press e to see whom to call."
-STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
-RESTARTING = "The robot process is started again ..."
-CALLING = "The simulated expert looks at it ..."
-LOOKING = "Looking whether it is gone ..."
 KEYS = ("a", "e", "c", "g", "escape")
 
 
@@ -129,7 +119,7 @@ class CriticalDialog(Dialog[None]):
         """Lay out the status, which stays in sight, and the fault with its keys."""
         yield StatusLine(self._status)
         fault = self._fault
-        said = SEEN if fault.acknowledged else SEEN_FIRST
+        said = halts.SEEN if fault.acknowledged else halts.SEEN_FIRST
         box = Vertical(
             Page(self._write),
             Static(self._is_there(), classes="now", markup=False),
@@ -142,14 +132,13 @@ class CriticalDialog(Dialog[None]):
         yield box
 
     def _title(self) -> Content:
-        name = known_now(self._fault, self._desk.supervision).name
-        return Content(f"{mark_of(self._fault)} Tangy stands still: {clean(name)}")
+        return Content(clean(halts.title(known_now(self._fault, self._desk.supervision))))
 
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
         for page in self.query(Page):  # it may come up while the program is being left
             page.focus()
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def show(self, status: Status) -> None:
         """Show what has changed, in the status line and of the fault."""
@@ -194,7 +183,7 @@ class CriticalDialog(Dialog[None]):
     def on_stop(self, message: Stop) -> None:
         """Stay: the robot stands still, and the fault is still there."""
         message.prevent_default()  # to a dialog of another kind STOP is a no
-        self.say(STOPPED)
+        self.say(halts.STOPPED)
 
     def on_screen_resume(self, event: events.ScreenResume) -> None:
         """Close where it was cleared while something lay over it."""
@@ -206,7 +195,7 @@ class CriticalDialog(Dialog[None]):
         if event.key not in KEYS or not self._keys.take(event):
             return
         if self._doing:
-            self.say(f"Wait. {self._doing}")
+            self.say(halts.wait_words(self._doing))
         elif self._desk.takes_time and (doing := self._takes(event.key)):
             self._doing = doing
             self.say(doing)
@@ -218,14 +207,16 @@ class CriticalDialog(Dialog[None]):
     def _takes(self, key: str) -> str:
         """Say what a key has done that takes its time, "" if it has nothing done."""
         if key == "e" and not self._called:
-            return RESTARTING if self._desk.restarts else CALLING if self._desk.simulated else ""
-        return LOOKING if key == "c" and self._fault.acknowledged else ""
+            if self._desk.restarts:
+                return halts.RESTARTING
+            return halts.CALLING if self._desk.simulated else ""
+        return halts.LOOKING if key == "c" and self._fault.acknowledged else ""
 
     async def _tried(self, key: str) -> None:
         try:
             await self._do(key)
         except TangyError as error:
-            self.say(f"{error} Nothing was changed: try again.")
+            self.say(halts.failed_words(error))
         finally:
             self._doing = ""
             self._show_keys()
@@ -235,18 +226,18 @@ class CriticalDialog(Dialog[None]):
         match key:
             case "a":
                 desk.acknowledge()
-                self.say(SEEN)
+                self.say(halts.SEEN)
             case "e":
                 restarts = desk.restarts
                 if not self._called:
                     await desk.call_expert()
                 self.say(self._whom_to_call(restarts and not desk.restarts))
             case "c" if not fault.acknowledged:
-                self.say(SEEN_FIRST)
+                self.say(halts.SEEN_FIRST)
             case "c":
                 await desk.clear()
                 if desk.supervision.halted is fault:
-                    self.say(STILL_THERE)
+                    self.say(halts.STILL_THERE)
                 else:
                     self._done = True
                     self.answer(None)
@@ -256,9 +247,8 @@ class CriticalDialog(Dialog[None]):
     def _whom_to_call(self, restarted: bool) -> str:
         """Say whom to call, and what was done meanwhile."""
         if self._desk.simulated:
-            return SIMULATED
-        begun = f"{RESTARTED} " if restarted else ""
-        return f"{begun}{whom_to_call(self._robot)} {CALL_YOURSELF}"
+            return halts.SIMULATED
+        return halts.called_words(self._robot, restarted=restarted)
 
     @property
     def _called(self) -> bool:
@@ -269,9 +259,8 @@ class CriticalDialog(Dialog[None]):
     async def _confirm(self) -> None:
         """Give the game up, if that is meant."""
         dialog = ConfirmDialog(
-            "Give this game up?",
-            "The game ends here, and the log says why. Tangy stays where it is and does not move. "
-            "The fault is not mended by this: keep people away until somebody has seen to it.",
+            halts.GIVE_UP,
+            halts.GIVE_UP_DETAIL,
             yes="give the game up",
             no="back to the fault",
         )
@@ -280,7 +269,7 @@ class CriticalDialog(Dialog[None]):
         try:
             self._desk.give_up()
         except TangyError as error:
-            self.say(f"{error} Nothing was changed: try again.")
+            self.say(halts.failed_words(error))
         else:
             self.answer(None)
 
@@ -298,26 +287,22 @@ class CriticalDialog(Dialog[None]):
         fault = known_now(self._fault, supervision)
         book, robot = supervision.book, self._robot
         lines = paragraph(clean(fault.console), width, "strong")
-        where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
-        still = f"{where} Tangy has stopped, and nothing moves before this is cleared."
-        lines += paragraph(still, width)
+        lines += paragraph(halts.halted_words(fault), width)
         others = [f for f in supervision.faults if f is not self._fault and f.status != OVER]
         if others:
-            lines += paragraph(clean(f"Also wrong: {', '.join(f.name for f in others)}."), width)
+            lines += paragraph(clean(f"{ALSO_WRONG}: {', '.join(f.name for f in others)}."), width)
         if len(fault.moves) > 1:
-            last = fault.moves[-1]
-            so_far = f"Last, at {clock(last.seconds)}: {move_words(last)}."
-            lines += paragraph(clean(so_far), width, "dim")
-        lines += heading("What to do, and whom to call")
+            lines += paragraph(clean(halts.last_move_words(fault.moves[-1])), width, "dim")
+        lines += heading(halts.WHOM_TO_CALL)
         lines += advice_lines(fault.advice, width)
         lines += paragraph(clean(whom_to_call(self._robot)), width)
         pieces = evidence_of(fault, book, robot)
         pieces += ages_of(fault, book, robot, supervision.world.health())
         if pieces:
-            lines += heading("How Tangy knows") + evidence_lines(pieces, width)
-        lines += heading("So far") + moves_so_far(fault.moves, width)
+            lines += heading(HOW_KNOWN) + evidence_lines(pieces, width)
+        lines += heading(halts.SO_FAR) + moves_so_far(fault.moves, width)
         if others:
-            lines += heading("Also wrong")
+            lines += heading(ALSO_WRONG)
         for other in others:
             words = f"{mark_of(other)} {clock(other.seconds)} {other.name}"
             lines += paragraph(clean(words), width)

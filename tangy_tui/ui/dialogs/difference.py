@@ -13,9 +13,10 @@ from textual.content import Content
 
 from tangy_profiles.activity import Activity
 from tangy_tui.learning.policies import Change
+from tangy_tui.text.policies import NOT_AS_KEPT, OTHER_DECISIONS, SAME_DECISIONS, change_words
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.page import Page, PageLine, heading, paragraph
 
 Use = Literal["use", "keep", "back"]
@@ -60,14 +61,14 @@ class DifferenceDialog(Dialog[Use]):
     def compose(self) -> ComposeResult:
         """Lay out the notice, the rows, and the keys."""
         box = Vertical(Page(self._write), id="difference", classes="box")
-        box.border_title = Content("The policy is not the one that was kept")
+        box.border_title = Content(NOT_AS_KEPT)
         box.border_subtitle = "y use it   k keep it so   n go back"
         yield box
 
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
         self.query_one(Page).focus()
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Answer by y, k, n or esc; the arrows scroll."""
@@ -81,11 +82,11 @@ class DifferenceDialog(Dialog[Use]):
     def _write(self, width: int) -> list[PageLine]:
         lines = paragraph(clean(self._notice), width)
         if not self._changes:
-            same = "It decides the same everywhere; only the votes differ."
-            return [*lines, *paragraph(same, width)]
-        lines += heading("What it does otherwise")
+            return [*lines, *paragraph(SAME_DECISIONS, width)]
+        lines += heading(OTHER_DECISIONS)
         for change in self._changes:
             words = clean(self._activity.in_words(change.situation))
             lines += paragraph(words, width, "strong")
-            lines += paragraph(f"  was {clean(change.before)}, is now {clean(change.after)}", width)
+            was_and_is = clean(change_words(change.before, change.after))
+            lines += paragraph(f"  {was_and_is}", width)
         return lines

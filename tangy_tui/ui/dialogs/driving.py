@@ -11,6 +11,7 @@ from textual.content import Content
 from textual.widgets import Static
 
 from tangy_hw.device_protocols import Twist
+from tangy_tui.text.control import DRIVE_HELP, DRIVE_TITLE, HELD, stands_words
 from tangy_tui.ui.base import Dialog
 
 if TYPE_CHECKING:
@@ -19,18 +20,6 @@ if TYPE_CHECKING:
 FORWARD, BACK, TURN = 0.3, 0.1, 0.6
 """m/s, m/s and rad/s: slower than it drives by itself, and slowest where it does not see."""
 TELL_SECONDS = 0.1  # between two looks at what the robot does about it
-
-TEXT = (
-    "↑ and ↓ drive, ← and → turn, as long as you hold the key. Space stops; esc ends.\n\n"
-    "Tangy slows down near people and things that its laser scanner sees, and stops before it "
-    "reaches them. Then turn, or back away. It cannot see behind itself or over its scanner: look "
-    "there yourself. It backs up slowly. While the scanner is silent, Tangy does not drive."
-)
-HELD = {
-    "slow": "Something is near: Tangy drives slowly.",
-    "stands": "Something is close: Tangy stands. Turn, or back away.",
-}
-"""What is said where the robot does not drive as it is told."""
 
 
 class DrivingDialog(Dialog[None]):
@@ -44,7 +33,7 @@ class DrivingDialog(Dialog[None]):
         Binding("space", "drive(0, 0)", "Stand still"),
         Binding("escape,q", "close", "Drive no more", key_display="esc"),
     ]
-    HELP = TEXT
+    HELP = DRIVE_HELP
 
     def __init__(self, link: RobotLink) -> None:
         """Make the dialog for the robot at the other end of a link."""
@@ -53,8 +42,8 @@ class DrivingDialog(Dialog[None]):
 
     def compose(self) -> ComposeResult:
         """Say what the keys do."""
-        box = Vertical(Static(TEXT, markup=False), Static("", id="hazard"), classes="box")
-        box.border_title = "Drive by keys"
+        box = Vertical(Static(DRIVE_HELP, markup=False), Static("", id="hazard"), classes="box")
+        box.border_title = DRIVE_TITLE
         box.border_subtitle = Content("↑ ↓ ← → drive   esc ends")
         yield box
 
@@ -66,7 +55,7 @@ class DrivingDialog(Dialog[None]):
         """Say why it does not drive as it is told; that stays there until the next key."""
         state = self._link.state
         why = self._link.silent or state.hazard
-        words = f"Tangy stands still: {why}." if why else HELD.get(state.held, "")
+        words = stands_words(why) if why else HELD.get(state.held, "")
         if words:
             self._say(words)
 

@@ -13,6 +13,7 @@ from textual.content import Content
 from tangy_profiles.faults import FaultBook
 from tangy_profiles.robot import Robot
 from tangy_tui.monitoring.fault import Fault, RecoveryEvent
+from tangy_tui.text.fault_views import DONE_WHEN, HOW_KNOWN, WHAT_TO_DO
 from tangy_tui.text.faults import (
     EvidenceLine,
     evidence_of,
@@ -74,10 +75,10 @@ class FaultDialog(Dialog[None]):
         lines = paragraph(clean(fault.console), width, "strong")
         kind = f"{kind_words(fault)}, after step {fault.step}; {state_words(fault)}"
         lines += paragraph(kind, width, "dim")
-        lines += heading("What was done, and when") + timeline(fault, width)
+        lines += heading(DONE_WHEN) + timeline(fault, width)
         if pieces := evidence_of(fault, self._book, self._robot):
-            lines += heading("How Tangy knows") + evidence_lines(pieces, width)
-        return lines + heading("What should I do?") + advice_lines(fault.advice, width)
+            lines += heading(HOW_KNOWN) + evidence_lines(pieces, width)
+        return lines + heading(WHAT_TO_DO) + advice_lines(fault.advice, width)
 
 
 def timeline(fault: Fault, width: int) -> list[PageLine]:

@@ -13,6 +13,7 @@ from textual.containers import Vertical
 from textual.content import Content
 
 from tangy_sim.worlds.injection import AT_ONCE, KINDS, Kind
+from tangy_tui.text.injections import NONE_FOUND, WHICH
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
@@ -63,7 +64,7 @@ class InjectDialog(Dialog[str | None]):
     def compose(self) -> ComposeResult:
         """Lay out the kinds."""
         box = Vertical(ChoiceList("", self.HELP), id="inject", classes="box")
-        box.border_title = "What should go wrong?"
+        box.border_title = WHICH
         yield box
 
     def on_mount(self) -> None:
@@ -86,7 +87,7 @@ class InjectDialog(Dialog[str | None]):
 
     def _lines(self, width: int) -> list[ChoiceLine]:
         if not self._kinds:
-            return [ChoiceLine((("Nothing has these letters.", "dim"),))]
+            return [ChoiceLine(((NONE_FOUND, "dim"),))]
         label = max(cell_len(kind.name) for kind in KINDS.values())
         lines: list[ChoiceLine] = []
         for number, kind in enumerate(self._kinds, 1):

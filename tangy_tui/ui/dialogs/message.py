@@ -13,7 +13,7 @@ from textual.widgets import Static
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 CLOSING_KEYS = ("enter", "space", "escape", "q")
 
@@ -50,7 +50,7 @@ class MessageDialog(Dialog[None]):
     def on_mount(self) -> None:
         """Let the arrows scroll, and take note of the moment from which keys count."""
         self.query_one(VerticalScroll).focus()
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Close on Enter, space or esc; the arrows scroll."""

@@ -11,17 +11,14 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
-from tangy_profiles.persuading import MethodName, PersuasionConfig, known_methods
+from tangy_profiles.persuading import PersuasionConfig, known_methods
+from tangy_tui.text.people import method_name, method_title
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 KeyT = TypeVar("KeyT")
 
-METHODS: dict[MethodName, str] = {
-    "thompson": "Thompson sampling, as in the paper",
-    "bayes-ucb": "Bayes-UCB: tries less, settles sooner",
-}
 PRIORS = {
     "uniform": "nothing, as in the paper",
     "people": "what worked with earlier people",
@@ -34,11 +31,6 @@ FORGETTING = {
     (0.97, "day"): "3% with each day",
 }
 """What can be chosen here; the command line takes any share."""
-
-
-def _method_words(name: str) -> str:
-    """Return what a method is called here; that of another package by its name."""
-    return next((words for known, words in METHODS.items() if known == name), name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +73,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
             clock: gives the time, in s.
         """
         super().__init__(None)
-        self._name = clean(name)
+        self._whose = clean(name)
         self._default = default
         self._chosen = current
         self._own = own
@@ -91,12 +83,12 @@ class MethodDialog(Dialog[MethodChoice | None]):
     def compose(self) -> ComposeResult:
         """Lay out the settings and the keys."""
         box = Static(self._content(), id="method", classes="box")
-        box.border_title = Content(f"How to persuade {self._name}")
+        box.border_title = Content(method_title(self._whose))
         yield box
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Change a setting, take the method, or leave it."""
@@ -135,7 +127,7 @@ class MethodDialog(Dialog[MethodChoice | None]):
         fades = (chosen.forgetting, chosen.forgetting_per)
         other = f"{100 * (1 - chosen.forgetting):.3g}% with each {chosen.forgetting_per}"
         settings = (
-            ("1", "choose by ", _method_words(chosen.method)),
+            ("1", "choose by ", method_name(chosen.method)),
             ("2", "begin from", PRIORS[chosen.prior]),
             ("3", "forget    ", FORGETTING.get(fades, other)),
         )

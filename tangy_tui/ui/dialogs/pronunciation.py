@@ -17,15 +17,12 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
 from tangy_tui.language.pronunciation import check_name
 from tangy_tui.speech.name_pronunciation import how_said
+from tangy_tui.text.voice import SOUNDS_HELP, said_title
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 
 LONGEST = 200
-EXPLAINED = (
-    "Write it in sounds, with a comma between words: R OW Z AH is Rosa. An empty line drops what "
-    "was noted."
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +60,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
 
     HELP = (
         "Ctrl+L says what stands in the line. Enter notes it for this person, and what you say "
-        "to Tangy with this name is heard from then on. " + EXPLAINED
+        "to Tangy with this name is heard from then on. " + SOUNDS_HELP
     )
 
     def __init__(
@@ -92,9 +89,9 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
     def compose(self) -> ComposeResult:
         """Lay out what is known, the line, and the keys."""
         with Vertical(classes="box") as box:
-            box.border_title = Content(f"How {clean(self._person.name)} is said")
+            box.border_title = Content(said_title(clean(self._person.name)))
             yield Static(clean(self._said.sentence), markup=False)
-            yield Static(EXPLAINED + "\n", markup=False, classes="dim")
+            yield Static(SOUNDS_HELP + "\n", markup=False, classes="dim")
             yield PhonesInput(self._said.phones)
             yield Static("", id="wrong", markup=False)
             yield Static(
@@ -110,7 +107,7 @@ class PronunciationDialog(Dialog[NewPronunciation | None]):
         line = self.query_one(PhonesInput)
         line.focus()
         line.cursor_position = len(line.value)
-        self.call_after_refresh(line.keys.painted, self._clock or clock_of(self.app))
+        line.keys.watch(self, self._clock)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Note what was written, if it can be said."""

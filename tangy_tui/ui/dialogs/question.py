@@ -17,15 +17,24 @@ from textual.content import Content
 from textual.widgets import Static
 
 from tangy_tui.learning.verification import WHICH, Asked, Offered, Reply
+from tangy_tui.text.questions import (
+    DID_YOU_MEAN,
+    DID_YOU_SAY,
+    OR_DID_YOU_MEAN,
+    SAID_TOO_EARLY,
+    TOO_EARLY,
+    yes_words,
+)
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, yes_key_of
 from tangy_tui.ui.widgets.rows import shorten
 
 MOST_ALTERNATIVES = 3
 LONGEST_HEARD = 100  # characters: two lines
 LONGEST_TOLD = 150  # characters: three lines
-ROOM_FOR_ALL = 24  # lines of a window
+HEARD = "heard"
+CONFIDENCE = "confidence"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +58,16 @@ Parts = list[str | tuple[str, str] | Content]
 class VerifyingDialog(Dialog[Answer]):
     """What both have in common: the words that were heard, numbers to choose by, and fresh keys.
 
-    Enter and space do nothing. Keys that were typed before it was on the screen do not answer it,
-    nor does what was said before. On a no the caller puts the text back into the command bar.
+    It is drawn in the place of the command bar, so that little changes on the screen. Enter and
+    space do nothing. Keys that were typed before it was seen do not answer it, nor does what was
+    said before. On a no the caller puts the text back into the command bar.
     """
 
     DEFAULT_CSS = """
-    VerifyingDialog > .box { width: 60; }
+    VerifyingDialog { align: left bottom; background: transparent; }
+    VerifyingDialog > .box {
+        width: 100%; max-width: 100%; border: none; padding: 0 1; background: $surface;
+    }
     """
     ID: ClassVar[str]
 
@@ -85,6 +98,7 @@ class VerifyingDialog(Dialog[Answer]):
         self._told: tuple[str, str] | None = None  # a sentence and its colour
         self._clock = clock
         self._keys = FreshKeys()
+        self._yes_key = "y"
 
     @property
     def painted(self) -> bool:
@@ -93,29 +107,32 @@ class VerifyingDialog(Dialog[Answer]):
 
     def compose(self) -> ComposeResult:
         """Lay out question, keys, and what it rests on."""
-        box = Static(self._content(), id=self.ID, classes="box")
-        box.border_title = "Question"
-        yield box
+        self._yes_key = yes_key_of(self.app)
+        yield Static(self._content(), id=self.ID, classes="box")
 
     def on_mount(self) -> None:
         """Take note of the moment from which keys count."""
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
-        """Answer by y, n, esc or a number, if the question was on the screen by then."""
+        """Answer by its yes, n, esc or a number, if the question was seen by then."""
+        key = event.key.lower()
         if not self._keys.take(event):
-            return
-        if event.key in ("y", "Y"):
+            if key in (self._yes_key, "y", "n", "escape", *self._numbers):
+                self.tell(TOO_EARLY, "$warning")
+        elif key == self._yes_key:
             self._yes()
-        elif event.key in ("n", "N", "escape"):
+        elif key == "y":
+            self.tell(yes_words(self._yes_key), "$warning")
+        elif key in ("n", "escape"):
             self.answer(NO)
-        elif event.key in self._numbers:
-            self.answer(Answer(False, self._numbers.index(event.key)))
+        elif key in self._numbers:
+            self.answer(Answer(False, self._numbers.index(key)))
 
     def hear(self, *, yes: bool) -> str:
         """Take an answer that was said; return what is wrong with it ("": nothing)."""
         if not self.painted:
-            return "That was said before the question was on the screen."
+            return SAID_TOO_EARLY
         if yes:
             return self._yes()
         self.answer(NO)
@@ -155,32 +172,29 @@ class VerifyingDialog(Dialog[Answer]):
         """Write the question."""
         raise NotImplementedError
 
-    def _listed(self) -> Parts:
+    def _listed(self, before: str = "   ") -> Parts:
         parts: Parts = []
         for number, choice in zip(self._numbers, self._choices, strict=True):
-            parts += ["\n", (number, "$primary bold"), f"  {choice}"]
+            parts += [before, (number, "$primary bold"), f" {choice}"]
         return parts
 
     def _grounds(self) -> Parts:
-        parts: Parts = []
-        if self._told is not None and self.app.size.height < ROOM_FOR_ALL:
-            return parts  # the room is for what was told
+        grounds: list[Parts] = []
         if self._heard:
-            parts += ["\n\n", ("Heard       ", "$ink-dim"), self._heard]
+            grounds.append([(f"{HEARD} ", "$ink-dim"), self._heard])
         if self._confidence is not None:
-            parts += [
-                "\n" if self._heard else "\n\n",
-                ("Confidence  ", "$ink-dim"),
-                f"{self._confidence:.2f}",
-            ]
+            grounds.append([(f"{CONFIDENCE} ", "$ink-dim"), f"{self._confidence:.2f}"])
+        parts: Parts = []
+        for ground in grounds:
+            parts += ["   " if parts else "\n", *ground]
         return parts
 
     def _foot(self) -> Parts:
         parts: Parts = []
         if self._say:
-            parts += ["\n\n", (f"{self._say} {self._sayable}.", "$ink-dim")]
+            parts += ["\n", (f"{self._say} {self._sayable}.", "$ink-dim")]
         if self._told is not None:
-            parts += ["\n" if parts else "\n\n", self._told]
+            parts += ["\n", self._told]
         return parts
 
 
@@ -239,17 +253,18 @@ class QuestionDialog(VerifyingDialog):
 
     def _content(self) -> Content:
         parts: Parts = [
-            "Did you say: ",
-            (self._behaviour, "$accent"),
-            "?\n\n",
-            ("Y", "$success bold"),
-            "  yes, do it\n",
-            ("N", "$error bold"),
-            "  no, I give the command again",
+            DID_YOU_SAY,
+            (self._behaviour, "$accent bold"),
+            "?",
             *self._grounds(),
+            "\n",
+            (self._yes_key.upper(), "$success bold"),
+            " yes, do it   ",
+            ("N", "$error bold"),
+            " no, let me change it",
         ]
         if self._choices:
-            parts += ["\n\n", ("Or did you mean", "$ink-dim"), *self._listed()]
+            parts += ["\n", (OR_DID_YOU_MEAN, "$ink-dim"), *self._listed()]
         return Content.assemble(*parts, *self._foot())
 
 
@@ -282,12 +297,12 @@ class ChoicesDialog(VerifyingDialog):
 
     def _content(self) -> Content:
         return Content.assemble(
-            ("Did you mean", "$accent"),
-            *self._listed(),
-            "\n\n",
-            ("N", "$error bold"),
-            "  none of these, I give the command again",
+            (DID_YOU_MEAN, "$accent bold"),
+            *self._listed("\n"),
             *self._grounds(),
+            "\n",
+            ("N", "$error bold"),
+            " none of these, let me change it",
             *self._foot(),
         )
 

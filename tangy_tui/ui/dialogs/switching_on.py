@@ -11,12 +11,10 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.widgets import Static
 
+from tangy_tui.text.live_games import CALLED_OFF, STARTING
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.messages import Stop
-
-TELLS = "Its devices are being started. It stands still until the game begins."
-CALLED_OFF = "It is being switched off again."
 
 
 class SwitchingOnDialog(Dialog[None]):
@@ -75,5 +73,5 @@ class SwitchingOnDialog(Dialog[None]):
         if self.called_off:
             return Content.assemble(head, "\n\n", CALLED_OFF)
         return Content.assemble(
-            head, "\n\n", TELLS, "\n\n", ("ESC", "$success bold"), "  leave it off"
+            head, "\n\n", STARTING, "\n\n", ("ESC", "$success bold"), "  leave it off"
         )

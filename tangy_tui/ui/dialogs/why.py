@@ -18,7 +18,7 @@ from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.explanation import Why
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import SURE
-from tangy_tui.text.decisions import why_words
+from tangy_tui.text.decisions import VOTES, WHY_HEADINGS, chosen_words, strategy_title, why_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -119,11 +119,8 @@ class WhyDialog(Dialog[None]):
         why = self._why
         lines: list[PageLine] = []
         number = 0
-        for title, steps in (
-            ("It rests on", why.rests_on),
-            ("Shown here as well", why.against),
-            ("Shown nearby", why.near),
-        ):
+        groups = (why.rests_on, why.against, why.near)
+        for title, steps in zip(WHY_HEADINGS, groups, strict=True):
             if steps:
                 lines += heading(f"{title} {counted(len(steps), 'step')}")
             for shown in steps:
@@ -153,7 +150,7 @@ def vote_lines(why: Why, width: int) -> list[PageLine]:
     votes = why.decision.votes
     label = min(max(cell_len(clean(b)) for b, _ in votes), max(8, width - 12))
     points = min(LONGEST_BAR, max(0, width - label - 9))
-    lines = heading("Votes of the trees")
+    lines = heading(VOTES)
     for behaviour, share in votes:
         decided = behaviour == why.decision.behaviour
         ink = "curve" if share >= SURE else "warn"
@@ -173,9 +170,9 @@ def vote_lines(why: Why, width: int) -> list[PageLine]:
 
 def choice_lines(choice: StrategyChoice, name: str, width: int) -> list[PageLine]:
     """Tell how a strategy was chosen: the number of each, and the belief that it came from."""
-    lines = heading(f"How to say it to {clean(name)}: {clean(choice.strategy)}")
+    lines = heading(strategy_title(clean(name), clean(choice.strategy)))
     if choice.method:
-        lines += paragraph(f"Chosen by {clean(choice.method)}: the highest number is used.", width)
+        lines += paragraph(chosen_words(clean(choice.method)), width)
     label = min(14, max(cell_len(clean(strategy)) for strategy in choice.draws))
     points = min(LONGEST_CURVE, width - label - 34)
     head = f"  {fit('', label)}  number  done/asked  mean"

@@ -13,7 +13,7 @@ from textual.content import Content
 
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import Clock, FreshKeys
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
 from tangy_tui.ui.widgets.rows import Row
 
@@ -49,7 +49,7 @@ class WordsDialog(Dialog[str | None]):
         words.styles.height = len(self._words)
         words.show(lambda width, height: [ChoiceLine(_row(word), word) for word in self._words])
         words.focus()
-        self.call_after_refresh(self._keys.painted, self._clock or clock_of(self.app))
+        self._keys.watch(self, self._clock)
 
     def on_key(self, event: events.Key) -> None:
         """Choose with Enter, go back with esc, jump to a first letter."""

@@ -1,0 +1,186 @@
+"""Proof that a question has reached the person's terminal: it answers what was written after it.
+
+After a question has been written the cursor is put on a place that is used only once, its position
+is asked for (`CSI 6n`), and it is put back. The answer names that place and can only come from a
+terminal that has drawn the question before it. Keys count from then on. What answers for the
+terminal (tmux, screen, mosh) proves nothing; there the yes of a question is a digit drawn anew for
+each question, which nobody knows without reading it.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import re
+from collections.abc import Callable, Iterable
+
+from textual._xterm_parser import XTermParser
+from textual.drivers import linux_driver
+from textual.message import Message
+
+from tangy_tui.app.terminal_session import (
+    DIGITS,
+    QuestionKey,
+    TerminalSession,
+    answers_for_another,
+)
+
+MOST_WAITING = 4
+
+READING_SECONDS = 0.1
+"""How long a person needs at the least to see a question that the terminal has drawn."""
+
+Seen = Callable[[float], None]
+"""Is told from when on keys count, in s on the scale of `time.monotonic`."""
+
+
+class RoundTrip:
+    """Asks the terminal whether it has drawn what was written before."""
+
+    def __init__(
+        self,
+        write: Callable[[str], None],
+        session: Callable[[], TerminalSession],
+        clock: Callable[[], float],
+        *,
+        cursor: Callable[[], tuple[int, int]] = lambda: (0, 0),
+        setting: QuestionKey = "auto",
+        rng: random.Random | None = None,
+    ) -> None:
+        """Make it for a terminal.
+
+        Args:
+            write: puts control sequences behind what was drawn.
+            session: looks at who stands between; it may change while the program runs.
+            clock: s, on the scale of `time.monotonic`.
+            cursor: the column and the line, from 0, that the cursor is put back to.
+            setting: what the user wants.
+            rng: draws digits and the first place (default: from the system).
+        """
+        self._write = write
+        self._session = session
+        self._clock = clock
+        self._setting = setting
+        self._random = rng or random.SystemRandom()
+        self._size = (80, 24)
+        self._cursor = cursor
+        self._place = self._random.randrange(1000)
+        self._waiting: dict[tuple[int, int], tuple[Seen, float]] = {}
+        self._shortest = math.inf  # the quickest answer so far, in s
+        self._answers = False
+        self._base = 0  # what the terminal takes from the positions that it reports
+        self._for_another = False
+        self._digit = ""
+
+    # -------------------------------------------------------------------------------- asking
+
+    def begin(self, size: tuple[int, int]) -> None:
+        """Find out whether the terminal answers at all; `size` in columns and lines."""
+        self._size = size
+        if self._session().remote:
+            self._write("\x1b[>c")
+        self.ask(lambda time: None)
+
+    def ask(self, seen: Seen) -> None:
+        """Say when the terminal has drawn what was written so far."""
+        columns, lines = self._size
+        # The first line is left out: there a report looks like Shift+F3.
+        places = columns * (lines - 1)
+        self._place = (self._place + 1) % places
+        line, column = divmod(self._place, columns)
+        self._waiting[column, line + 1] = (seen, self._clock())
+        x, y = self._cursor()
+        self._write(f"\x1b[{line + 2};{column + 1}H\x1b[6n\x1b[{y + 1};{x + 1}H")
+
+    def resized(self, size: tuple[int, int]) -> None:
+        """Ask again: what the terminal reports after a change of its size may be another place."""
+        self._size = size
+        waiting, self._waiting = dict.fromkeys(seen for seen, _ in self._waiting.values()), {}
+        for seen in waiting:
+            self.ask(seen)
+
+    def ask_again(self, seen: Seen) -> None:
+        """Ask once more for an answer that may be lost; no more than a few wait at a time."""
+        if sum(1 for waits, _ in self._waiting.values() if waits == seen) < MOST_WAITING:
+            self.ask(seen)
+
+    # ------------------------------------------------------------------------------- answers
+
+    def reported(self, x: int, y: int, time: float) -> None:
+        """Take the terminal's answer: a place (from 0), and when it came, in s."""
+        if not self._answers and (x + 1, y + 1) in self._waiting and (x, y) not in self._waiting:
+            self._base = 1  # it counts from 0, as kmscon is said to
+        found = self._waiting.pop((x + self._base, y + self._base), None)
+        if found is None:
+            return
+        seen, asked = found
+        self._answers = True
+        self._shortest = min(self._shortest, time - asked)
+        self._waiting = {p: waits for p, waits in self._waiting.items() if waits[0] != seen}
+        # An answer that was held up on its way came later than the person saw the question. Keys
+        # cannot overtake it, so that the time to read may be as much shorter.
+        held_up = time - asked - self._shortest
+        seen(time + max(0.0, READING_SECONDS - held_up))
+
+    def attributes(self, given: str) -> None:
+        """Take the terminal's device attributes ("84;0;0")."""
+        self._for_another = answers_for_another(given)
+
+    # ------------------------------------------------------------------------------ the rule
+
+    @property
+    def yes(self) -> str:
+        """The key that says yes to a question that begins now: "y", or a digit drawn for it."""
+        if not self.needs_digit:
+            return "y"
+        self._digit = self._random.choice([d for d in DIGITS if d != self._digit])
+        return self._digit
+
+    @property
+    def needs_digit(self) -> bool:
+        """Whether no answer of the terminal would prove that the person has seen a question."""
+        if self._setting != "auto":
+            return self._setting == "digit"
+        session = self._session()
+        proven = self._answers and not (session.multiplexer or self._for_another)
+        return session.remote and not proven
+
+    @property
+    def answers(self) -> bool:
+        """Whether the terminal has answered once."""
+        return self._answers
+
+
+class ReplyParser(XTermParser):
+    """Textual's reader of keys, which takes device attributes out of what it reads.
+
+    Textual does not know these answers and would type them, letter by letter.
+    """
+
+    heard: Callable[[str], None] | None = None
+    """Is told the attributes."""
+
+    _ANSWER = re.compile(r"\x1b\[[>?]([\d;]*)c")
+    _BEGUN = re.compile(r"\x1b\[(?:[>?][\d;]*)?\Z")
+    _rest = ""
+
+    def feed(self, data: str) -> Iterable[Message]:
+        """Read what came from the terminal."""
+        if data:
+            data = self._ANSWER.sub(self._take, self._rest + data)
+            begun = self._BEGUN.search(data)
+            self._rest = data[begun.start() :] if begun else ""
+            data = data[: begun.start()] if begun else data
+            if not data:
+                return ()
+        return super().feed(data)
+
+    def _take(self, found: re.Match[str]) -> str:
+        if (heard := type(self).heard) is not None:
+            heard(found[1])
+        return ""
+
+
+def read_replies() -> None:
+    """Let every program that is started from here on read with a `ReplyParser`."""
+    linux_driver.XTermParser = ReplyParser  # type: ignore[attr-defined]

@@ -1,0 +1,35 @@
+"""What a user has set in the data folder counts, and a mistake is told with its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tangy_profiles.errors import ProfileError
+from tangy_tui.app.user_settings import UserSettings, read_settings
+
+
+def test_without_a_file_all_is_as_usual(tmp_path: Path) -> None:
+    assert read_settings(tmp_path) == UserSettings(question="auto")
+
+
+@pytest.mark.parametrize("question", ["auto", "y", "digit"])
+def test_how_a_question_takes_a_yes_can_be_set(tmp_path: Path, question: str) -> None:
+    (tmp_path / "settings.toml").write_text(f'question = "{question}"\n')
+    assert read_settings(tmp_path).question == question
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ('question = "n"', "settings.toml: question"),
+        ("question = 1", "settings.toml: question"),
+        ('qestion = "y"', "settings.toml: qestion"),
+        ("question", "is not TOML"),
+    ],
+)
+def test_a_mistake_is_told_with_its_place(tmp_path: Path, written: str, told: str) -> None:
+    (tmp_path / "settings.toml").write_text(written)
+    with pytest.raises(ProfileError, match=told):
+        read_settings(tmp_path)

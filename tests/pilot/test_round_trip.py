@@ -1,0 +1,119 @@
+"""The terminal's own answer proves that what was drawn before has reached it."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tangy_tui.app.terminal_session import TerminalSession
+from tangy_tui.ui.round_trip import READING_SECONDS, ReplyParser, RoundTrip
+
+REMOTE = TerminalSession(remote=True)
+
+
+class Terminal:
+    """A terminal that answers when it is told to, counting from `base`."""
+
+    def __init__(self, session: TerminalSession = REMOTE, base: int = 1) -> None:
+        self.written: list[str] = []
+        self.now = 10.0
+        self.base = base
+        self.seen: list[float] = []
+        self.trip = RoundTrip(
+            self.written.append, lambda: session, lambda: self.now, cursor=lambda: (4, 7)
+        )
+        self.trip.begin((80, 24))
+
+    def answer(self, number: int = -1) -> None:
+        place = re.fullmatch(r"\x1b\[(\d+);(\d+)H\x1b\[6n\x1b\[8;5H", self.written[number])
+        assert place is not None
+        assert 2 <= int(place[1]) <= 24
+        assert 1 <= int(place[2]) <= 80
+        shift = 1 + (1 - self.base)  # Textual takes one off; some terminals count from 0
+        self.trip.reported(int(place[2]) - shift, int(place[1]) - shift, self.now)
+
+
+@pytest.mark.parametrize("base", [0, 1])
+def test_only_the_answer_to_the_present_question_counts(base: int) -> None:
+    terminal = Terminal(base=base)
+    terminal.answer()
+    terminal.trip.ask(terminal.seen.append)
+    terminal.answer(1)  # what the terminal was asked at its start
+    assert terminal.seen == []
+    terminal.now = 12.0
+    terminal.answer()
+    assert terminal.seen == [pytest.approx(12.0)]
+
+
+def test_places_are_used_once_and_never_in_the_first_line() -> None:
+    terminal = Terminal()
+    for _ in range(2000):
+        terminal.trip.ask(terminal.seen.append)
+    places = [text for text in terminal.written if "6n" in text]
+    assert len(set(places[:1800])) == 1800
+    assert not any(place.startswith("\x1b[1;") for place in places)
+
+
+def test_a_held_up_answer_leaves_less_time_to_read_because_it_was_seen_earlier() -> None:
+    terminal = Terminal()
+    for trip, margin in ((0.2, READING_SECONDS), (0.25, READING_SECONDS - 0.05), (0.6, 0.0)):
+        terminal.trip.ask(terminal.seen.append)
+        terminal.now += trip
+        terminal.answer()
+        assert terminal.seen[-1] == pytest.approx(terminal.now + margin)
+
+
+def test_after_a_change_of_size_it_is_asked_again() -> None:
+    terminal = Terminal()
+    terminal.trip.ask(terminal.seen.append)
+    asked = len(terminal.written)
+    terminal.trip.resized((60, 20))
+    assert len(terminal.written) > asked
+    terminal.answer()
+    assert len(terminal.seen) == 1
+
+
+def test_a_lost_answer_is_asked_for_again_a_few_times_at_the_most() -> None:
+    terminal = Terminal()
+    for _ in range(50):
+        terminal.trip.ask_again(terminal.seen.append)
+    assert sum("6n" in text for text in terminal.written) < 8
+
+
+def test_beside_the_machine_the_yes_is_y_whether_the_terminal_answers_or_not() -> None:
+    terminal = Terminal(TerminalSession(multiplexer=True))
+    assert not terminal.trip.answers
+    assert terminal.trip.yes == "y"
+    terminal.answer()
+    assert terminal.trip.answers
+    assert terminal.trip.yes == "y"
+
+
+def test_from_elsewhere_the_yes_is_a_digit_until_the_persons_own_terminal_has_answered() -> None:
+    terminal = Terminal()
+    assert terminal.trip.yes in "456789"
+    terminal.answer()
+    assert terminal.trip.yes == "y"
+    terminal.trip.attributes("84;0;0")  # it was tmux
+    assert terminal.trip.yes in "456789"
+
+
+@pytest.mark.parametrize(
+    "chunks",
+    [
+        ["a\x1b[>84;0;0cb"],
+        ["a\x1b[>84;", "0;0cb"],
+        ["a\x1b[", ">84;0;0cb"],
+        ["a", "\x1b[>84;0;0c", "b"],
+    ],
+)
+def test_device_attributes_are_taken_out_of_what_is_typed(
+    chunks: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard: list[str] = []
+    monkeypatch.setattr(ReplyParser, "heard", heard.append)
+    parser = ReplyParser()
+    keys = [getattr(event, "key", event) for chunk in chunks for event in parser.feed(chunk)]
+    assert keys == ["a", "b"]
+    assert heard == ["84;0;0"]

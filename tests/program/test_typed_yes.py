@@ -1,0 +1,117 @@
+"""By lines, an answer that was typed before its question answers nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from queue import SimpleQueue
+
+import pytest
+
+from tangy_tui.app.terminal_session import TerminalSession
+from tangy_tui.console.typed_yes import TypedYes
+from tangy_tui.learning.verification import Reply
+from tests.support.terminal import TANGY, Terminal
+
+HERE, ELSEWHERE = TerminalSession(), TerminalSession(remote=True)
+FROM_HERE = {"SSH_CONNECTION": "", "SSH_TTY": "", "SSH_CLIENT": "", "TMUX": "", "STY": ""}
+SSH = {"SSH_CONNECTION": "192.0.2.1 50000 192.0.2.2 22"}
+
+
+def test_a_script_answers_with_y_wherever_it_runs() -> None:
+    yes = TypedYes(terminal=False, session=lambda: ELSEWHERE)
+    assert yes.ask() == "Y"
+    assert yes.answer("y") == Reply(yes=True)
+
+
+def test_beside_the_machine_y_is_the_yes_and_what_was_typed_ahead_is_dropped() -> None:
+    dropped: list[bool] = []
+    yes = TypedYes(terminal=True, session=lambda: HERE, flush=lambda: dropped.append(True))
+    assert yes.ask() == "Y"
+    assert dropped == [True]
+    assert yes.answer("yes") == Reply(yes=True)
+
+
+def test_from_elsewhere_the_yes_is_another_digit_each_time() -> None:
+    yes = TypedYes(terminal=True, session=lambda: ELSEWHERE, flush=lambda: None)
+    keys = [yes.ask() for _ in range(20)]
+    assert set(keys) <= set("456789")
+    assert all(first != second for first, second in pairwise(keys))
+    assert yes.answer(keys[-1]) == Reply(yes=True)
+    assert yes.answer("y") == f"The yes of this question is {keys[-1]}."
+    assert yes.answer("n") == Reply(yes=False)
+    assert yes.answer("2") == Reply(yes=False, alternative=2)
+    assert yes.answer("call number") is None
+
+
+@pytest.mark.parametrize(("setting", "digit"), [("y", False), ("digit", True)])
+def test_the_setting_counts_more_than_the_session(setting: str, digit: bool) -> None:
+    session = HERE if digit else ELSEWHERE
+    yes = TypedYes(
+        terminal=True,
+        setting=setting,  # type: ignore[arg-type]
+        session=lambda: session,
+        flush=lambda: None,
+    )
+    assert (yes.ask() != "Y") == digit
+
+
+def test_of_lines_that_were_read_ahead_only_answers_are_dropped() -> None:
+    typed: SimpleQueue[str | None] = SimpleQueue()
+    for line in ("y\n", "stop\n", "2\n", "call number\n", "no\n", None):
+        typed.put(line)
+    TypedYes(terminal=True, session=lambda: HERE).ask(typed)
+    assert [typed.get_nowait() for _ in range(typed.qsize())] == ["stop\n", "call number\n", None]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A data folder."""
+    return tmp_path
+
+
+def teaching(folder: Path, **environment: str) -> Terminal:
+    command = [TANGY, "--data", str(folder), "teach", "--plain", "--teacher", "ann", "--seed", "3"]
+    terminal = Terminal(command, environment={**FROM_HERE, **environment}, lines=60)
+    terminal.until("Now:")
+    return terminal
+
+
+@pytest.fixture
+def here(folder: Path) -> Iterator[Terminal]:
+    """Teaching by lines beside the machine."""
+    terminal = teaching(folder)
+    yield terminal
+    terminal.end()
+
+
+@pytest.fixture
+def elsewhere(folder: Path) -> Iterator[Terminal]:
+    """Teaching by lines from another machine."""
+    terminal = teaching(folder, **SSH)
+    yield terminal
+    terminal.end()
+
+
+def test_a_y_that_is_typed_ahead_executes_nothing(here: Terminal) -> None:
+    here.type("greet everyone\ny\n")
+    here.until("Type Y to execute it")
+    here.type("n\n")
+    here.until("Not done: greet everyone.")
+    here.type("greet everyone\n")
+    here.until(lambda text: text.count("Type Y to execute it") == 2)
+    here.type("y\n")
+    here.until("Tangy says:")
+
+
+def test_from_elsewhere_a_question_names_the_digit_that_is_its_yes(elsewhere: Terminal) -> None:
+    elsewhere.type("greet everyone\n")
+    shown = elsewhere.until("to execute it or N")
+    found = re.search(r"Type (\d) to execute it", shown)
+    assert found is not None
+    elsewhere.type("y\n")
+    elsewhere.until(f"The yes of this question is {found[1]}.")
+    elsewhere.type(f"{found[1]}\n")
+    elsewhere.until("Tangy says:")
