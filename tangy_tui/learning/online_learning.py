@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.demonstration import Demonstration, Step
@@ -24,6 +25,10 @@ from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.policies import Change, does, keep_policy, unused_name
 from tangy_tui.learning.policy import Policy, learn_policy
 
+Unsettled = Literal["", "new", "otherwise"]
+"""What is still to be settled: nothing, an answer that nobody gave before, or one that a teacher
+said otherwise."""
+
 
 @dataclass(frozen=True, slots=True)
 class PolicyReplay:
@@ -31,29 +36,13 @@ class PolicyReplay:
 
     `steps` were looked at, `changed` are the other situations that are answered otherwise now,
     `overruled` are the earlier steps in the answered situation that the answer sets aside, and
-    `unsettled` says what is still to be settled there.
+    `unsettled` is what a teacher has still to settle there.
     """
 
     steps: int
     changed: tuple[Change, ...]
     overruled: int = 0
-    unsettled: str = ""
-
-    def words(self) -> str:
-        """Say what came out in a sentence or two."""
-        if not self.steps:
-            first = "There were no earlier steps to compare with."
-        elif self.changed:
-            rows = "; ".join(
-                f"{' / '.join(c.situation)}: was {c.before}, is now {c.after}" for c in self.changed
-            )
-            first = f"All {self.steps} earlier steps were gone through. Changed as well: {rows}."
-        else:
-            first = f"All {self.steps} earlier steps were gone through: nothing else changed."
-        aside = {0: "", 1: " One earlier step said otherwise, and is set aside."}.get(
-            self.overruled, f" {self.overruled} earlier steps said otherwise, and are set aside."
-        )
-        return " ".join(part for part in (first + aside, self.unsettled) if part)
+    unsettled: Unsettled = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,14 +164,11 @@ def _settle(
     return None
 
 
-def _unsettled(learnt: Policy, library: Library, step: Step) -> str:
-    """Say what is still to be settled in the answered situation."""
+def _unsettled(learnt: Policy, library: Library, step: Step) -> Unsettled:
+    """Return what is still to be settled in the answered situation."""
     if learnt.decide(step.state.situation).contested:
-        return (
-            "Nobody has answered so before: Tangy goes on asking here until a teacher settles "
-            "which answer is right."
-        )
+        return "new"
     said = joined(library.resolutions).get(step.state.situation)
     if said is not None and step.behaviour not in said.right:
-        return "A teacher said otherwise before: both are shown before Tangy learns again."
+        return "otherwise"
     return ""

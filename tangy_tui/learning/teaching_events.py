@@ -8,6 +8,7 @@ from typing import TypeAlias
 from tangy_profiles.behaviour import Action
 from tangy_profiles.demonstration import Demonstration, Step
 from tangy_profiles.state import Outcome
+from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.verification import (
     Asked,
     NotUnderstood,
@@ -67,6 +68,17 @@ class Executed:
 
 
 @dataclass(frozen=True, slots=True)
+class Contradicted:
+    """Step `number` differs from what was shown in the same situation before."""
+
+    number: int
+    step: Step
+    earlier: Shown
+    own: bool
+    """Whether the same teacher has shown it."""
+
+
+@dataclass(frozen=True, slots=True)
 class StepUndone:
     """Step `number` was taken back; the world is as it was before it."""
 
@@ -90,5 +102,14 @@ class Finished:
 
 
 TeachingEvent: TypeAlias = (
-    Asked | Offered | NotUnderstood | Refused | Rejected | Executed | StepUndone | Begun | Finished
+    Asked
+    | Offered
+    | NotUnderstood
+    | Refused
+    | Rejected
+    | Executed
+    | Contradicted
+    | StepUndone
+    | Begun
+    | Finished
 )

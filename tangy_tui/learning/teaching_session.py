@@ -26,11 +26,14 @@ from tangy_profiles.teaching_records import (
     DemonstrationStepUndone,
 )
 from tangy_tui.language.commands import Phrasebook
+from tangy_tui.learning.conflicts import Shown
+from tangy_tui.learning.contradictions import Contradictions
 from tangy_tui.learning.editing import new_id
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
+    Contradicted,
     Executed,
     Finished,
     Next,
@@ -106,6 +109,7 @@ class TeachingSession:
         self._make_world = make_world
         self._seed = seed
         self._logged = False
+        self._contradictions: Contradictions | None = None  # read where they are needed first
 
     @property
     def people(self) -> tuple[str, ...]:
@@ -121,6 +125,14 @@ class TeachingSession:
     def undone(self) -> int:
         """How many steps redo can bring back."""
         return len(self._undone)
+
+    @property
+    def sayable(self) -> tuple[str, ...]:
+        """The commands that can be carried out now, first what was shown most often here."""
+        if self.demonstration.finished:
+            return ()
+        situation = self.world.observe().situation
+        return self._verifier.sayable(self._read_contradictions().usual(situation))
 
     def name(self, person: str) -> str:
         """Return a person's name, or the id of somebody who has none here."""
@@ -291,6 +303,7 @@ class TeachingSession:
         self, behaviour: Behaviour, target: str | None, log: Callable[[Step], Step]
     ) -> list[TeachingEvent]:
         """Execute a behaviour in the world and log the step; what is not logged did not happen."""
+        contradictions = self._read_contradictions()
         before = self.world.observe()
         action = self.activity.action(behaviour, target, None)
         outcome = self.world.execute(action)
@@ -318,9 +331,21 @@ class TeachingSession:
                 self.activity.fill(action.image, name, outcome.numbers),
             )
         ]
+        number = len(self.demonstration.steps)
+        shown = Shown(self.demonstration.id, self.teacher, number, step)
+        if (earlier := contradictions.found(shown)) is not None:
+            own = earlier.teacher == self.teacher
+            events.append(Contradicted(number, step, earlier, own))
         if finished:
             events.append(Finished(self.demonstration))
         return events
+
+    def _read_contradictions(self) -> Contradictions:
+        """Return what was shown before, which is read from the log once."""
+        if self._contradictions is None:
+            library = read_library(self._store, self.activity.name)
+            self._contradictions = Contradictions(library.demonstrations, library.resolutions)
+        return self._contradictions
 
     def _log_beginning(self) -> None:
         """Log the demonstration with its first step, so that looking in leaves no empty one."""
@@ -344,6 +369,8 @@ class TeachingSession:
         undone = [*self._undone, last]
         self._enter(shorter, world)
         self._undone = undone
+        if self._contradictions is not None:
+            self._contradictions.take_back(self.demonstration.id, number)
         return [StepUndone(number, last)]
 
     def _redo(self) -> list[TeachingEvent]:

@@ -5,7 +5,7 @@ The same door for whoever commands: a teacher who demonstrates, and one whom Tan
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -152,6 +152,19 @@ class Verifier:
         if not said.sure:
             return self._offer(said, commands)
         return self._ask(commands[0], commands[1:])
+
+    def sayable(self, usual: Sequence[str] = ()) -> tuple[str, ...]:
+        """Return a phrase for each behaviour that can be done now; `usual` ones come first."""
+        order = dict.fromkeys((*usual, *self._activity.behaviours))
+        phrases: list[str] = []
+        for name in order:
+            behaviour = self._activity.behaviours.get(name)
+            if behaviour is None:
+                continue
+            target = self._observe().attended if behaviour.attends else None
+            if self._obstacle(behaviour, target) is None:
+                phrases.append(behaviour.phrases[0])
+        return tuple(phrases)
 
     def stops(self, text: str) -> bool:
         """Say whether what was typed stops the robot, instead of asking for a behaviour."""

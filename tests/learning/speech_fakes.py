@@ -36,7 +36,7 @@ class FakeSource:
     """A microphone into which the test speaks."""
 
     def __init__(self, *, live: bool = True) -> None:
-        self.live = live
+        self.live, self.recorded = live, not live
         self.tell: Callable[[str], None] = lambda sentence: None
         self.closed = 0
         self._said: asyncio.Queue[bytes | Exception | None] = asyncio.Queue()

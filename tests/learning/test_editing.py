@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import Activity, load_activity
@@ -29,6 +29,7 @@ from tangy_tui.learning.conflicts import shown_steps
 from tangy_tui.learning.editing import Editor, NotPossible
 from tangy_tui.learning.library import Library, NoDemonstration, read_library
 from tests.support.append_body import append_body
+from tests.support.laws import tried
 
 BINGO = load_activity("bingo")
 
@@ -310,7 +311,7 @@ def editor_of_three(store: Store) -> Editor:
 
 
 @given(CHANGES)
-@settings(max_examples=60)
+@tried(60)
 def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
     changes: list[tuple[str, int, int]],
 ) -> None:
@@ -336,7 +337,7 @@ def test_whatever_is_done_undo_leads_back_step_by_step_and_redo_forward_again(
 
 
 @given(CHANGES)
-@settings(max_examples=60)
+@tried(60)
 def test_no_step_is_learnt_from_twice_whatever_is_done(
     changes: list[tuple[str, int, int]],
 ) -> None:

@@ -16,7 +16,7 @@ from tangy_tui.speech.evidence import USUAL, AcousticEvidence, EvidenceSettings,
 from tangy_tui.speech.labels import STOP, Labels, UtteranceLabel
 from tangy_tui.speech.practice import Practice, practise
 from tangy_tui.speech.recogniser import SpeechUnavailable
-from tangy_tui.speech.report import practice_lines
+from tangy_tui.text.practice import practice_lines
 
 BROKEN = "broken"
 

@@ -13,7 +13,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import load_people
 from tangy_sim.worlds.world import SimulatedWorld
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.teaching import STOPPED, TeachingLines
+from tangy_tui.console.teaching import TeachingLines
 from tangy_tui.language.commands import Command, Phrasebook
 from tangy_tui.learning.verification import (
     NO_QUESTION,
@@ -30,6 +30,7 @@ from tangy_tui.learning.verification import (
     answer_help,
 )
 from tangy_tui.speech.input import Heard
+from tangy_tui.text.teaching_commands import STOPPED
 
 ACTIVITY = load_activity("bingo")
 PEOPLE = load_people(4)

@@ -114,6 +114,28 @@ def test_what_was_heard_badly_offers_alternatives_that_are_asked_about_in_turn(
     assert teaching.question == refused[0], "a wrong number leaves the question open"
 
 
+def test_what_can_be_said_now_is_never_refused_and_begins_with_what_was_shown_most(
+    store: Store,
+) -> None:
+    teaching = begun(store)
+    assert len(teaching.sayable) > 1 and teaching.sayable[0] == "greet everyone"
+    for phrase in teaching.sayable:
+        assert isinstance(teaching.apply(Say(phrase))[0], Asked)
+    for seed in (1, 2, 3):
+        other = session(store, seed=seed)
+        other.begin(resume=False)
+        teach(other, "tell a joke" if seed > 1 else "greet everyone")
+    fourth = session(store, seed=4)
+    fourth.begin(resume=False)
+    assert fourth.sayable[:2] == ("tell a joke", "greet everyone")
+
+
+def test_what_can_be_said_now_is_nothing_once_the_game_is_over(store: Store) -> None:
+    teaching = begun(store)
+    whole_game(teaching)
+    assert teaching.sayable == ()
+
+
 def test_behaviours_for_somebody_are_refused_while_nobody_asks(store: Store) -> None:
     teaching = begun(store)
     for phrase in ("encourage", "remove markers", "go to user", "celebrate"):

@@ -11,7 +11,6 @@ from tempfile import TemporaryDirectory
 
 import pytest
 from hypothesis import given
-from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.activity import load_activity
@@ -28,6 +27,7 @@ from tangy_tui.learning.teaching_events import Executed, Next, StepUndone, Teach
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, Refused, Reply, Say
 from tangy_tui.world import World
+from tests.support.laws import tried
 
 BINGO = load_activity("bingo")
 YES, NO = Reply(yes=True), Reply(yes=False)
@@ -82,7 +82,7 @@ def expected_phrase(teaching: TeachingSession) -> str:
     return BINGO.behaviours[name].phrases[0]
 
 
-@examples(max_examples=60)
+@tried(60)
 @given(st.integers(0, 50), st.integers(1, 8), st.lists(commands, max_size=40))
 def test_whatever_is_said_the_log_agrees_with_the_session(
     seed: int, users: int, said: list[TeacherCommand]
@@ -111,7 +111,7 @@ def test_whatever_is_said_the_log_agrees_with_the_session(
         assert store.check() == []
 
 
-@examples(max_examples=25)
+@tried(25)
 @given(st.integers(0, 50), st.integers(0, 60), st.integers(1, 5))
 def test_undone_and_done_again_leads_to_the_same_state(seed: int, length: int, back: int) -> None:
     with empty_store() as store:

@@ -1,0 +1,77 @@
+"""Contradictions, told while they are taught: what was shown differently in the same situation.
+
+The list of conflicts tells them afterwards, when the teacher who could say which answer is right
+may have gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Situation
+from tangy_tui.learning.conflicts import Resolution, Shown, joined, shown_steps
+
+
+class Contradictions:
+    """What was shown before, by situation. Each contradiction is found once."""
+
+    def __init__(
+        self, earlier: Iterable[Demonstration], resolutions: Iterable[Resolution] = ()
+    ) -> None:
+        """Take the demonstrations there are, and what teachers said of their conflicts."""
+        self._settled = joined(resolutions)
+        self._shown: dict[Situation, dict[str, list[Shown]]] = {}
+        self._told: set[tuple[Situation, frozenset[str]]] = set()
+        for shown in shown_steps(earlier):
+            self._add(shown)
+
+    def found(self, now: Shown) -> Shown | None:
+        """Take a new step; return the last one that was shown differently, if it is news.
+
+        None where nothing else was shown, where a teacher has said that this answer is right, or
+        where these two answers were found to differ before.
+        """
+        situation, behaviour = now.step.state.situation, now.step.behaviour
+        self._add(now)
+        said = self._settled.get(situation)
+        if said is not None and behaviour in said.right:
+            return None
+        others = [
+            steps[-1]
+            for other, steps in self._shown[situation].items()
+            if other != behaviour and steps
+        ]
+        if not others:
+            return None
+        other = others[-1]
+        pair = (situation, frozenset((behaviour, other.step.behaviour)))
+        if pair in self._told:
+            return None
+        self._told.add(pair)
+        return other
+
+    def usual(self, situation: Situation) -> tuple[str, ...]:
+        """Return the behaviours that were shown in a situation, the one shown most often first."""
+        answers = self._shown.get(situation, {})
+        shown = [behaviour for behaviour, steps in answers.items() if steps]
+        return tuple(sorted(shown, key=lambda behaviour: -len(answers[behaviour])))
+
+    def take_back(self, demonstration: str, number: int) -> None:
+        """Forget a step that was undone; what it contradicted is news again."""
+        for situation, answers in self._shown.items():
+            for behaviour, steps in answers.items():
+                kept = [s for s in steps if (s.demonstration, s.number) != (demonstration, number)]
+                if len(kept) < len(steps):
+                    answers[behaviour] = kept
+                    self._told = {
+                        (of, pair)
+                        for of, pair in self._told
+                        if of != situation or behaviour not in pair
+                    }
+
+    def _add(self, shown: Shown) -> None:
+        said = self._settled.get(shown.step.state.situation)
+        if said is None or not said.sets_aside(shown.step):
+            answers = self._shown.setdefault(shown.step.state.situation, {})
+            answers.setdefault(shown.step.behaviour, []).append(shown)
