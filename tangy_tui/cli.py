@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 from tangy_profiles.errors import TangyError
 from tangy_tui import __version__
@@ -41,12 +44,30 @@ def _run() -> object:
     if sys.argv[1:] == ["--version"]:
         print(f"tangy {__version__}")
         return 0
-    if not sys.argv[1:]:
+    if (given := _program_options(sys.argv[1:])) is not None:
         from tangy_tui.verbs.opening import full_screen, open_program
 
         if full_screen():
-            return open_program()
+            return open_program(**given)
     return _parsed()
+
+
+def _program_options(words: Sequence[str]) -> dict[str, Any] | None:
+    """Return what `open_program` is given, or None where more than its plain options is said."""
+    given: dict[str, Any] = {}
+    rest = iter(words)
+    for word in rest:
+        name, equals, value = word.partition("=")
+        if word == "--ascii":
+            given["ascii_only"] = True
+        elif name in ("--data", "--robot"):
+            value = value if equals else next(rest, "")
+            if not value or value.startswith("-"):
+                return None
+            given[name[2:]] = Path(value) if name == "--data" else value
+        else:
+            return None
+    return given
 
 
 def _parsed() -> object:

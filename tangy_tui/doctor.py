@@ -23,6 +23,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_profiles.store import Store
 from tangy_tui.monitoring.log_check import log_problems
+from tangy_tui.text import machine
 
 if TYPE_CHECKING:
     from tangy_hw.perception.camera_hub import Sources
@@ -100,7 +101,7 @@ def _extensions() -> Iterator[Finding]:
     def activity(one: Extension) -> str:
         path = activity_files().get(one.name)
         if path is None:
-            return f"{one.value} has no {one.name}.toml."
+            return machine.no_activity(one.value, one.name)
         read_activity(path)
         return ""
 
@@ -120,7 +121,7 @@ def _extensions() -> Iterator[Finding]:
     }
     for one, problem in problems(own, checks):
         part = f"{NOUNS[one.group]} {one.name}"
-        text = problem or f"of {one.package} can be used."
+        text = problem or machine.usable(one.package)
         yield Finding(plain(part), not problem, plain(text), broken=bool(problem))
 
 
@@ -161,10 +162,10 @@ def examine_robot(
 def _camera() -> Finding:
     found = list_cameras()
     if not found:
-        return Finding("camera", False, "none is found; plug one in, or name a stream or a video.")
+        return Finding("camera", False, machine.NO_CAMERA)
     usable = [f"{device} ({title})" for device, title, may in found if may]
     if not usable:
-        what = f"this user may not use {found[0][0]} ({found[0][1]}); join the group video."
+        what = machine.camera_forbidden(found[0][0], found[0][1])
         return Finding("camera", False, what, broken=True)
     return Finding(
         "camera", True, f"{', '.join(usable)} can be used (try: tangy camera {found[0][0]})."
@@ -175,14 +176,14 @@ def _voice(which: Callable[[str], str | None]) -> Finding:
     version, problem = examine_voice(which)
     if problem:
         return Finding("voice", False, problem, broken=bool(version))
-    return Finding("voice", True, f"Tangy can speak, with {version}.")
+    return Finding("voice", True, machine.speaks_with(version))
 
 
 def _sound_output(which: Callable[[str], str | None]) -> Finding:
     player, problem = examine_output(which)
     if player:
-        return Finding("sound output", True, f"{player} plays what Tangy says.")
-    return Finding("sound output", False, f"{problem}; what Tangy says is shown as text.")
+        return Finding("sound output", True, machine.plays_with(player))
+    return Finding("sound output", False, machine.shown_as_text(problem))
 
 
 def _microphone(arecord: str | None) -> Finding:
@@ -202,9 +203,9 @@ def _microphone(arecord: str | None) -> Finding:
 def _terminal() -> Finding:
     term = os.environ.get("TERM", "")
     if not sys.stdout.isatty():
-        return Finding("terminal", True, "output goes to a pipe or file: Tangy speaks in lines.")
+        return Finding("terminal", True, machine.PIPED)
     if term in ("", "dumb"):
-        return Finding("terminal", True, f"TERM={term or 'unset'}: Tangy speaks in lines.")
+        return Finding("terminal", True, machine.dumb_terminal(term))
     size = shutil.get_terminal_size()
     encoding = locale.getpreferredencoding(False)
     return Finding("terminal", True, f"{term}, {size.columns} x {size.lines}, {encoding}.")
@@ -221,7 +222,7 @@ def _store(folder: Path) -> Finding:
         else:
             problem = plain(f"{folder}: {problems[0]}") if problems else ""
             if len(problems) > 1:
-                problem += f" And {len(problems) - 1} more: `tangy store check` names them."
+                problem += machine.more_problems(len(problems) - 1)
     if problem:
         return Finding("data folder", False, problem, broken=True)
     is_so = "is sound" if folder.exists() else "is made as soon as there is something to keep"
@@ -237,7 +238,7 @@ def _no_place(folder: Path) -> str:
     why = "is no folder" if not above.is_dir() else "cannot be written to"
     if above != folder:
         why = f"cannot be made, for {above} {why}"
-    return plain(f"{folder}: {why}; choose another folder with --data.")
+    return plain(machine.no_place(folder, why))
 
 
 def _exists(path: Path) -> bool:
@@ -249,5 +250,5 @@ def _exists(path: Path) -> bool:
 
 def _speech() -> Finding:
     if find_spec("pocketsphinx") is None:
-        return Finding("speech", False, "pocketsphinx is not installed; commands are typed.")
-    return Finding("speech", True, "Tangy can decode spoken commands.")
+        return Finding("speech", False, machine.NO_SPEECH)
+    return Finding("speech", True, machine.DECODES_SPEECH)

@@ -8,6 +8,7 @@ from io import StringIO
 from typing import Any
 
 from tangy_tui.experiments.estimates import share_interval
+from tangy_tui.text import experiments as words
 
 INKS = {
     "#010101": "var(--ink)",
@@ -79,8 +80,8 @@ def _counted(axes: Any) -> None:
     axes.yaxis.get_major_locator().set_params(integer=True)  # there is no half of a person
 
 
-def _papers(axes: Any, at: float, words: str) -> None:
-    axes.axvline(at, color=INK, linewidth=1.2, linestyle="--", label=words)
+def _papers(axes: Any, at: float, label: str) -> None:
+    axes.axvline(at, color=INK, linewidth=1.2, linestyle="--", label=label)
     axes.set_ylim(top=1.2 * axes.get_ylim()[1])  # room for the legend
     axes.legend(loc="upper right", **LEGEND)
 
@@ -109,7 +110,7 @@ def demonstrations(document: Mapping[str, Any]) -> str:
     second.hist(lengths, bins=range(0, max(lengths) + 6, 5), color=SERIES[0])
     second.set_xlim(left=max(0, min(lengths) - 5))
     _counted(second)
-    _named(second, "Length of a demonstration by chance", "behaviours", "demonstrations")
+    _named(second, words.LENGTH, "behaviours", "demonstrations")
     _papers(second, document["paper"]["behaviours_per_demonstration"], "the paper's mean")
     return figure.svg()
 
@@ -169,7 +170,7 @@ def before_convergence(document: Mapping[str, Any]) -> str:
     counts = document["suboptimal_before_convergence"]["all"]
     axes.hist(counts, bins=range(max(counts, default=0) + 2), color=SERIES[0], align="left")
     _counted(axes)
-    _named(axes, "Sub-optimal strategies before convergence", "strategies", "people")
+    _named(axes, words.BEFORE_CONVERGENCE, "strategies", "people")
     _papers(
         axes, document["paper"]["suboptimal_before_convergence"], "the paper's mean of four users"
     )
@@ -250,7 +251,7 @@ def faults_by_game(games: Sequence[Mapping[str, Any]], names: Mapping[str, str])
     axes.invert_yaxis()
     axes.set_yticks([game["number"] for game in games])
     axes.grid(visible=False)
-    _named(axes, "Faults that were diagnosed", "behaviours", "game")
+    _named(axes, words.DIAGNOSED, "behaviours", "game")
     figure.legend(columns=5)
     return figure.svg()
 
@@ -276,5 +277,5 @@ def times_to_recover(games: Sequence[Mapping[str, Any]], names: Mapping[str, str
     axes.set_xticks([0, 1, 5, 10, 25, 60, 300], ["0", "1", "5", "10", "25", "60", "300"])
     axes.minorticks_off()
     axes.grid(axis="x", color=LINE, linewidth=0.8)
-    _named(axes, "From the diagnosis until it was recovered from", "s in the simulated world", "")
+    _named(axes, words.SINCE_DIAGNOSIS, "s in the simulated world", "")
     return figure.svg()

@@ -16,7 +16,6 @@ from tangy_sim.worlds.compliance import Preferences
 from tangy_sim.worlds.faulty_world import FaultyWorld
 from tangy_sim.worlds.injection import ASKING, KINDS, MOVING_ON, WAITING, Injection, Kind
 from tangy_tui.experiments.classroom import GUIDED, RANDOM, Course, activity_of
-from tangy_tui.experiments.comparison import TO_ITS_END
 from tangy_tui.experiments.induced import InducingWorld, recovery_of
 from tangy_tui.experiments.matching import RIGHT, match_faults
 from tangy_tui.experiments.supervised import Supervised, people_of, play, supervised
@@ -24,6 +23,7 @@ from tangy_tui.experiments.sweep import Case, Settings
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.monitoring.fault import OPEN, Fault, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.comparison import TO_ITS_END
 
 REQUESTS = 20
 """Behaviours within which a person who follows nothing was asked often enough to be told of."""

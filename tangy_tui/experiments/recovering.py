@@ -15,7 +15,7 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
-from tangy_tui.experiments import comparison, published
+from tangy_tui.experiments import published
 from tangy_tui.experiments.classroom import GUIDED, Course, about, activity_of
 from tangy_tui.experiments.estimates import spread
 from tangy_tui.experiments.induced import (
@@ -40,6 +40,7 @@ from tangy_tui.experiments.sweep import Case, Piece, Settings, Sweep, Where
 from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text import comparison
 
 GAMES_A_PIECE = 20
 """Games after which other people come, whom Tangy does not know."""

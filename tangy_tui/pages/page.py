@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_profiles.saved_files import PAGE_MARK
 
 STYLE = """
 :root { color-scheme: light dark; --font: system-ui, sans-serif;
@@ -47,6 +48,7 @@ def document(title: str, subtitle: str, parts: Iterable[str], style: str = "") -
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8"/>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1"/>\n'
+        f"{PAGE_MARK}\n"
         f"<title>{escape(title)}</title>\n<style>{STYLE}{style}</style>\n</head>\n<body>\n"
         f'<h1>{escape(title)}</h1>\n<p class="dim">{escape(subtitle)}</p>\n'
         + "\n".join(parts)

@@ -13,7 +13,8 @@ from tangy_tui.monitoring.session import RESULTS, STATUS_WORDS, Progress, Sessio
 from tangy_tui.pages.beliefs import belief_drawing, interval
 from tangy_tui.pages.page import document, figure, heading, paragraph, table
 from tangy_tui.pages.timeline import INKS, ink, stages_of, timeline
-from tangy_tui.text.faults import RECOVERY_WORDS, move_words
+from tangy_tui.text import session_page as say
+from tangy_tui.text.faults import move_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import clock, day_and_time, length, time_of_day
 
@@ -69,7 +70,7 @@ svg text.on { fill: var(--on); font-weight: 700; font-size: 12px; }
 """ + "".join(f".s{n} {{ fill: var(--series-{n}); }}\n" for n in INKS)  # the stages' inks
 
 KEY = (
-    ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', "Tangy is with them"),
+    ('<rect class="visit" x="1" y="2" width="18" height="12" rx="3"/>', say.VISIT),
     ('<rect class="asks" x="1" y="6" width="18" height="4"/>', "asks for help"),
     ('<circle class="yes" cx="10" cy="8" r="5"/>', "complied"),
     ('<circle class="late" cx="10" cy="8" r="4.4"/>', "followed late"),
@@ -79,7 +80,7 @@ KEY = (
      '<line class="tick" x1="14" x2="14" y1="0" y2="16"/>', "number called, anything else"),
     ('<g class="fault minor"><circle cx="10" cy="8" r="7"/></g>', "fault"),
     ('<g class="fault critical"><path d="M10 0L18 8L10 16L2 8Z"/></g>', "critical fault"),
-    ('<rect class="halt" x="1" y="0" width="18" height="16"/>', "Tangy stood still"),
+    ('<rect class="halt" x="1" y="0" width="18" height="16"/>', say.STOOD_STILL),
 )  # fmt: skip
 """The marks of the timeline, and what they mean."""
 
@@ -118,14 +119,14 @@ def _head(session: Session) -> Iterator[str]:
     facts = [
         ("When", f"{day_and_time(games[0].at)} to {_until(session)}"),
         ("Games", ", ".join(dict.fromkeys(GAME_WORDS[game.world] for game in games))),
-        ("Who took part", ", ".join(people) or "nobody is named in the log"),
+        (say.WHO, ", ".join(people) or "nobody is named in the log"),
         ("Policy", ", ".join(policies)),
         ("How long", _how_long(session)),
     ]
     if len(games) == 1:
-        facts.append(("How it ended", _sentence(games[0].ending)))
+        facts.append((say.ENDED, _sentence(games[0].ending)))
     else:
-        facts.append(("How they ended", _endings(session)))
+        facts.append((say.ALL_ENDED, _endings(session)))
     facts.append(("Faults", _fault_sum(session)))
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in facts)
     yield f"<dl>{rows}</dl>"
@@ -166,9 +167,9 @@ def _sentence(words: str) -> str:
 
 
 def _care(session: Session) -> Iterator[str]:
-    yield heading("What to look after")
+    yield heading(say.CARE)
     if not session.look_after:
-        yield '<p class="fine">Nothing is left to do: every fault is over.</p>'
+        yield f'<p class="fine">{escape(say.NOTHING_LEFT)}</p>'
     numbers = _numbers(session)
     told: set[tuple[str, str]] = set()
     for fault in session.look_after:
@@ -185,11 +186,11 @@ def _care(session: Session) -> Iterator[str]:
 
 
 def _timelines(session: Session) -> Iterator[str]:
-    yield heading("What happened when")
+    yield heading(say.WHEN)
     numbers = _numbers(session)
     drawn = session.replays[-MOST_DRAWN:]
     if len(drawn) < len(session.replays):
-        yield paragraph(f"The last {MOST_DRAWN} of {len(session.replays)} games are drawn.")
+        yield paragraph(say.drawn_words(MOST_DRAWN, len(session.replays)))
     stages = stages_of(session.replays)
     yield _key(stages)
     for replay in drawn:
@@ -203,9 +204,8 @@ def _timelines(session: Session) -> Iterator[str]:
 def _timeline(
     replay: GameReplay, numbers: dict[str, int], session: Session, stages: Sequence[str]
 ) -> str:
-    axis = "by minutes in the game" if replay.timed else "step by step"
     drawing = timeline(replay, numbers, session.names, stages)
-    return figure(drawing, f"Game {replay.game.number}, {axis}.")
+    return figure(drawing, say.game_caption(replay.game.number, timed=replay.timed))
 
 
 def _key(stages: Sequence[str]) -> str:
@@ -221,29 +221,21 @@ def _key(stages: Sequence[str]) -> str:
 
 
 def _people(session: Session) -> Iterator[str]:
-    yield heading("How people responded")
+    yield heading(say.RESPONDED)
     asked = [person for person in session.people if person.interactions]
     if not asked:
-        yield paragraph("Nobody was asked for anything.")
+        yield paragraph(say.NOBODY_ASKED)
         return
-    yield paragraph(
-        "Drawn is how likely each person is to comply with each strategy that was used: before "
-        "the session (ring) and after it (dot), with the interval in which the truth lies with "
-        "a probability of 90%."
-    )
+    yield paragraph(say.BELIEFS)
     yield '<div class="both">'
     for person in asked:
         yield f"<div><h3>{escape(person.name)}</h3>"
-        yield figure(belief_drawing(person), _person_words(person)) + "</div>"
+        yield figure(belief_drawing(person), say.person_words(person)) + "</div>"
     yield "</div>"
     quiet = [person.name for person in session.people if not person.interactions]
     if quiet:
-        yield paragraph(f"Not asked for anything: {', '.join(quiet)}.")
+        yield paragraph(say.quiet_words(quiet))
     yield table(COLUMNS, _people_rows(asked))
-
-
-def _person_words(person: Progress) -> str:
-    return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
 
 
 def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
@@ -263,15 +255,15 @@ def _people_rows(people: Iterable[Progress]) -> Iterator[tuple[object, ...]]:
 
 
 def _faults(session: Session) -> Iterator[str]:
-    yield heading("Faults, and what was done about them")
+    yield heading(say.FAULTS)
     if not session.faults:
-        yield paragraph("There were no faults.")
+        yield paragraph(say.NO_FAULTS)
     numbers = _numbers(session)
     for replay in session.replays:
         for fault in replay.real_faults:
             yield _fault(fault, numbers[fault.id], replay, len(session.replays) > 1)
     if session.questions:
-        yield heading("Where Tangy did not know what to do")
+        yield heading(say.UNSURE)
         yield table(
             ("game", "step", "what came of it"),
             [
@@ -290,10 +282,7 @@ def _last_words(fault: Fault) -> str:
 
 def _fault(fault: Fault, number: int, replay: GameReplay, many: bool) -> str:
     kind = "critical" if fault.critical else "minor"
-    where = f"Game {replay.game.number}, step" if many else "Step"
-    facts = f"{where} {fault.step}; first recovery: {RECOVERY_WORDS[fault.recovery]}."
-    if fault.behaviour:
-        facts += f" Noticed after: {fault.behaviour}."
+    facts = say.fault_facts(fault, replay.game.number if many else None)
     ats = _times(replay, fault)
     moves = "".join(
         f'<li><span class="when">{clock(seconds)} · {at}</span><span>{words}</span></li>'
@@ -325,7 +314,7 @@ def _times(replay: GameReplay, fault: Fault) -> Iterator[tuple[float, str, str]]
 
 
 def _tables(session: Session) -> Iterator[str]:
-    yield heading("What Tangy did where")
+    yield heading(say.BEHAVIOURS)
     yield table(
         ("stage", "request", "user state", "behaviour", "success", "instances"),
         (
@@ -333,7 +322,7 @@ def _tables(session: Session) -> Iterator[str]:
             for row in session.rows
         ),
     )
-    yield heading("Faults by criticality and recovery")
+    yield heading(say.SUMS)
     yield table(
         ("criticality", "recovery", "success", "instances"),
         (

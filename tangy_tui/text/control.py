@@ -14,6 +14,8 @@ HELD = {
 }
 """What is said where the robot does not drive as it is told."""
 
+NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
+
 
 def autonomy_words(level: Autonomy) -> str:
     """Say what Tangy does of itself."""
@@ -95,9 +97,7 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "voided":
             return f"{name(about)}'s last response does not count any more."
         case "driven":
-            return HELD.get(
-                about, f"Tangy stands still: {about}." if about else "Tangy has driven."
-            )
+            return HELD.get(about, stands_words(about) if about else "Tangy has driven.")
         case "ended":
             return "You ended the game. Tangy stands still."
         case "seen before":
@@ -125,8 +125,40 @@ def noted_words(noted: StaffNote, name: Callable[[str], str], *, by_keys: bool =
         case "nothing asked":
             return "Tangy asks nothing now."
         case "not acceptable":
-            return "Tangy asks about nothing that could be said to be all right."
+            return NOT_ACCEPTABLE
         case "cannot":
             return about
         case forgotten:
             assert_never(forgotten)
+
+
+DRIVE_TITLE = "Drive by keys"
+DRIVE_HELP = (
+    "↑ and ↓ drive, ← and → turn, as long as you hold the key. Space stops; esc ends.\n\n"
+    "Tangy slows down near people and things that its laser scanner sees, and stops before it "
+    "reaches them. Then turn, or back away. It cannot see behind itself or over its scanner: look "
+    "there yourself. It backs up slowly. While the scanner is silent, Tangy does not drive."
+)
+
+
+def stands_words(why: str) -> str:
+    """Say why the robot does not drive."""
+    return f"Tangy stands still: {why}."
+
+
+NOT_WHILE_WORKING = "Not now: Tangy is busy. p pauses it, ctrl+x stops it."
+BUSY = "Not now: Tangy is busy."
+VOID_DETAIL = "It will count as not called, and come again later."
+WHO_NEEDS_HELP = "Who needs help?"
+VOTES_DETAIL = "{:.0%} of the votes. After this, i turns the questions off."
+
+
+def void_call_words(label: str) -> str:
+    """Ask whether a call is to be taken back."""
+    return f"Take {label} back?"
+
+
+def confirmed_words(proposal: Proposal, name: Callable[[str], str]) -> tuple[str, str]:
+    """Ask whether the next behaviour is to be done, and say how sure Tangy is of it."""
+    whom = f" ({name(proposal.target)})" if proposal.target else ""
+    return f"Next: {proposal.behaviour}{whom}?", VOTES_DETAIL.format(proposal.share)

@@ -62,3 +62,36 @@ def shown_words(shown: Shown, name: Callable[[str], str]) -> str:
     """
     where = f"step {shown.number} of {name(shown.demonstration)}"
     return f"{shown.step.behaviour}: {where}, by {shown.teacher}"
+
+
+WHY_HEADINGS = ("It rests on", "Shown here as well", "Shown nearby")
+"""Heads of the steps that say so, that say otherwise, and of those nearby."""
+VOTES = "Votes of the trees"
+
+
+def strategy_title(name: str, strategy: str) -> str:
+    """Head how a strategy was chosen for a person."""
+    return f"How to say it to {name}: {strategy}"
+
+
+def chosen_words(method: str) -> str:
+    """Say how a strategy is chosen from the numbers."""
+    return f"Chosen by {method}: the highest number is used."
+
+
+WHY_ASKED = "Why does Tangy ask?"
+
+
+def why_step_title(number: int) -> str:
+    """Head the grounds of a step."""
+    return f"Step {number}: why this?"
+
+
+def why_row_title(policy: str) -> str:
+    """Head the grounds of a row of a policy."""
+    return f"{policy}: why this?"
+
+
+def answered_words(teacher: str, behaviour: str) -> str:
+    """Say who answered Tangy, and what."""
+    return f"Tangy asked, and {teacher} answered: {behaviour}."

@@ -18,6 +18,7 @@ from tangy_tui.learning.online_learning import Lesson
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.learning.reachable import joint_states
 from tangy_tui.text.decisions import why_words
+from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.people import prior_words, sentence
 
 
@@ -159,7 +160,7 @@ def lesson_document(workspace: Workspace, lesson: Lesson) -> dict[str, Any]:
         "replayed": found.steps,
         "changed": [[list(c.situation), c.before, c.after] for c in found.changed],
         "overruled": found.overruled,
-        "words": found.words(),
+        "words": replay_words(found),
     }
 
 

@@ -195,3 +195,17 @@ def sheets_lines(sheets: Sequence[Sheet], when: Callable[[str], str], who: str =
 def left_words(drill: Drill) -> str:
     """Say what is kept of a drill that was left."""
     return KEPT if drill.sheet.answered else NOTHING_KEPT
+
+
+NO_HURRY = "There is no hurry: you see your time, but it does not count."
+SEE_NOW = "What you see"
+SAW = "What you saw"
+WAS_RIGHT = "What was right"
+LEAVE = "Leave the drill?"
+LEAVE_DETAIL = "Your answers are kept as an unfinished sheet."
+SHEET_KEPT = "The sheet is kept."
+
+
+def so_far_words(sheet: Sheet) -> str:
+    """Say how many points a drill has brought up to here."""
+    return f"{sheet.points} of {sheet.most} so far."

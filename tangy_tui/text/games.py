@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tangy_profiles.beliefs import probability_best
+from tangy_profiles.beliefs import Beta, probability_best
 from tangy_profiles.demonstration import Demonstration
+from tangy_profiles.state import Response
 from tangy_tui.interaction.game_events import (
     Acted,
     BeliefUpdated,
@@ -20,6 +21,8 @@ from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
 from tangy_tui.text.decisions import why_words
 from tangy_tui.text.faults import fault_lines
+from tangy_tui.text.learnt import replay_words
+from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import Name, once_words
 
 Demonstrations = Callable[[], Sequence[Demonstration]]
@@ -60,7 +63,7 @@ def game_lines(event: Event, supervision: Supervision, name: Name, teacher: str 
         case Taught(teacher, lesson):
             return [
                 f"   Tangy has learnt that from {teacher}, as {lesson.policy.name!r}.",
-                f"   {lesson.replay.words()}",
+                f"   {replay_words(lesson.replay)}",
             ]
         case DoneOnce(_, instead):
             return [f"   {once_words(instead)}"]
@@ -96,3 +99,45 @@ def why_lines(supervision: Supervision, demonstrations: Demonstrations | None) -
     votes = ", ".join(f"{behaviour} {share:.0%}" for behaviour, share in decision.votes)
     reason = world.activity.in_words(situation) if question is None else question.reason
     return [reason, f"Votes of the trees: {votes}."]
+
+
+LEAVE = "Leave in the middle of the game?"
+LEAVE_DETAIL = "The game ends here, and the log says so. Tangy keeps what it has learnt."
+STOPPED = "The game stopped"
+LEADS_HOME = "Esc leads home, where t teaches; g plays another game."
+TRIES_AGAIN = "p tries again; esc leads home."
+NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
+NOTHING_DECIDED = "Nothing has been decided yet."
+NO_UNSEEN_FAULT = "No fault that nobody has seen."
+
+
+def halted_words(reason: str) -> str:
+    """Say why a game stands still, and how to try again."""
+    return f"{reason} p tries again."
+
+
+def stopped_words(reason: str, then: str) -> str:
+    """Say why a game stopped, and what can be done then."""
+    return f"{reason}\n{then}"
+
+
+def response_words(response: Response, belief: Beta, name: Name) -> str:
+    """Say what a person did, and how often the strategy has worked."""
+    what = "complied" if response.complied else "followed, but late"
+    worked = f"{response.strategy} has worked {belief.complied} of {belief.trials} times."
+    return f"{name(response.person)} {what}: {worked}"
+
+
+def begun_words(number: int) -> str:
+    """Say that a game begins."""
+    return f"Game {number} begins."
+
+
+def over_words(steps: int) -> str:
+    """Say that a game is over, and which key plays another."""
+    return f"The game is over after {counted(steps, 'step')}. g plays another."
+
+
+def broken_off_words(steps: int, reason: str) -> str:
+    """Say that a game stopped, and why."""
+    return f"The game stopped after {counted(steps, 'step')}. {reason}"

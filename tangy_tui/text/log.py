@@ -173,3 +173,6 @@ def _person_line(person: Progress) -> str:
             change = f"{one.before.mean:.0%} -> {one.after.mean:.0%}"
             parts.append(f"{strategy}: {one.in_words} ({change})")
     return f"{person.name}, asked {counted(person.interactions, 'time')}: {'; '.join(parts)}"
+
+
+HOW_TO_GO_ON = "tangy log show 1: a game step by step. tangy log report 1: its report."

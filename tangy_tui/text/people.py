@@ -5,11 +5,12 @@ from __future__ import annotations
 from tangy_profiles.beliefs import Beliefs, Beta
 from tangy_profiles.events import EventRecord
 from tangy_profiles.people_records import FeedbackGiven, ResponseVoided, StrategySwitched
+from tangy_profiles.persuading import MethodName
 from tangy_profiles.store import Event
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.text.numbers import counted
-from tangy_tui.text.times import ago
+from tangy_tui.text.times import ago, on_day
 
 SELDOM = 0.5
 """A best strategy that works less often than this is not said to work."""
@@ -105,3 +106,88 @@ def change_words(change: Event[EventRecord]) -> str:
             return f"that {change.strategy} was switched {'on' if on else 'off'}"
         case _:
             return "the method that was chosen"
+
+
+NOBODY_KNOWN = "Nothing is known of anybody yet."
+
+METHODS: dict[MethodName, str] = {
+    "thompson": "Thompson sampling, as in the paper",
+    "bayes-ucb": "Bayes-UCB: tries less, settles sooner",
+}
+"""How a strategy can be chosen, where a person's method is set."""
+
+
+def method_name(name: str) -> str:
+    """Return what a method is called where it is set; that of another package by its name."""
+    return next((words for known, words in METHODS.items() if known == name), name)
+
+
+def method_title(name: str) -> str:
+    """Head the settings of a person's method."""
+    return f"How to persuade {name}"
+
+
+PEOPLE_HELP = (
+    "Everybody, with what works and on how many responses that rests. It is said to work when it "
+    "is at least 90% probable that no other way of asking is better; of one that alone is switched "
+    "on nobody can tell. Up and down choose a person."
+)
+STRATEGIES_HELP = (
+    "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
+    "often it was tried and how often the person complied, the mean, the interval in which the "
+    "truth lies with 90%, and the probability of being the best of those that are on. Then how "
+    "the next one is chosen, and where the beliefs began. x switches the chosen one off for this "
+    "person, or on again."
+)
+HISTORY_HELP = (
+    "What was asked and what came of it, the newest game first. v voids the chosen response; what "
+    "is void, or has no response yet, can be answered with f."
+)
+CHOOSE_COUNTING = "Choose a response that counts: tab goes to the history, arrows choose."
+CHOOSE_OPEN = "Choose a request without an answer; void a wrong answer first, with v."
+VOID = "Shall this response no longer count?"
+SWITCH_DETAIL = "What Tangy has learnt of it stays."
+
+
+def world_words(world: str) -> str:
+    """Say from which games it is told what is known."""
+    return f"What is known from {world} games."
+
+
+def void_detail(entry: FeedbackEntry, name: str) -> str:
+    """Say which response is not to count."""
+    return f"{entry.strategy}: {name} {entry_words(entry)}, {on_day(entry.at)}."
+
+
+def comply_words(entry: FeedbackEntry, name: str) -> tuple[str, str]:
+    """Ask whether a person complied, and with which request."""
+    return f"Did {name} comply?", f"The request with {entry.strategy}, {on_day(entry.at)}."
+
+
+def switch_words(strategy: str, name: str, *, on: bool) -> tuple[str, str]:
+    """Ask whether a strategy is to be switched, and say what stays."""
+    return f"Switch {strategy} {'on again' if on else 'off'} for {name}?", SWITCH_DETAIL
+
+
+def take_back_words(change: Event[EventRecord], name: str) -> tuple[str, str]:
+    """Ask whether a change is to be taken back, and say which."""
+    return f"Take this back for {name}?", f"What was said: {change_words(change)}."
+
+
+def nothing_back_words(name: str) -> str:
+    """Say that there is no change to take back."""
+    return f"There is nothing to take back for {name}."
+
+
+def strategies_title(name: str) -> str:
+    """Head the strategies of a person."""
+    return f"What works with {name}"
+
+
+COMPLIED = "Complied, of times tried (P(best))"
+P_BEST = "P(best): probability of being the best of those on. "
+STAR = "*: the most probable one."
+SETTLED = "settled: at least 0.9."
+HISTORY = "History by game"
+NO_HISTORY = "There is no history yet."
+NO_REQUESTS = "No request was put to this person yet."

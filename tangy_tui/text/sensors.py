@@ -293,3 +293,30 @@ def card_document(cards: CardSight) -> dict[str, Any]:
     age = round(max(0.0, time.monotonic() - last.stamp), 3)
     marked, hidden = places(last.marked), places(last.hidden)
     return {**document, "card": last.card, "marked": marked, "hidden": hidden, "age": age}
+
+
+DEVICES_HELP = (
+    "Each device with a word for its state: a ! where something is wrong with it, !! where "
+    "it tells Tangy nothing, and a ~ where it is simulated. Up and down choose one."
+)
+PICTURE_HELP = "What the chosen camera sees now, in small. Nothing of it is kept."
+PICTURE_COMES = "The first picture is coming ..."
+NO_CARD_CAMERA = "No camera looks at cards."
+
+
+def no_source_words(verb: str) -> str:
+    """Say that no camera is named, and how a verb of the command line names one."""
+    return (
+        f"No camera is named. Name one when you start Tangy, as in: tangy {verb} --camera "
+        "camera=0; or write its source into the robot's file."
+    )
+
+
+def no_pictures_words(label: str) -> str:
+    """Say that a device is no camera."""
+    return f"The {label} takes no pictures."
+
+
+def look_words(label: str) -> str:
+    """Say which key shows what a camera sees."""
+    return f"v shows what the {label} sees."

@@ -84,11 +84,11 @@ def card_words(activity: Activity, card: CardView) -> str:
     return " ".join(part for part in parts if part)
 
 
-def verification_lines(said: Verification) -> list[str]:
-    """Put what the verification of a command says into lines."""
+def verification_lines(said: Verification, yes: str = "Y") -> list[str]:
+    """Put what the verification of a command says into lines; `yes` is what to type for yes."""
     match said:
         case Asked(question=question, heard=heard, confidence=confidence, others=others):
-            lines = [f"Did you say: {question}? Type Y to execute it or N for a new command."]
+            lines = [f"Did you say: {question}? Type {yes} to execute it or N for a new command."]
             if confidence < 1:
                 lines.append(f"  heard {plain(heard)!r}, {confidence:.0%} sure")
             return lines + [

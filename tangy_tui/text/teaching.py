@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from tangy_tui.learning.teaching_events import (
     Begun,
+    Contradicted,
     Executed,
     Finished,
     StepUndone,
@@ -11,19 +14,22 @@ from tangy_tui.learning.teaching_events import (
 )
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Asked, NotUnderstood, Offered, Refused, Rejected
+from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import step_words, verification_lines
 
 
-def teaching_lines(event: TeachingEvent, teaching: TeachingSession) -> list[str]:
-    """Put one event of a teaching session into lines."""
+def teaching_lines(event: TeachingEvent, teaching: TeachingSession, yes: str = "Y") -> list[str]:
+    """Put one event of a teaching session into lines; `yes` is what to type for yes."""
     match event:
         case Asked() | Offered() | NotUnderstood() | Refused() | Rejected():
-            return verification_lines(event)
+            return verification_lines(event, yes)
         case Executed(number, step, _, _, speech, _):
             return [
                 f"{number}. {step_words(teaching.activity, step, teaching.name)}",
                 f"   Tangy says: {speech}",
             ]
+        case Contradicted():
+            return [f"   ! {contradicted_words(event, teaching)}"]
         case StepUndone(number, step):
             return [f"Step {number} is undone: {step.behaviour}."]
         case Begun(demonstration, resumed):
@@ -35,3 +41,91 @@ def teaching_lines(event: TeachingEvent, teaching: TeachingSession) -> list[str]
             return [f"A new demonstration by {teaching.teacher} (game {demonstration.seed})."]
         case Finished(demonstration):
             return [f"The game is over; {len(demonstration.steps)} steps were demonstrated."]
+
+
+ALL_SHOWN = "Everything that can happen was shown."
+NO_STEPS = "No steps yet."
+
+SAY_OR_TYPE = "Say or type"
+STOPPED = "STOP: the simulated robot stands still."
+WHICH_STEP = "Choose the step first: up and down, or type again 7."
+BY_KEY = (
+    "To talk, press t (in the command line ctrl+t), say it, and press t again; after 6 seconds it "
+    "ends by itself. The line of the microphone says what it hears, and what is wrong if nothing "
+    "comes. Say stop, and the robot stops."
+)
+HANDS_FREE = (
+    "Just say what Tangy should do: the microphone is open, except while Tangy speaks. Say stop, "
+    "and the robot stops."
+)
+
+
+def begin_words(*, heard: bool) -> str:
+    """Say how a demonstration begins; `heard` where commands can be spoken."""
+    return f"No steps yet. {SAY_OR_TYPE if heard else 'Type'} what Tangy should do first."
+
+
+def sayable_words(phrases: Iterable[str]) -> str:
+    """Name what can be said."""
+    return f"You can say: {', '.join(phrases)}."
+
+
+def again_words(first: int, last: int) -> tuple[str, str]:
+    """Ask whether to go back before a step, and say what becomes of the steps from there on."""
+    gone, back = f"Steps {first} to {last} are", "them back one by one"
+    if first == last:
+        gone, back = f"Step {first} is", "it back"
+    return (
+        f"Go back before step {first} and show it again?",
+        f"{gone} taken back; F3 brings {back} until you show another.",
+    )
+
+
+OVER = "The game is over. Press F7 for another game, or F5 to let Tangy learn."
+
+
+def new_words(situation: str) -> str:
+    """Say that a situation was not shown before."""
+    return f"New to Tangy: {situation}."
+
+
+def contradicted_words(event: Contradicted, teaching: TeachingSession) -> str:
+    """Say what was shown differently in this situation before, and what can be done about it."""
+    done = teaching.activity.behaviour(event.earlier.step.behaviour).question
+    number = event.earlier.number
+    here = event.earlier.demonstration == teaching.demonstration.id
+    where = f"step {number}" if here else f"step {number} of another game"
+    if event.own:
+        return (
+            f"You did something else in this situation before: {done} ({where}). "
+            "If this is a slip, undo it."
+        )
+    return (
+        f"{event.earlier.teacher} did something else in this situation: {done} ({where}). "
+        "Which is right? Undo yours, or settle it in the library."
+    )
+
+
+def undone_words(undone: Sequence[StepUndone]) -> str:
+    """Say which steps were taken back (the last one first), and how they come back."""
+    last, first = undone[0], undone[-1]
+    if last is first:
+        return f"Step {last.number} is undone: {last.step.behaviour}. F3 brings it back."
+    return f"Steps {first.number} to {last.number} are undone. F3 brings them back."
+
+
+def beginning_words(teaching: TeachingSession, *, resumed: bool) -> str:
+    """Say which game begins, or that one goes on."""
+    shown = teaching.demonstration
+    if resumed:
+        return f"Going on where you left off, after {counted(len(shown.steps), 'step')}."
+    if shown.origin == "again":
+        return f"Show it again from step {len(shown.steps) + 1}; the steps before it stay."
+    arranged = ", arranged to show everything" if shown.guided else ""
+    title = teaching.activity.title
+    return f"A new game of {title}{arranged}, demonstrated by {teaching.teacher}."
+
+
+def complete_words(steps: int) -> str:
+    """Say that a game was shown to its end."""
+    return f"The game is complete: {counted(steps, 'step')}."

@@ -15,6 +15,7 @@ from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.cameras import no_picture, pictures_in, rate_words
 from tangy_tui.text.sensors import CAMERA_STATES
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
@@ -54,7 +55,7 @@ def camera(
     if as_json:
         print_json(found)
     elif found["frames"]:
-        print(f"{found['width']} x {found['height']}, {found['rate']:.1f} pictures a second.")
+        print(rate_words(found["width"], found["height"], found["rate"]))
     if not found["works"]:
         raise typer.Exit(1)
 
@@ -164,10 +165,9 @@ def capture(
     if as_json:
         print_json(kept)
     elif kept:
-        shown = plain(str(folder))
-        print(f"The pictures are in {shown}, each with a JSON file to be labelled.")
+        print(pictures_in(plain(str(folder))))
     if not kept:
-        print(f"tangy: {found.name}: no picture came.", file=sys.stderr)
+        print(no_picture(found.name), file=sys.stderr)
         raise typer.Exit(1)
 
 

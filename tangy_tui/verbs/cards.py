@@ -13,6 +13,7 @@ from tangy_profiles.card_face import LAST_CARD, USUAL_SEED
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.command_line import PRINTING
 from tangy_tui.verbs.common import ActivityName, Json, print_json
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def cards_print(
     where = plain(" and ".join(str(path) for path in (pdf, png) if path is not None))
     print(f"{which} of deck {deck_seed}: {where}")
     if pdf is not None:
-        print('Print them in full size ("100 %"), and cut along the marks.')
+        print(PRINTING)
 
 
 @app.command("list")

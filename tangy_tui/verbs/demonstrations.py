@@ -11,6 +11,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text import settling
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -176,9 +177,9 @@ def conflicts(
             for line in rest:
                 print(line)
         if found:
-            print("Settle one: tangy demonstrations resolve 1 --right BEHAVIOUR, or --both.")
+            print(settling.SETTLE_ONE)
         else:
-            print("The demonstrations agree in every situation.")
+            print(settling.ALL_AGREE)
 
 
 @app.command()
@@ -254,7 +255,7 @@ def _change(
             return
         print(plain(f"{before}{_edit_words(workspace, editor, edit)}"))
         if not before:
-            print("`tangy demonstrations undo` takes it back.")
+            print(settling.UNDO_TAKES_BACK)
         if edit.done.what == "resolve":
             left = len(editor.library.conflicts)
             print(f"{counted(left, 'conflict')} left; then `tangy learn`.")
@@ -303,8 +304,8 @@ def accepted(
             )
             return
         if take_back is not None:
-            print("Taken back: it is a fault again when it happens.")
+            print(settling.FAULT_AGAIN)
         for n, (one, what) in enumerate(zip(there, words, strict=True), 1):
             print(plain(f"{n}. {local_time(one.at)}, {one.by}: {what}"))
         if not there:
-            print("Nothing unexpected is taken for all right.")
+            print(settling.NOTHING_ACCEPTED)

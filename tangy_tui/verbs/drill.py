@@ -8,6 +8,7 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.person import read_name
+from tangy_tui.text.command_line import PREPARING_DRILL
 from tangy_tui.verbs.common import (
     ActivityName,
     Ascii,
@@ -68,7 +69,7 @@ def drill(
         from tangy_tui.text.drills import left_words
 
         if not as_json:
-            print_line("Tangy is preparing the drill ...")
+            print_line(PREPARING_DRILL)
         made = Drill.of(
             workspace.activity,
             workspace.robot,

@@ -14,6 +14,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import experiment_stopped, report_in
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json
 
 if TYPE_CHECKING:
@@ -127,10 +128,10 @@ def _run(
     as_json: bool,
 ) -> None:
     from tangy_tui.app.workspace import data_folder
-    from tangy_tui.experiments.comparison import SOURCES, compare
     from tangy_tui.experiments.report import report as page_of
     from tangy_tui.experiments.sweep import Where
     from tangy_tui.pages import page
+    from tangy_tui.text.comparison import SOURCES, compare
 
     if jobs == 0 or jobs < -1:
         raise TangyError(f"--jobs {jobs}: say how many processes, or -1 for one on each core.")
@@ -149,7 +150,7 @@ def _run(
     for name, words in SOURCES.items():
         print(f"({name}: {words}.)")
     if report is not None:
-        print(plain(f"The report is in {report}."))
+        print(plain(report_in(report)))
 
 
 @contextmanager
@@ -173,9 +174,5 @@ def _progress() -> Iterator[Callable[[str, int, int], None]]:
             yield tell
     except KeyboardInterrupt:
         pieces = sum(done.values())
-        print(
-            f"tangy: Stopped; {pieces} finished pieces of work are kept. "
-            "The same command goes on from there.",
-            file=sys.stderr,
-        )
+        print(experiment_stopped(pieces), file=sys.stderr)
         raise

@@ -16,6 +16,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import MOST_PEOPLE, Person, folded
 from tangy_profiles.reading import plain
+from tangy_tui.text.faces import NO_FACES, face_forgotten
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -121,7 +122,7 @@ def faces_list(seed: Seed = None, data: Data = None, as_json: Json = False) -> N
             print_json(rows)
             return
         if not rows:
-            print("Nobody's face is known: tangy faces enrol NAME --from CAMERA or a folder.")
+            print(NO_FACES)
         for row in rows:
             day = row["agreed"][:10]
             print(
@@ -147,10 +148,8 @@ def faces_forget(
         forgotten = forget_face(workspace.store, known.id)
         if as_json:
             print_json({"id": known.id, "name": known.name, "forgotten": forgotten})
-        elif forgotten:
-            print(plain(f"The face of {known.name} is forgotten."))
         else:
-            print(plain(f"Nothing was kept of the face of {known.name}."))
+            print(plain(face_forgotten(known.name, forgotten)))
 
 
 @contextmanager

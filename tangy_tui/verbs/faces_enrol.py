@@ -16,6 +16,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person, folded
 from tangy_profiles.reading import plain
 from tangy_profiles.state import FRONT
+from tangy_tui.text.faces import consent_question, enrolled_lines
 from tangy_tui.verbs.common import Data, Json, Seed, print_json
 from tangy_tui.verbs.faces import GUEST, SOURCES, Robot, find_anybody, knowing
 
@@ -104,17 +105,16 @@ def faces_enrol(
             told = {"id": person.id, "name": person.name, "pictures": taken, "kind": reader.kind}
             print_json({**told, "looks_like": like, "several": several, "from": rows})
             return
-        if new:
-            tell(f"{person.name} does not play, and is known as {person.id}.")
-        few = f"; with {ADVISED} it is surer" if taken < ADVISED else ""
-        tell(f"{person.name} is known by {taken} pictures of {len(rows)}{few}.")
-        if several:
-            tell(
-                "They may show more than one person: look them through. `tangy faces forget "
-                f"{person.id}` deletes what was kept."
-            )
-        if like is not None:
-            tell(f"They look like those of {workspace.store.names().get(like, like)} ({like}).")
+        known = "" if like is None else f"{workspace.store.names().get(like, like)} ({like})"
+        for line in enrolled_lines(
+            person,
+            new=new,
+            taken=taken,
+            advised=ADVISED,
+            several=bool(several),
+            like=known,
+        ):
+            tell(line)
 
 
 def _find(workspace: Workspace, wanted: str) -> tuple[Person, bool]:
@@ -157,10 +157,7 @@ def _agreed(workspace: Workspace, person: Person, how: str | None) -> str | None
                 f"with --consent; nothing is kept before."
             )
         )
-    question = (
-        f"{person.name}, may Tangy know your face? It keeps measurements of it, no pictures, on "
-        f"this machine, in {store.folder}; `tangy faces forget` deletes them at any time."
-    )
+    question = consent_question(person.name, store.folder)
     if typer.confirm(plain(question), default=False, err=True):
         return "asked on the terminal"
     consent(store, person.id, False, "asked on the terminal")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,15 +10,15 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.learnt import changed_lines, grounds, learnt_lines, only_unfinished
+from tangy_tui.text.settling import LEFT_OPEN, WHICH_IS_RIGHT, how_to_settle
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.state import Situation
-    from tangy_profiles.teaching_records import PolicyLearnt
     from tangy_tui.app.workspace import Workspace
-    from tangy_tui.learning.policies import Change
     from tangy_tui.learning.policy import Policy
 
 MOST_SHOWN = 8
@@ -43,6 +42,7 @@ def learn(
     """Learn a policy from the demonstrations, after settling what they disagree about."""
     from dataclasses import replace
 
+    from tangy_tui.learning.coverage import NOT_SHOWN
     from tangy_tui.learning.forest_cache import ForestCache
     from tangy_tui.learning.library import read_library
     from tangy_tui.learning.policies import (
@@ -69,7 +69,7 @@ def learn(
         used = [d for d in shown if d.finished or (unfinished and d.steps)]
         left_out = [d for d in shown if d.steps and d not in used]
         if left_out and not used:
-            raise TangyError(_only_unfinished(left_out))
+            raise TangyError(only_unfinished(sum(len(d.steps) for d in left_out)))
         before = last_policy(workspace.store, workspace.activity.name)
         used, notices = without_strange_steps(workspace.activity, used)
         say_notices(notices)
@@ -91,8 +91,11 @@ def learn(
             more = {"steps": steps, "left_out": len(left_out), "changed": told}
             print_json({**found, **more})
         else:
-            _tell_learnt(workspace, policy, steps, len(left_out))
-            _tell_changed(workspace, before, changed)
+            of, apart = workspace.activity, len(left_out)
+            lines = learnt_lines(of, policy, steps, apart, NOT_SHOWN)
+            if before is not None:
+                lines += changed_lines(of, plain(before.name), changed)
+            print(*lines, sep="\n")
 
 
 def policy(
@@ -141,13 +144,13 @@ def _settle_conflicts(workspace: Workspace) -> None:
         answers = list(conflict.answers)
         while True:
             try:
-                said = input("Which is right? A number, b for all of them, Enter to leave it: ")
+                said = input(WHICH_IS_RIGHT)
             except EOFError:
                 print()
                 return
             word = " ".join(said.split()).lower()
             if word == "":
-                print("Left open: Tangy will ask when it comes about.")
+                print(LEFT_OPEN)
                 break
             if word == "b":
                 editor.resolve(conflict, *answers)
@@ -158,17 +161,7 @@ def _settle_conflicts(workspace: Workspace) -> None:
             if word in answers:
                 editor.resolve(conflict, word)
                 break
-            print(f"Type a number from 1 to {len(answers)}, the answer itself, b, or just Enter.")
-
-
-def _only_unfinished(shown: list[Demonstration]) -> str:
-    from tangy_tui.text.numbers import counted
-
-    steps = counted(sum(len(d.steps) for d in shown), "step")
-    return (
-        f"No demonstration is finished yet: {steps} are kept. Go on with `tangy teach`, or learn "
-        "from them with --unfinished."
-    )
+            print(how_to_settle(len(answers)))
 
 
 def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]:
@@ -176,54 +169,6 @@ def _of_teacher(shown: list[Demonstration], teacher: str) -> list[Demonstration]
     if teacher not in teachers:
         raise TangyError(plain(f"--teacher {teacher}: {nearest(teacher, teachers)}"))
     return [d for d in shown if d.teacher == teacher]
-
-
-def _tell_learnt(workspace: Workspace, policy: Policy, steps: int, left_out: int) -> None:
-    from tangy_tui.learning.coverage import NOT_SHOWN
-    from tangy_tui.text.numbers import counted
-
-    activity = workspace.activity
-    unseen = [s for s in activity.situations if not policy.decide(s).seen]
-    contested = [s for s in activity.situations if policy.decide(s).contested]
-    seen = len(activity.situations) - len(unseen)
-    print(
-        f"Learnt {policy.name!r} from {counted(len(policy.demonstrations), 'demonstration')} "
-        f"({steps} steps): {seen} of {len(activity.situations)} situations were shown."
-    )
-    if unseen:
-        print(NOT_SHOWN)
-    for situation in unseen:
-        print(f"  {activity.not_yet(situation)} ({activity.in_words(situation)})")
-    if contested:
-        print(f"Demonstrations disagree about {counted(len(contested), 'situation')}:")
-        for situation in contested:
-            answers = " or ".join(b for b, _ in policy.decide(situation).votes)
-            print(f"  {activity.in_words(situation)}: {answers}")
-        print(
-            "Tangy will not act there, but ask. `tangy demonstrations conflicts` shows the steps, "
-            "`tangy demonstrations resolve` settles it; then learn again."
-        )
-    if left_out:
-        print(
-            f"{counted(left_out, 'unfinished demonstration')} left out; "
-            "--unfinished learns from them too."
-        )
-
-
-def _tell_changed(
-    workspace: Workspace, before: PolicyLearnt | None, changed: Sequence[Change]
-) -> None:
-    """Say what the new policy does otherwise than the one before."""
-    if before is None:
-        return
-    name = plain(before.name)
-    if not changed:
-        print(f"It does the same as {name!r} before it, in every situation.")
-        return
-    print(f"Otherwise than {name!r} before it:")
-    for change in changed:
-        where = workspace.activity.in_words(change.situation)
-        print(f"  {where}: was {change.before}, is now {change.after}")
 
 
 # ------------------------------------------------------------------------------------- showing
@@ -296,9 +241,7 @@ def _why(workspace: Workspace, name: str, wanted: str, as_json: bool) -> None:
         return
     for sentence in why_words(workspace.activity, why):
         print(sentence)
-    for title, steps in (
-        ("It rests on", why.rests_on), ("Against it", why.against), ("Nearby", why.near),
-    ):  # fmt: skip
+    for title, steps in grounds(why):
         if steps:
             print(f"{title}:")
             for step in steps[:MOST_SHOWN]:

@@ -15,6 +15,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import cut_off, recordings_deleted
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, as_given, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace, say_notices
 
@@ -101,7 +102,7 @@ def _cut_off(file: Path) -> str:
     from tangy_hw.audio.wav import seconds_cut_off
 
     missing = seconds_cut_off(file)
-    return f"{file}: ends {missing:.1f} s early; what is there was heard." if missing else ""
+    return cut_off(file, missing) if missing else ""
 
 
 def _meaning(row: dict[str, Any], names: dict[str, str]) -> str:
@@ -128,7 +129,7 @@ def _bench(folder: Path, phrasebook: Phrasebook, settings: EvidenceSettings, as_
     from tangy_tui.speech.lexicon import Lexicon
     from tangy_tui.speech.practice import Practice, practise
     from tangy_tui.speech.recogniser import Recogniser
-    from tangy_tui.speech.report import practice_lines
+    from tangy_tui.text.practice import practice_lines
 
     found = Labels(phrasebook).find(folder)
     heard = Lexicon(phrasebook, suggest=lambda word: "").heard()
@@ -176,8 +177,7 @@ def _forget(workspace: Workspace, as_json: bool) -> None:
     if as_json:
         print_json({"deleted": count, "left": left})
         return
-    deleted = f"{counted(count, 'recording')} deleted"
-    print(f"{deleted}; nothing more is recorded until somebody agrees again.")
+    print(recordings_deleted(count))
     if left:
         there = plain(str(workspace.store.folder / FOLDER))
         files = counted(left, "other file is", "other files are")

@@ -13,7 +13,8 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.given_file import read_given_text
 from tangy_profiles.reading import plain
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.command_line import SWITCHING_ON
+from tangy_tui.text.outcomes import faults_logged
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import HandsFree, Listening, Mic, Mode, SpokenAnswers
 from tangy_tui.verbs.opening import full_screen, open_workspace
@@ -166,11 +167,12 @@ def live(
                         Phrasebook(workspace.activity, workspace.people),
                         who,
                         sound=sound,
+                        spoken=True,
                     ),
                 )
             )
         if not as_json:
-            print("Switching the robot on ...", file=sys.stderr)
+            print(SWITCHING_ON, file=sys.stderr)
         from tangy_tui.app.switching_on import switched_on
 
         with switched_on(opening, stepped=bench and not plain_lines) as world:
@@ -214,13 +216,14 @@ def _play(
     workspace: Workspace, supervision: Supervision, games: int, as_json: bool, *, expert: bool
 ) -> bool:
     """Play games, tell of them, and return whether all of them came to their end."""
-    from tangy_tui.app.live_games import LiveGames
+    from tangy_tui.app.live_games import LiveGames, News
+    from tangy_tui.text.live_news import live_lines
     from tangy_tui.ui import reports
 
     played = LiveGames(workspace, supervision)
 
-    def tell(events: list[Event]) -> None:
-        for line in [] if as_json else played.lines(events):
+    def tell(events: list[Event], news: list[News]) -> None:
+        for line in [] if as_json else live_lines(events, news, workspace.name):
             print(plain(line), flush=True)
 
     bar = reports.progress(range(games), "Playing", quiet=as_json or games < 2)
@@ -240,6 +243,5 @@ def _play(
         print(f"pose error: median {off['median']} m, p95 {off['p95']} m")
         print(f"real-time factor: {document['real_time_factor']}")
     if document["faults"]:
-        faults = counted(len(document["faults"]), "fault")
-        print(f"{faults}: `tangy log report last` tells.", file=sys.stderr)
+        print(faults_logged(len(document["faults"])), file=sys.stderr)
     return to_their_end

@@ -11,6 +11,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import counts_as, report_in
 from tangy_tui.verbs.common import Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import say_aside, say_notices
 
@@ -113,7 +114,7 @@ def log_report(
     if as_json:
         print_json(session.to_json())
     elif html is not None:
-        print(plain(f"The report is in {html}."))
+        print(plain(report_in(html)))
     else:
         for line in session_lines(session):
             print_line(plain(line))
@@ -149,7 +150,7 @@ def log_world(
     if as_json:
         print_json(now.to_json())
     else:
-        print_line(plain(f"Game {now.number} counts as a {now.world} game."))
+        print_line(plain(counts_as(now.number, now.world)))
 
 
 @contextmanager

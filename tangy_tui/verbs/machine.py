@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import log_hints
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 
@@ -30,8 +31,7 @@ def _print_logs(folder: Path, *, as_json: bool) -> None:
     for row in rows:
         size = "not yet" if row["bytes"] is None else f"{row['bytes']:,} bytes"
         print(plain(f"{row['file']}: {row['of']} ({size})"))
-    print("Each line has the id of its command in brackets, the same in every file: grep for it.")
-    print(f"{LEVEL}=debug in the environment writes more, {LEVEL}=error less.")
+    print(*log_hints(LEVEL), sep="\n")
 
 
 def doctor(

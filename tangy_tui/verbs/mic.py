@@ -13,6 +13,7 @@ import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.mic_check import LOUD_ENOUGH
 from tangy_tui.verbs.common import Data, as_given
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ async def _show(forwarder: Forwarder) -> None:
         words = forwarder.meter.words(speaking=connected == FIRST_WORDS)
         kind = words.partition(":")[0].rstrip("0123456789 s")
         if kind != wrong or connected == FIRST_WORDS:
-            _say(words or "The sound is loud enough.")
+            _say(words or LOUD_ENOUGH)
             connected += connected == FIRST_WORDS
         wrong = kind
 

@@ -10,6 +10,7 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
+from tangy_tui.text.mic_check import checked_lines
 from tangy_tui.verbs.common import ActivityName, Data, Json, print_json, print_line
 from tangy_tui.verbs.opening import open_workspace
 
@@ -71,7 +72,7 @@ def check(
         if as_json:
             print_json({"source": mic, "stored": stored, **checked.document()})
         else:
-            for line in _lines(checked, mic):
+            for line in checked_lines(checked, mic):
                 print(plain(line))
         if not stored:
             print(f"tangy: {checked.reason}", file=sys.stderr)
@@ -134,43 +135,3 @@ def _patience(mic: str) -> float:
 
     from_elsewhere = mic.partition(":")[0] == "socket"
     return PATIENCE if sys.stderr.isatty() or from_elsewhere else ALONE
-
-
-def _lines(checked: CheckResult, mic: str) -> list[str]:
-    """Say what came of it."""
-    from tangy_tui.speech.evidence import USUAL
-    from tangy_tui.speech.loudness import CLEAR, FAIR
-
-    figures, above = checked.chosen.figures, checked.voice - checked.room
-    how = "clear" if above >= CLEAR else "enough" if above >= FAIR else "too little"
-    lines = [f"Your voice is {max(0.0, above):.0f} dB louder than the room: {how}."]
-    if not checked.room_heard:
-        lines = [
-            "There is no noise of a room in it at all (digital silence), so how much louder your "
-            "voice is was not measured."
-        ]
-    lines += [
-        f"  asked for {asked.text!r}, heard {words!r}" if words is not None
-        else f"  asked for {asked.text!r}, heard nothing"
-        for asked, words in checked.heard
-        if asked.meant and words != asked.text
-    ]  # fmt: skip
-    offered = f", {figures.offered} offered as a choice" if figures.offered else ""
-    taken = (
-        f"{figures.taken} of {figures.others} other sentences taken for one"
-        if figures.others
-        else "no other sentence was heard"
-    )
-    lines.append(
-        f"{figures.understood} of {figures.commands} commands understood{offered}; {taken}."
-    )
-    usual = checked.chosen.usual
-    if checked.parted and checked.chosen.settings == USUAL:
-        lines.append(f"The usual settings suit this microphone; stored for {mic}.")
-    elif checked.parted:
-        lines.append(
-            f"With the usual settings: {usual.understood} understood, {usual.offered} offered, "
-            f"{usual.taken} taken for one."
-        )
-        lines.append(f"Other settings suit this microphone better; stored for {mic}.")
-    return lines + list(checked.advice)

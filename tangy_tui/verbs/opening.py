@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import more_left_out
 from tangy_tui.ui.terminal import terminal_kind
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def say_aside(store: Store) -> None:
     """Say which events of the log were left out of what was just done with it."""
     told = [store.aside[seq] for seq in sorted(store.aside)]
     if (more := len(told) - MOST_TOLD) > 0:
-        told[MOST_TOLD:] = [f"{more} more are left out: `tangy store check` names them."]
+        told[MOST_TOLD:] = [more_left_out(more)]
     say_notices(told)
 
 

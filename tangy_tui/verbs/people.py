@@ -13,6 +13,7 @@ from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_world import GameWorld, read_game_world
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.names import known_now, renamed, say_otherwise
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, Users, as_given, print_json
 from tangy_tui.verbs.opening import open_workspace
 
@@ -267,12 +268,12 @@ def people_rename(
             named_so = {"id": named.id, "name": name, **how_said(named).to_json()}
             print_json({**named_so, "sounds_like": like})
             return
-        print(f"{named.id} is now called {plain(name)}.")
+        print(renamed(named.id, plain(name)))
         options = as_given(data, users)
         lines = naming_lines(named, options)
         if clash is not None:
             verb = f'tangy people pronounce {named.id}{options} "R OW Z AH"'
-            lines = [clash.sentence, f"Say it otherwise, or choose another name: {verb}"]
+            lines = [clash.sentence, say_otherwise(verb)]
         for line in lines:
             print(plain(line))
 
@@ -289,7 +290,7 @@ def _changing(
         yield workspace, found
         record = _record(workspace, found, _world(world))
         if not _printed(record, as_json):
-            print(plain(f"Now: {sentence(record)}, in {record.world} games."))
+            print(plain(known_now(sentence(record), record.world)))
             off = sorted(record.known.off)
             print(plain(f"Method: {method_words(record)}.") + _off_words(off))
 

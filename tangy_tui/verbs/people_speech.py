@@ -10,6 +10,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.names import if_right, voice_words
 from tangy_tui.verbs.common import Data, Json, Seed, Users, as_given, print_json
 from tangy_tui.verbs.opening import open_workspace
 from tangy_tui.verbs.people import Who
@@ -63,7 +64,7 @@ def people_pronounce(
                 print(plain(clash.sentence))
             elif said.source == "suggested":
                 verb = f"tangy people pronounce {found.id}{as_given(data, users)}"
-                print(plain(f"If that is right: {verb} --accept"))
+                print(plain(if_right(verb)))
     if hear:
         _hear(said.phones, found, sink)
 
@@ -103,12 +104,7 @@ def people_voice(
 
 def voice_sentence(person: Person) -> str:
     """Say how a person is spoken to."""
-    parts = []
-    if person.voice.rate is not None:
-        parts.append(f"at {person.voice.rate} words a minute")
-    if person.voice.voice is not None:
-        parts.append(f"in the voice {person.voice.voice}")
-    return f"Tangy speaks to {person.name} {' '.join(parts) or 'as to everybody else'}."
+    return voice_words(person.name, person.voice.rate, person.voice.voice)
 
 
 def _check_voice(wanted: VoicePreference) -> None:

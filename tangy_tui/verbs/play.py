@@ -9,6 +9,8 @@ import typer
 
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
+from tangy_tui.text.command_line import TEACH_YOURSELF
+from tangy_tui.text.outcomes import did_not_come, faults_played
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,
@@ -170,7 +172,7 @@ def demo(
             from tangy_tui.ui.run import run_demo
 
             status = run_demo(workspace, seed=seed, ascii_only=ascii_only)
-            print("Teach it yourself: tangy teach. All you can do: tangy --help.")
+            print(TEACH_YOURSELF)
             raise typer.Exit(status)
         from tangy_tui.console.demo import tell
 
@@ -194,7 +196,6 @@ def _play_headless(
     from tangy_tui.interaction.tally import Tally
     from tangy_tui.monitoring.fault import fault_documents
     from tangy_tui.text.documents import lesson_document
-    from tangy_tui.text.numbers import counted
     from tangy_tui.text.situations import lesson_words
     from tangy_tui.ui import reports
 
@@ -229,12 +230,9 @@ def _play_headless(
             print(lesson_words(workspace.activity, lesson))
         reports.print_tally(workspace, tally, beliefs)
         for one, times in tally.absent.items():
-            print(f"{one} did not come about in {times} of {games} games.")
+            print(did_not_come(one, times, games))
         if faults:
             critical = sum(fault.get("criticality") == "critical" for fault in faults)
-            print(
-                f"{counted(len(faults), 'fault')}, {critical} of them critical: "
-                "`tangy log` lists the games, `tangy log report last` tells of the last one."
-            )
+            print(faults_played(len(faults), critical))
     if tally.stopped:
         raise typer.Exit(1)  # so that a script knows that games did not come to their end

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.outcomes import fault_left, injecting_words
 from tangy_tui.verbs.common import print_json, print_line
 from tangy_tui.verbs.opening import say_notices
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.console.staff import StaffLines
     from tangy_tui.learning.policy import Policy
-    from tangy_tui.monitoring.supervision import Supervision
+    from tangy_tui.monitoring.supervision import Event, Supervision
 
 PolicyName = Annotated[
     str,
@@ -73,8 +75,7 @@ def recall(workspace: Workspace, wanted: str, *, quiet: bool) -> Policy:
     learnt, notices = load_policy(workspace.store, workspace.activity, wanted)
     left = None if quiet else uncleared(workspace.store)
     if left is not None:
-        last = f"The last game ended with a fault that nobody cleared: {left.name}."
-        notices = [*notices, last]
+        notices = [*notices, fault_left(left.name)]
     say_notices(notices)
     return learnt
 
@@ -94,7 +95,7 @@ def list_injections(as_json: bool) -> None:
     for kind in KINDS.values():
         when = kind.shows if kind.shows == "at once" else f"while {kind.shows}"
         print(f"{kind.name:<{width}}  {kind.words} (shows {when})")
-    print(f"\nAs in: --inject {next(iter(KINDS))}@12. After @ comes a step, after ~ a chance.")
+    print(injecting_words(next(iter(KINDS))))
 
 
 def play_with_staff(
@@ -145,10 +146,12 @@ def _lines(
 ) -> StaffLines:
     from tangy_tui.app.game_controller import GameController
     from tangy_tui.app.live_games import LiveGames
-    from tangy_tui.console.inputs import line_reader
+    from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.staff import StaffLines
+    from tangy_tui.console.typed_yes import TypedYes
     from tangy_tui.interaction.voiding import void_last
     from tangy_tui.learning.library import read_library
+    from tangy_tui.text.live_news import news_lines
 
     def void(person: str) -> bool:
         return void_last(workspace.store, supervision.game.game, person, teacher)
@@ -158,6 +161,10 @@ def _lines(
         return [entry.demonstration for entry in entries]
 
     live = None if robot is None else LiveGames(workspace, supervision)
+
+    def new(events: Sequence[Event]) -> list[str]:
+        return [] if live is None else [*news_lines(live.take(events), workspace.name)]
+
     return StaffLines(
         GameController(supervision, teacher, robot=robot, void=void),
         workspace.name,
@@ -165,6 +172,7 @@ def _lines(
         line_reader(None),
         print_line,
         speed=speed,
-        also=(lambda events: ()) if live is None else live.take,
+        also=new,
         demonstrations=shown,
+        yes=TypedYes(terminal=is_typed(None), setting=workspace.settings.question),
     )

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from tangy_tui import __version__
+from tangy_tui.text.command_line import no_screens
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.verbs.catalogue import LazyVerbs
 from tangy_tui.verbs.common import Ascii, Data
@@ -48,7 +49,7 @@ def program(
     elif full_screen():
         raise typer.Exit(open_program(data, robot=robot or "tangy", ascii_only=ascii_only))
     else:
-        print(f"No screens here ({terminal_kind().reason}): try `tangy teach --plain`.\n")
+        print(no_screens(terminal_kind().reason))
         print(context.get_help())
 
 

@@ -13,6 +13,7 @@ from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import nearest, plain
+from tangy_tui.text.cameras import TOGETHER
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Json, print_json
 
@@ -188,7 +189,7 @@ def _explain(readings: list[CardReading]) -> None:
         print(f"{', '.join(signs)}.")
     cards = [reading.card for reading in readings if reading.card is not None]
     if len(set(cards)) < len(cards) and any(reading.hidden for reading in readings):
-        print("Several pictures of one card tell more together: add --together.")
+        print(TOGETHER)
 
 
 def _called(text: str, activity: Activity) -> set[int]:

@@ -13,6 +13,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.command_line import throats
 from tangy_tui.verbs.common import ActivityName, Data, Json, Seed, print_json
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ def _list(synthesiser: Synthesiser, as_json: bool) -> None:
         return
     for name, title in sorted(voices.items()):
         print(f"{name:<20}  {title}")
-    print(f"\nAdd one of these for another throat, as in en-gb+f3: {', '.join(variants)}.")
+    print(throats(variants))
 
 
 def _write(wav: Path, out: Path) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from tangy_profiles.card_face import USUAL_SEED
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
+from tangy_tui.text.cameras import NO_SOURCE
 from tangy_tui.verbs.cards import DeckSeed
 from tangy_tui.verbs.common import ActivityName, Ascii, Data, Json, Seed, print_json
 from tangy_tui.verbs.opening import full_screen, open_workspace
@@ -78,7 +79,7 @@ def sensors(
         for line in card["words"]:
             print(line)
         if not live:
-            print("No camera has a source: name one, as in `tangy sensors --camera camera=0`.")
+            print(NO_SOURCE)
     if not works:
         raise typer.Exit(1)
 

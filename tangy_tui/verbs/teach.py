@@ -14,6 +14,7 @@ import typer
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
+from tangy_tui.text.progress import NOTHING_SHOWN, coverage_so_far, situations_shown
 from tangy_tui.verbs import common
 from tangy_tui.verbs.hearing import (
     HandsFree,
@@ -127,12 +128,9 @@ def _teach_by_script(teaching: TeachingSession, games: int, as_json: bool) -> No
                 done.append(event.demonstration)
                 shown = {step.state.situation for d in done for step in d.steps}
                 if not as_json:
-                    print(
-                        f"Demonstration {number + 1} (game {event.demonstration.seed}): "
-                        f"{len(event.demonstration.steps)} steps; "
-                        f"{len(shown)} of {len(teaching.activity.situations)} situations "
-                        "shown so far."
-                    )
+                    game, steps = event.demonstration.seed, len(event.demonstration.steps)
+                    known = len(shown), len(teaching.activity.situations)
+                    print(coverage_so_far(number + 1, game, steps, *known))
     if as_json:
         common.print_json({"demonstrations": [demonstration_document(d) for d in done]})
 
@@ -147,8 +145,9 @@ def _teach_by_lines(
     resume: bool,
 ) -> None:
     from tangy_tui.app.workspace import data_folder, teacher_name
-    from tangy_tui.console.inputs import line_reader
+    from tangy_tui.console.inputs import is_typed, line_reader
     from tangy_tui.console.teaching import TeachingLines, command_line
+    from tangy_tui.console.typed_yes import TypedYes
     from tangy_tui.text.documents import demonstration_document
 
     folder = workspace.store.folder
@@ -169,6 +168,7 @@ def _teach_by_lines(
         why=lambda: _why(workspace, teaching),
         resume=command_line("teach", teacher=who, **options),
         learn=command_line("learn", **options),
+        yes=TypedYes(terminal=is_typed(script), setting=workspace.settings.question),
     )
     asyncio.run(lines.run(resume=resume))
     if as_json:
@@ -184,7 +184,7 @@ def _seen(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     library = read_library(workspace.store, workspace.activity.name)
     shown = [d for d in library.finished if d.id != present.id]
     found = coverage(workspace.activity, [*shown, present])
-    lines = [f"{len(found.seen)} of {len(found.times)} situations were shown."]
+    lines = [situations_shown(len(found.seen), len(found.times))]
     return lines + [f"  {words}" for words in missing_words(workspace.activity, found)]
 
 
@@ -199,7 +199,7 @@ def _why(workspace: Workspace, teaching: TeachingSession) -> list[str]:
     try:
         policy = foresee(workspace.store, workspace.activity, present)
     except NothingToLearnFrom:
-        return ["Nobody has shown Tangy anything yet."]
+        return [NOTHING_SHOWN]
     library = read_library(workspace.store, workspace.activity.name)
     shown = [d for d in library.demonstrations if d.id != present.id]
     why = explain(policy, [*shown, present], teaching.world.observe().situation)

@@ -1,0 +1,21 @@
+"""What is said of cameras and of the pictures that they gave."""
+
+from __future__ import annotations
+
+TOGETHER = "To read several pictures as one card, add --together."
+NO_SOURCE = "No camera has a source. Name one: `tangy sensors --camera camera=0`."
+
+
+def rate_words(width: int, height: int, rate: float) -> str:
+    """Say how large a camera's pictures are (pixels), and how many come a second."""
+    return f"{width} x {height}, {rate:.1f} pictures a second."
+
+
+def pictures_in(folder: object) -> str:
+    """Say where pictures of cards were put."""
+    return f"The pictures are in {folder}. Label each one in the JSON file beside it."
+
+
+def no_picture(source: str) -> str:
+    """Say that a camera gave nothing."""
+    return f"tangy: {source}: no picture came."

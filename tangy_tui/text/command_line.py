@@ -1,0 +1,63 @@
+"""What commands say when they are done: where something is, and which command comes next."""
+
+from __future__ import annotations
+
+from tangy_tui.text.numbers import counted
+
+TEACH_YOURSELF = "Teach it yourself with `tangy teach`. See all commands with `tangy --help`."
+SWITCHING_ON = "Switching the robot on ..."
+PREPARING_DRILL = "Tangy is preparing the drill ..."
+PRINTING = "Print them at full size (100%), and cut along the marks."
+
+
+def no_screens(why: str) -> str:
+    """Say that screens cannot be drawn here, and what can be done instead."""
+    return f"No screens here ({why}). Try `tangy teach --plain`.\n"
+
+
+def report_in(place: object) -> str:
+    """Say where a report was written."""
+    return f"The report is in {place}."
+
+
+def cut_off(file: object, seconds: float) -> str:
+    """Say that a recording ends too early, by so many seconds."""
+    return f"{file}: ends {seconds:.1f} s early; what is there was heard."
+
+
+def recordings_deleted(count: int) -> str:
+    """Say how many recordings were deleted."""
+    deleted = f"{counted(count, 'recording')} deleted"
+    return f"{deleted}. Tangy records nothing more until a person agrees again."
+
+
+def counts_as(game: int, world: str) -> str:
+    """Say in which world a game was played, from now on."""
+    return f"Game {game} counts as a {world} game."
+
+
+def log_hints(variable: str) -> tuple[str, ...]:
+    """Say how to read the logs of the processes, and which variable has them write more."""
+    return (
+        "Each line shows the id of its command in brackets. Search all files for it with grep.",
+        f"Set {variable}=debug to log more, {variable}=error to log less.",
+    )
+
+
+def more_left_out(count: int) -> str:
+    """Say that more rows of the log were left out than were told."""
+    entries = counted(count, "more entry is", "more entries are")
+    return f"{entries} left out. `tangy store check` names them."
+
+
+def experiment_stopped(pieces: int) -> str:
+    """Say what is kept of an experiment that was stopped."""
+    return (
+        f"tangy: Stopped. {pieces} finished pieces of work are kept. "
+        "Run the same command again to go on from there."
+    )
+
+
+def throats(variants: list[str]) -> str:
+    """Say which variants a voice can have."""
+    return f"\nAdd one of these to change a voice, as in en-gb+f3: {', '.join(variants)}."

@@ -1,0 +1,48 @@
+"""Conflicts between demonstrations in words: what is asked about each, and what came of it."""
+
+from __future__ import annotations
+
+from tangy_tui.text.numbers import counted
+
+ANSWER_HELP = (
+    "The steps that gave this answer. Enter opens one in its demonstration. Press "
+    "the number before the answer if it is right."
+)
+
+ASKED = (
+    "Which is right? Press its number, b if all of them are, o for something else. Esc leaves it "
+    "open: Tangy will not act there in a game, but ask."
+)
+OTHER = "What is right here?"
+TAKEN_BACK = "Your last answer is taken back."
+NOTHING_TAKEN_BACK = "There is no answer to take back."
+NONE_LEFT = "The demonstrations agree in every situation."
+
+
+def left_open_words(situation: str) -> str:
+    """Say that a conflict was not settled."""
+    return f"{situation}: left open. In a game Tangy will ask you."
+
+
+def situation_words(situation: str) -> str:
+    """Say where demonstrations disagree."""
+    return f"Different answers were shown to this situation: {situation}."
+
+
+def settled_words(answered: str, aside: int) -> str:
+    """Say what was settled, and how many steps are no longer learnt from."""
+    return answered + (f" {counted(aside, 'step')} set aside." if aside else "")
+
+
+def done_words(settled: int, left: int) -> str:
+    """Say how many conflicts were settled and left open."""
+    if not settled and not left:
+        return NONE_LEFT
+    if not left:
+        return f"Settled: {settled}. Nothing is left open."
+    return f"Settled: {settled}. Left open: {left}; Tangy will ask there when it plays."
+
+
+def keys_words(then: str) -> str:
+    """Say which keys lead on when all conflicts have been looked at."""
+    return f"Press enter to {then}, esc to go back, u to take the last answer back."

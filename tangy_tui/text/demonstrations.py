@@ -1,0 +1,76 @@
+"""Demonstrations in words: the list of them, and what changing one means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow
+from tangy_tui.text.numbers import counted, listed
+
+LIST_HELP = (
+    "One line for each demonstration: its number, who showed it and when, how many steps "
+    "it has, how many of the situations it shows, and whether Tangy learns from it."
+)
+NONE_TO_LIST = "No demonstrations yet: press t at home to show Tangy a game."
+
+NO_STEPS = "It has no steps."
+NOTHING_LOST = "Nothing is lost: u takes it back."
+AGAIN_DETAIL = (
+    "The steps before it stay as they are. The old demonstration is replaced only when you have "
+    "shown the game to its end."
+)
+MARK_FIRST = "Mark two or more with space first, and then merge them with g."
+CHOOSE_LAST = "Choose the step that ends the first part: tab goes to the steps."
+CHOOSE_FIRST = "Choose the step to begin with: tab goes to the steps."
+
+
+def again_words(name: str, step: int) -> str:
+    """Ask whether a demonstration is to be shown again from a step on."""
+    return f"Show {name} again from step {step}?"
+
+
+def delete_words(row: ListRow) -> tuple[str, str]:
+    """Ask whether a demonstration is to be deleted, and say what that means."""
+    detail = f"Tangy will not learn from its {counted(row.steps, 'step')}. {NOTHING_LOST}"
+    return f"Delete demonstration {row.number} by {row.teacher}?", detail
+
+
+def merge_words(rows: Sequence[ListRow]) -> tuple[str, str]:
+    """Ask whether demonstrations are to be merged, and say what that means."""
+    names = listed(row.number for row in rows)
+    steps = sum(row.steps for row in rows)
+    detail = f"They become one of {counted(steps, 'step')}, in this order. {NOTHING_LOST}"
+    return f"Merge demonstrations {names}?", detail
+
+
+def split_words(row: ListRow, step: int) -> tuple[str, str]:
+    """Ask whether a demonstration is to be split after a step, and say what that means."""
+    return (
+        f"Split demonstration {row.number} after step {step}?",
+        f"It becomes two: one of {counted(step, 'step')}, one of {row.steps - step}. "
+        f"{NOTHING_LOST}",
+    )
+
+
+def nothing_after_words(step: int) -> str:
+    """Say that a demonstration cannot be split after its last step."""
+    return f"Nothing comes after step {step}: choose one before it."
+
+
+def refused_words(row: ListRow) -> str:
+    """Say why a demonstration cannot be merged or split."""
+    why = "not finished yet" if row.state == UNFINISHED else f"not in use: {row.state}"
+    return f"Demonstration {row.number} by {row.teacher} is {why}."
+
+
+def changed_words(change: str, before: str = "") -> str:
+    """Say what a change did, after what it was, or how it is taken back."""
+    return f"{before}: {change}" if before else f"{change} u takes it back."
+
+
+def steps_title(number: int) -> str:
+    """Head the steps of a demonstration."""
+    return f"Steps of demonstration {number}"
+
+
+NONE_YET = "There are no demonstrations yet: begin with `tangy teach`."

@@ -1,0 +1,15 @@
+"""What stands over and between the faults of a game, where they are listed or told of."""
+
+from __future__ import annotations
+
+LIST_HELP = (
+    "What went wrong in this game: when, after which step, whether it is critical (!!), "
+    "what it is, and what was done about it. Enter opens one. / finds "
+    "faults by name, code, state or person; esc shows all again."
+)
+NONE_FOUND = "No fault has these words."
+NO_FAULTS = "No faults in this game."
+ALSO_WRONG = "Also wrong"
+DONE_WHEN = "What was done, and when"
+HOW_KNOWN = "How Tangy knows"
+WHAT_TO_DO = "What should I do?"

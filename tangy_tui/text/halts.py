@@ -1,0 +1,70 @@
+"""What staff read of a fault for which Tangy stands still, and what their keys did about it."""
+
+from __future__ import annotations
+
+from tangy_profiles.robot import Robot
+from tangy_tui.monitoring.fault import Fault, RecoveryEvent
+from tangy_tui.text.faults import kind_words, mark_of, move_words, whom_to_call
+from tangy_tui.text.times import clock
+
+SEEN_FIRST = "Press a first to say that you have seen this."
+SEEN = "You have seen it. Press e to see whom to call, or c when all is well."
+CALL_YOURSELF = "Tangy calls nobody itself. Press c when all is well."
+SIMULATED = "The simulated expert has looked at it. Press c when all is well."
+RESTARTED = "The robot process was started again."
+STILL_THERE = "It is still there. Tangy stands still. Press e to see whom to call."
+STOPPED = "STOP. After you have cleared this, p lets Tangy go on."
+RESTARTING = "The robot process is started again ..."
+CALLING = "The simulated expert looks at it ..."
+LOOKING = "Looking whether it is gone ..."
+WHOM_TO_CALL = "What to do, and whom to call"
+SO_FAR = "So far"
+
+GIVE_UP = "Give this game up?"
+GIVE_UP_DETAIL = (
+    "The game ends here, and the log says why. Tangy stays where it is and does not move. "
+    "The fault is not mended: keep people away until someone has seen to it."
+)
+
+
+def title(fault: Fault) -> str:
+    """Head what is told of the fault that halts the robot."""
+    return f"{mark_of(fault)} Tangy stands still: {fault.name}"
+
+
+def halted_words(fault: Fault) -> str:
+    """Say what kind of fault halts the robot since which step, and for how long."""
+    where = f"{kind_words(fault).capitalize()}, after step {fault.step}."
+    return f"{where} Tangy has stopped, and nothing moves before this is cleared."
+
+
+def last_move_words(move: RecoveryEvent) -> str:
+    """Say what was done last about a fault."""
+    return f"Last, at {clock(move.seconds)}: {move_words(move)}."
+
+
+def wait_words(doing: str) -> str:
+    """Say that what is being done comes first."""
+    return f"Wait. {doing}"
+
+
+def failed_words(error: Exception) -> str:
+    """Say why a key did nothing."""
+    return f"{error} Nothing was changed: try again."
+
+
+def called_words(robot: Robot, *, restarted: bool) -> str:
+    """Say whom to call, and what was done meanwhile."""
+    begun = f"{RESTARTED} " if restarted else ""
+    return f"{begun}{whom_to_call(robot)} {CALL_YOURSELF}"
+
+
+ALL_WELL = "Is all well now?"
+
+
+def uncleared_words(name: str) -> str:
+    """Say which fault of the last game nobody cleared, and what a new game does."""
+    return (
+        f"The last game ended with: {name}, which nobody cleared. Tangy moves as soon "
+        "as a game begins."
+    )

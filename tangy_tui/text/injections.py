@@ -1,0 +1,24 @@
+"""What is said where faults are brought about in the simulated room."""
+
+from __future__ import annotations
+
+WHICH = "What should go wrong?"
+NONE_FOUND = "Nothing matches these letters."
+
+NOT_SIMULATED = "You can bring about faults in the simulated room only."
+NO_GAME = "No game is going on: press g to play one first."
+
+
+def comes_later_words(kind: str) -> str:
+    """Say that a fault shows itself later."""
+    return f"{kind} comes as soon as it can show."
+
+
+def lifted_words(kind: str) -> str:
+    """Say that a fault was lifted."""
+    return f"Lifted: {kind}."
+
+
+def injected_words(kind: str) -> str:
+    """Say that a fault was brought about."""
+    return f"Brought about: {kind}."

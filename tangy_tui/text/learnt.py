@@ -1,0 +1,104 @@
+"""What is said after learning: what was learnt, what changed, and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from tangy_tui.text.numbers import counted
+
+if TYPE_CHECKING:
+    from tangy_profiles.activity import Activity
+    from tangy_tui.learning.conflicts import Shown
+    from tangy_tui.learning.explanation import Why
+    from tangy_tui.learning.online_learning import PolicyReplay, Unsettled
+    from tangy_tui.learning.policies import Change
+    from tangy_tui.learning.policy import Policy
+
+
+UNSETTLED: Mapping[Unsettled, str] = {
+    "": "",
+    "new": "Nobody has answered so before: Tangy goes on asking here until a teacher settles "
+    "which answer is right.",
+    "otherwise": "A teacher said otherwise before: both are shown before Tangy learns again.",
+}
+
+
+def replay_words(replay: PolicyReplay) -> str:
+    """Say what came out when all steps were gone through with the new policy."""
+    if not replay.steps:
+        first = "There were no earlier steps to compare with."
+    elif replay.changed:
+        rows = "; ".join(
+            f"{' / '.join(c.situation)}: was {c.before}, is now {c.after}" for c in replay.changed
+        )
+        first = f"All {replay.steps} earlier steps were gone through. Changed as well: {rows}."
+    else:
+        first = f"All {replay.steps} earlier steps were gone through: nothing else changed."
+    aside = {0: "", 1: " One earlier step said otherwise, and is set aside."}.get(
+        replay.overruled, f" {replay.overruled} earlier steps said otherwise, and are set aside."
+    )
+    return " ".join(part for part in (first + aside, UNSETTLED[replay.unsettled]) if part)
+
+
+def only_unfinished(steps: int) -> str:
+    """Say that there is nothing finished to learn from."""
+    return (
+        f"No demonstration is finished yet. {counted(steps, 'step is', 'steps are')} kept. Go on "
+        "with `tangy teach`, or learn from unfinished ones with --unfinished."
+    )
+
+
+def learnt_lines(
+    activity: Activity, policy: Policy, steps: int, left_out: int, not_shown: str
+) -> list[str]:
+    """Say from what a policy was learnt, and where it does not know what to do.
+
+    Args:
+        activity: what it was learnt for.
+        policy: what was learnt.
+        steps: that were shown.
+        left_out: unfinished demonstrations that were not learnt from.
+        not_shown: the heading of the situations that nobody has shown.
+    """
+    unseen = [s for s in activity.situations if not policy.decide(s).seen]
+    contested = [s for s in activity.situations if policy.decide(s).contested]
+    seen = len(activity.situations) - len(unseen)
+    lines = [
+        f"Learnt {policy.name!r} from {counted(len(policy.demonstrations), 'demonstration')} "
+        f"({counted(steps, 'step')}): {seen} of {len(activity.situations)} situations were shown."
+    ]
+    if unseen:
+        lines.append(not_shown)
+    lines += [f"  {activity.not_yet(one)} ({activity.in_words(one)})" for one in unseen]
+    if contested:
+        lines.append(f"Demonstrations disagree about {counted(len(contested), 'situation')}:")
+        for situation in contested:
+            answers = " or ".join(b for b, _ in policy.decide(situation).votes)
+            lines.append(f"  {activity.in_words(situation)}: {answers}")
+        lines.append(
+            "Tangy will ask there. `tangy demonstrations conflicts` shows the steps. Settle them "
+            "with `tangy demonstrations resolve`, then learn again."
+        )
+    if left_out:
+        lines.append(
+            f"{counted(left_out, 'unfinished demonstration')} left out. "
+            "Learn from unfinished ones too with --unfinished."
+        )
+    return lines
+
+
+def changed_lines(activity: Activity, before: str, changed: Sequence[Change]) -> list[str]:
+    """Say what a policy does otherwise than the one before it, which has a name."""
+    if not changed:
+        return [f"It does the same as {before!r}, the policy before it, in every situation."]
+    lines = [f"Changes from {before!r}, the policy before it:"]
+    for change in changed:
+        where = activity.in_words(change.situation)
+        lines.append(f"  {where}: was {change.before}, is now {change.after}")
+    return lines
+
+
+def grounds(why: Why) -> tuple[tuple[str, Sequence[Shown]], ...]:
+    """Return the steps that a decision rests on, and the others, each under its heading."""
+    return ("It rests on", why.rests_on), ("Against it", why.against), ("Nearby", why.near)

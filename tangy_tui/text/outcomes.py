@@ -1,0 +1,33 @@
+"""What is said of games that were played: which faults they had, and which did not come about."""
+
+from __future__ import annotations
+
+from tangy_tui.text.numbers import counted
+
+
+def faults_logged(count: int) -> str:
+    """Say how many faults a live game had, and what tells of them."""
+    return f"{counted(count, 'fault')}. Read more with `tangy log report last`."
+
+
+def faults_played(count: int, critical: int) -> str:
+    """Say how many faults simulated games had, and what tells of them."""
+    return (
+        f"{counted(count, 'fault')}, {critical} of them critical. "
+        "`tangy log` lists the games, `tangy log report last` shows the last one."
+    )
+
+
+def fault_left(name: str) -> str:
+    """Say which fault of the last game nobody has cleared."""
+    return f"The last game ended with a fault that nobody has cleared: {name}."
+
+
+def injecting_words(example: str) -> str:
+    """Say how a fault is written that is to be injected."""
+    return f"\nFor example: --inject {example}@12. After @ write a step, after ~ a chance."
+
+
+def did_not_come(injected: object, times: int, games: int) -> str:
+    """Say of an injected fault in how many games it did not come about."""
+    return f"{injected} did not come about in {times} of {counted(games, 'game')}."

@@ -1,0 +1,13 @@
+"""The phrasebook in words: what can be said or typed, and how it is searched."""
+
+from __future__ import annotations
+
+LIST_TITLE = "What can be said or typed"
+LIST_HELP = (
+    "Up and down choose an entry, / searches, h says it aloud. Of what is only guessed nothing is "
+    "heard yet: choose the person and press e."
+)
+CHOOSE_SAYABLE = "Choose something you can say: a word, a person or a behaviour."
+CHOOSE_PERSON = "Choose a person: the activity's words are changed in its file."
+NONE_FOUND = "Nothing found: esc shows everything again."
+LOOKING_UP = "Looking up the words ..."

@@ -1,0 +1,30 @@
+"""Policies in words: kept ones, those that came out otherwise, and two beside each other."""
+
+from __future__ import annotations
+
+from tangy_tui.text.numbers import counted
+
+NOTHING_LEARNT = "Nothing learnt yet."
+NOT_AS_KEPT = "The policy is not the one that was kept"
+SAME_DECISIONS = "It decides the same everywhere; only the votes differ."
+OTHER_DECISIONS = "What has changed"
+
+
+def change_words(before: str, after: str) -> str:
+    """Say what is done in a situation now, and what was done before."""
+    return f"was {before}, is now {after}"
+
+
+NOTHING_TO_COMPARE = "Nothing to compare"
+ONE_POLICY = (
+    "There are no two policies yet: learn again after another demonstration, or let another "
+    "person teach."
+)
+WHICH = "Which policy do you want to see?"
+ALL_THE_SAME = "They do the same everywhere; d shows all rows."
+
+
+def compared_words(differ: int, situations: int) -> str:
+    """Say in how many situations two policies differ."""
+    count = counted(situations, "situation")
+    return f"They differ in {differ} of {count}." if differ else f"They agree in all {count}."

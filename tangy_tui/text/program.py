@@ -1,0 +1,45 @@
+"""The program itself in words: home, colours, the window, what it is busy with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+TAGLINE = "Teach a robot a group activity, and let it run that activity."
+ALL_PHRASES = "All that can be said or typed"
+
+NOTHING_MOVES = "Nothing is moving."
+MOUSE_ON = "Mouse on. Press m to turn it off and select text."
+MOUSE_OFF = "Mouse off: you can select text. Press m to turn it on again."
+COLOURS = {
+    "Dark colours": "High contrast on black",
+    "Light colours": "Dark on paper",
+    "The terminal's colours": "Its own sixteen",
+}
+"""The names of the colour schemes, and what each is like."""
+COMPARE_POLICIES = ("Compare policies", "Teacher against teacher, before against after")
+PHRASES = ("Phrases", f"{ALL_PHRASES}, and how it is said")
+VOICE = ("Voice on or off", "Tangy speaks what it says")
+"""What the command palette offers, and what each does."""
+LEARNING = "Tangy is learning ..."
+PREPARING_DRILL = "Tangy is preparing the drill ..."
+RECALLING_BOTH = "Tangy is recalling both ..."
+RECALLING = "Tangy is recalling what it learnt ..."
+THINKING = "Tangy is working out what it would do ... (esc: cancel)"
+
+
+def not_saved_words(folder: Path, why: str | None) -> str:
+    """Say that the picture of the screen could not be kept."""
+    return f"The picture could not be saved in {folder}: {why}."
+
+
+def left_out_words(first: str, others: int) -> str:
+    """Say what is left out of the log: the first thing, and how many more there are."""
+    return f"{first} And {others} more: `tangy store check` names them."
+
+
+def too_small_words(width: int, height: int, least: tuple[int, int]) -> str:
+    """Say that the window is too small; sizes are in columns and lines."""
+    return (
+        f"Tangy needs {least[0]} x {least[1]} characters; this window has "
+        f"{width} x {height}. Make it larger: nothing is lost."
+    )

@@ -1,0 +1,20 @@
+"""What is said of how much has been shown of an activity."""
+
+from __future__ import annotations
+
+from tangy_tui.text.numbers import counted
+
+NOTHING_SHOWN = "Nobody has shown Tangy anything yet."
+
+
+def coverage_so_far(number: int, game: int, steps: int, shown: int, situations: int) -> str:
+    """Say of a demonstration, by its number, how much has been shown with it."""
+    return (
+        f"Demonstration {number} (game {game}): {counted(steps, 'step')}; "
+        f"{shown} of {situations} situations were shown so far."
+    )
+
+
+def situations_shown(shown: int, situations: int) -> str:
+    """Say how many situations were shown."""
+    return f"{shown} of {situations} situations were shown."

@@ -1,0 +1,53 @@
+"""What Tangy asks before it does what it understood, and what it does not understand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_tui.learning.explanation import Why
+from tangy_tui.text.numbers import counted
+from tangy_tui.text.situations import ALL_RIGHT
+
+SAID_TOO_EARLY = "You said that before the question was on the screen."
+TOO_EARLY = "Too early: please answer again."
+DID_YOU_SAY = "Did you say: "
+DID_YOU_MEAN = "Did you mean"
+OR_DID_YOU_MEAN = "Or did you mean"
+
+STOPPED_FIRST = "Tangy was stopped: press p to go on first, then answer."
+GIVE_UP = "Give this game up?"
+GIVE_UP_DETAIL = "The game ends here without an answer. Tangy will ask again next time."
+REJECTED = "Not done. Give a new command."
+
+
+def yes_words(key: str) -> str:
+    """Say which key says yes, after another was pressed."""
+    return f"The yes of this question is {key}."
+
+
+def not_understood_words(heard: str, suggestions: Sequence[str]) -> str:
+    """Say that words were not understood, and which may have been meant."""
+    near = f" {DID_YOU_MEAN}: {', '.join(suggestions)}?" if suggestions else ""
+    return f"I do not know what {heard!r} means.{near}"
+
+
+def asked_words(reason: str, given: str = "") -> str:
+    """Say why Tangy asks, which answers were given before, and ask what it should do."""
+    return f"{reason} {given} What should Tangy do?" if given else f"{reason} What should Tangy do?"
+
+
+def acceptable_words(reason: str) -> str:
+    """Say what Tangy did not expect, and ask whether it is all right."""
+    return f"{reason} If all is well, type: {ALL_RIGHT[0]}. If not, what should Tangy do?"
+
+
+def given_words(why: Why) -> str:
+    """Say which answers demonstrations give in a situation, how often and by whom."""
+    given: dict[str, list[str]] = {}
+    for shown in (*why.rests_on, *why.against):
+        given.setdefault(shown.step.behaviour, []).append(shown.teacher)
+    parts = [
+        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
+        for behaviour, teachers in given.items()
+    ]
+    return f"Shown so far: {', '.join(parts)}." if parts else ""

@@ -1,0 +1,58 @@
+"""What the page about a session says beside its drawings and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tangy_tui.monitoring.fault import Fault
+from tangy_tui.monitoring.session import Progress
+from tangy_tui.text.faults import RECOVERY_WORDS
+from tangy_tui.text.numbers import counted
+
+VISIT = "Tangy is with them"
+STOOD_STILL = "Tangy stood still"
+WHO = "Who took part"
+ENDED = "How it ended"
+ALL_ENDED = "How they ended"
+CARE = "What to look after"
+NOTHING_LEFT = "Nothing is left to do: every fault is over."
+WHEN = "What happened when"
+RESPONDED = "How people responded"
+NOBODY_ASKED = "Nobody was asked for anything."
+BELIEFS = (
+    "Drawn is how likely each person is to comply with each strategy that was used: before "
+    "the session (ring) and after it (dot), with the interval in which the truth lies with "
+    "a probability of 90%."
+)
+FAULTS = "Faults, and what was done about them"
+NO_FAULTS = "There were no faults."
+UNSURE = "Where Tangy did not know what to do"
+BEHAVIOURS = "What Tangy did where"
+SUMS = "Faults by criticality and recovery"
+
+
+def drawn_words(drawn: int, games: int) -> str:
+    """Say which games are drawn, of more."""
+    return f"The last {drawn} of {games} games are drawn."
+
+
+def game_caption(number: int, *, timed: bool) -> str:
+    """Say which game a timeline shows, and how."""
+    return f"Game {number}, {'by minutes in the game' if timed else 'step by step'}."
+
+
+def person_words(person: Progress) -> str:
+    """Say how often a person was asked, and what came of it."""
+    return f"Asked {counted(person.interactions, 'time')}: {person.in_words}."
+
+
+def quiet_words(names: Sequence[str]) -> str:
+    """Say who was not asked for anything."""
+    return f"Not asked for anything: {', '.join(names)}."
+
+
+def fault_facts(fault: Fault, game: int | None) -> str:
+    """Say when a fault was noticed, and what was done first; the game, where there are several."""
+    where = "Step" if game is None else f"Game {game}, step"
+    facts = f"{where} {fault.step}; first recovery: {RECOVERY_WORDS[fault.recovery]}."
+    return f"{facts} Noticed after: {fault.behaviour}." if fault.behaviour else facts

@@ -1,0 +1,26 @@
+"""Speech in words: what Tangy says aloud, what it hears, and how a name is said."""
+
+from __future__ import annotations
+
+SOUNDS_HELP = (
+    "Write it in sounds, with a comma between words: R OW Z AH is Rosa. An empty line drops the "
+    "note."
+)
+
+
+def said_title(name: str) -> str:
+    """Head how a person's name is said."""
+    return f"How {name} is said"
+
+
+ON = "Tangy speaks now. At x1 it finishes every line; v switches the voice off."
+OFF = "Tangy is quiet now: what it says is shown as text."
+OR_SAY = "Or say"
+OR_KEY_AND_SAY = "Or ctrl+t, and say"
+RECORDING = "A recording is listened to: no key is needed."
+HANDS_FREE = "No key is needed: just speak."
+
+
+def shown_words(why: str) -> str:
+    """Say why nothing is heard of what Tangy says."""
+    return f"{why} What Tangy says is shown as text."
