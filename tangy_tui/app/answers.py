@@ -31,6 +31,12 @@ class Answers:
         verifier = self._of_question()
         return None if verifier is None else verifier.question
 
+    @property
+    def sayable(self) -> tuple[str, ...]:
+        """The commands that can be carried out now, where Tangy asks for one."""
+        verifier = self._of_question()
+        return () if verifier is None else verifier.sayable()
+
     def say(self, said: Say) -> Spoken:
         """Take words as the answer to what Tangy asks."""
         verifier = self._of_question()

@@ -149,8 +149,9 @@ class GameController:
             if waits or game.question is not None or self.proposal is not None:
                 return game.look()
             if self.taking_over and not game.waiting:
-                self.taking_over = False
-                return list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
+                asked: list[Event] = list(game.game.ask(TOOK_OVER, "Say what it does.", TAKEN_OVER))
+                self.taking_over = False  # only now: an answer typed ahead finds the question
+                return asked
             if not self._may_step():
                 return []
             if self.single:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_tui.app.card_news import BY, CardNews, CardNote, doubt_document
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.scripted_staff import go_on_by_script
-from tangy_tui.app.seats import Seats
+from tangy_tui.app.seats import Seated, Seats
 from tangy_tui.app.simulated_devices_world import BenchedWorld
-from tangy_tui.interaction.game_events import Acted, GameEnded
+from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.learning.scripted_teacher import SCRIPTED
 from tangy_tui.monitoring.fault import fault_documents
@@ -20,6 +20,11 @@ from tangy_tui.monitoring.supervision import Event, Supervision
 
 if TYPE_CHECKING:
     from tangy_tui.app.workspace import Workspace
+
+
+News: TypeAlias = CardNote | Seated
+"""What is new of cards, or of who sits where."""
+Tell: TypeAlias = Callable[[list[Event], list[News]], None]
 
 
 class LiveGames:
@@ -36,76 +41,56 @@ class LiveGames:
         self.took = 0.0
         self._workspace = workspace
         self._supervision = supervision
-        self._seats = Seats(workspace.name)
-        self._cards = CardNews(workspace.name)
-        self._card_notes: list[CardNote] = []
+        self._seats = Seats()
+        self._cards = CardNews()
 
     def play(
         self,
         games: Iterable[int],
         *,
         expert: bool,
-        tell: Callable[[list[Event]], None] = lambda _: None,
+        tell: Tell = lambda events, news: None,
     ) -> None:
         """Play games, one after another.
 
         Args:
             games: as many as it gives.
             expert: staff are there to clear what halts the robot.
-            tell: is told what happens.
+            tell: is told what happens, and what is new.
         """
         for _ in games:
             began = time.monotonic()
             self._play(expert, tell)
             self.took += time.monotonic() - began
 
-    def _play(self, expert: bool, tell: Callable[[list[Event]], None]) -> None:
+    def _play(self, expert: bool, tell: Tell) -> None:
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
         control = GameController(game, SCRIPTED, robot=world, paced=False)
         events = control.begin()
-        self.tally.add(events)
-        self._look_at_cards(events)
-        tell(events)
+        tell(events, self.take(events))
         since = world.link.time
         stopped = None
         while not game.over:
             events = go_on_by_script(control, expert=expert)
-            self.tally.add(events)
             stopped = next((e.stopped for e in events if isinstance(e, GameEnded)), stopped)
-            self._look_at_cards(events)
-            tell(events)
+            tell(events, self.take(events))
         self.seconds += world.link.time - since
         self.faults += fault_documents(game.faults, stopped)
         if isinstance(world, BenchedWorld):
             self.tally.add_injections(world.came, world.still_to_come)
 
-    def take(self, events: Sequence[Event]) -> list[str]:
-        """Count events, and say what is new of cards and of who sits where."""
+    def take(self, events: Sequence[Event]) -> list[News]:
+        """Count events, log what is new of cards, and return it with who sits where."""
         self.tally.add(list(events))
-        self._look_at_cards(list(events))
-        world = self._supervision.world
-        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        cards = [note.words for note in self._card_notes]
-        return [*cards, *self._seats.news(list(events), world.sitting)]
-
-    def lines(self, events: list[Event]) -> list[str]:
-        """Say what happened, for whoever waits, and who was seen where somebody else sits."""
-        world = self._supervision.world
-        assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        lines = (_told(self._workspace, event) for event in events)
-        cards = (note.words for note in self._card_notes)
-        return [*filter(None, (*lines, *cards)), *self._seats.news(events, world.sitting)]
-
-    def _look_at_cards(self, events: list[Event]) -> None:
-        """Take in what is new of whose card is whose, and log it."""
         game, world = self._supervision, self._supervision.world
         assert isinstance(world, LiveWorld)  # noqa: S101 - other games are played elsewhere
-        self._card_notes = self._cards.take(events, world.cards)
-        for note in self._card_notes:
+        notes = self._cards.take(events, world.cards)
+        for note in notes:
             game.note(note.note, BY)
             if note.doubt is not None:
                 self.card_doubts.append(doubt_document(note.doubt, game.game.games))
+        return [*notes, *self._seats.news(events, world.sitting)]
 
     def document(self) -> dict[str, Any]:
         """Return what `tangy live --json` prints."""
@@ -120,17 +105,3 @@ class LiveGames:
                 found["injected"] = self.tally.injected
                 found["did_not_come_about"] = self.tally.absent
         return found
-
-
-def _told(workspace: Workspace, event: Event) -> str:
-    """Say in one line what happened, for whoever waits; "" of what needs no line."""
-    match event:
-        case Acted(number=number, action=action, outcome=outcome, speech=speech):
-            whom = "" if action.target is None else f" ({workspace.name(action.target)})"
-            done = "" if outcome.completed else "  not carried out"
-            return f"{number:4} {action.behaviour.name}{whom}: {speech}{done}"
-        case GameEnded(steps=steps, stopped=None):
-            return f"The game was played to its end in {steps} steps."
-        case GameEnded(stopped=str(why)):
-            return f"The game was stopped: {why}"
-    return ""

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from tangy_tui.interaction.game_events import GameBegun
 from tangy_tui.monitoring.supervision import Event
 
 
+@dataclass(frozen=True, slots=True)
+class Seated:
+    """A person was seen at the place of another, or again at their own."""
+
+    person: str
+    place: str
+
+
 class Seats:
     """Tells what is new of who sits where, game by game."""
 
-    def __init__(self, name: Callable[[str], str]) -> None:
-        """Prepare to tell; `name` says what somebody is called."""
-        self._name = name
+    def __init__(self) -> None:
+        """Begin with everybody at their own place."""
         self._told: dict[str, str] = {}
 
-    def news(self, events: Iterable[Event], sitting: Mapping[str, str]) -> list[str]:
-        """Say what is new after what happened, of who was seen at whose place."""
+    def news(self, events: Iterable[Event], sitting: Mapping[str, str]) -> list[Seated]:
+        """Return what is new after what happened, of who was seen at whose place."""
         if any(isinstance(event, GameBegun) for event in events):
             self._told = {}  # nobody has been seen in this game yet
         before, self._told = self._told, dict(sitting)
-        lines = []
-        for place, person in self._told.items():
-            if before.get(place) != person:
-                name = self._name(person)
-                lines.append(f"{name} sits at {self._name(place)}'s place: Tangy speaks to {name}.")
-        for place in before.keys() - self._told.keys():
-            lines.append(f"{self._name(place)} sits at {self._name(place)}'s place again.")
-        return lines
+        new = [Seated(one, place) for place, one in self._told.items() if before.get(place) != one]
+        return new + [Seated(place, place) for place in before.keys() - self._told.keys()]

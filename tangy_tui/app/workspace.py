@@ -15,7 +15,7 @@ from tangy_profiles.activity import Activity, load_activity
 from tangy_profiles.defaults import DEFAULT_ACTIVITY
 from tangy_profiles.errors import TangyError
 from tangy_profiles.game_records import GameBeginning
-from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name
+from tangy_profiles.person import LONGEST_NAME, Person, folded, load_people, read_name, unaccented
 from tangy_profiles.process_log import logging_to
 from tangy_profiles.reading import plain
 from tangy_profiles.robot import Robot, load_robot
@@ -25,6 +25,8 @@ from tangy_profiles.store import Store
 from tangy_profiles.voice import VoicePreference
 
 # The engine is imported when it is first asked for: the first screen needs none of it.
+from tangy_tui.app.user_settings import read_settings
+
 if TYPE_CHECKING:
     from tangy_profiles.demonstration import Demonstration
     from tangy_profiles.game_world import GameWorld
@@ -78,9 +80,10 @@ class Workspace:
         """Read the profiles and open the store, whose clock is `now` (default: the machine's).
 
         Raises:
-            ProfileError: a profile has a mistake, or there is no such activity.
+            ProfileError: a profile or the settings have a mistake, or there is no such activity.
             StoreError: the data folder cannot be used, or another Tangy writes to it.
         """
+        self.settings = read_settings(folder)
         self.profile = activity
         """The activity as it was asked for: a name, or the path of a file."""
         self.activity: Activity = load_activity(activity)
@@ -128,6 +131,7 @@ class Workspace:
         """
         by_id = [p for p in self.people if p.id == wanted]
         found = by_id or [p for p in self.people if folded(p.name) == folded(wanted)]
+        found = found or [p for p in self.people if unaccented(p.name) == unaccented(wanted)]
         if len(found) == 1:
             return found[0]
         if found:

@@ -14,6 +14,8 @@ from tangy_tui.learning.policies import keep_policy, unused_name, without_strang
 from tangy_tui.learning.policy import Policy, learn_policy
 from tangy_tui.learning.scripted_teacher import SCRIPTED, ScriptedTeacher
 from tangy_tui.learning.teaching_events import Begun, Executed, Next
+from tangy_tui.text import demo
+from tangy_tui.text.command_line import TEACH_YOURSELF
 from tangy_tui.text.games import belief_lines, game_lines
 
 DEMONSTRATIONS = 3
@@ -23,7 +25,7 @@ DEMONSTRATIONS = 3
 def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[str, Any]:
     """Tell the story line by line; return what the game added up to."""
     activity = workspace.activity
-    write(f"1. A teacher demonstrates {activity.title} {DEMONSTRATIONS} times.")
+    write(demo.demonstrates(activity.title, DEMONSTRATIONS))
     teaching = workspace.teaching(SCRIPTED, seed)
     teacher = ScriptedTeacher(teaching)
     events = teaching.begin()
@@ -39,19 +41,19 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
                     write(f"   new: {activity.in_words(step.state.situation)}")
                     write(f"        teacher: {step.behaviour}. Tangy: {speech}")
         steps = len(teaching.demonstration.steps)
-        write(f"   {steps} steps; {len(seen)} of {len(activity.situations)} situations shown.")
+        write(demo.shown_so_far(steps, len(seen), len(activity.situations)))
     policy = learn(workspace)
     shown = read_library(workspace.store, activity.name).demonstrations
     effects = learn_effects(activity, shown)
-    write("2. A random forest learns what to do, and what follows from it.")
+    write(demo.LEARNS)
     for situation in activity.situations:
         decision = policy.decide(situation)
         write(
             f"   {activity.in_words(situation)} -> {decision.behaviour} "
             f"({decision.share:.0%} of the votes, {decision.seen} times shown)"
         )
-    write(f"   Effects of {len(effects.values)} behaviours are known.")
-    write("3. Tangy facilitates a game by itself.")
+    write(demo.effects_known(len(effects.values)))
+    write(demo.PLAYS)
     supervision = workspace.supervision(policy, seed)
     tally = Tally()
     control = scripted_controller(supervision)
@@ -64,10 +66,10 @@ def tell(workspace: Workspace, seed: int, write: Callable[[str], None]) -> dict[
         if supervision.over:
             break
         events_of_game = control.next()
-    write("4. What Tangy now believes about which strategy works with whom:")
+    write(demo.BELIEVES)
     for line in belief_lines(supervision, workspace.name):
         write(f"   {line}")
-    write("Teach it yourself: tangy teach. All you can do: tangy --help.")
+    write(TEACH_YOURSELF)
     return tally.to_json(activity.situations, supervision.persuasion.beliefs)
 
 

@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 
 LARGEST_SCRIPT = 4_000_000  # bytes: a hundred thousand lines
+
+WAIT = re.compile(
+    r"wait (?:(\d{1,3}(?:\.\d{1,2})?)(?: ?s)?|until (asked|halted|called|over|paused))"
+)
+"""A line of a script that lets time pass, in s, or waits until something has come about."""
+
+
+def any_waits(lines: Iterable[str]) -> bool:
+    """Say whether one of some lines lets a script wait."""
+    return any(WAIT.fullmatch(line.casefold()) for line in lines)
 
 
 def line_reader(script: Path | None) -> Callable[[], str | None]:
@@ -29,6 +40,11 @@ def line_reader(script: Path | None) -> Callable[[], str | None]:
     except (OSError, UnicodeDecodeError):
         raise TangyError(plain(f"{script}: cannot be read as text.")) from None
     return lambda: next(lines, None)
+
+
+def is_typed(script: Path | None) -> bool:
+    """Say whether lines are typed by a person now."""
+    return script is None and sys.stdin is not None and sys.stdin.isatty()
 
 
 def keys_from_terminal(script: Path | None) -> int:

@@ -9,9 +9,9 @@ from tangy_tui.text.control import going_words
 from tangy_tui.text.faults import advice_lines, list_lines
 from tangy_tui.text.games import Demonstrations, why_lines
 from tangy_tui.text.situations import Name, state_words
+from tangy_tui.text.staff_lines import ANSWER_IN_WORDS, NOTHING_WRONG, SAY_IN_WORDS, nothing_to
 
-HELP = "You can type, at any time:"
-ANSWER_IN_WORDS = "Answer with a behaviour in words, or type: where, why, help, end."
+HELP = "You can type at any time:"
 
 
 class Inquiries:
@@ -35,13 +35,13 @@ class Inquiries:
             case "why":
                 return why_lines(self._game, self._demonstrations)
             case "what to do":
-                return advice_lines(self._game) or ["Nothing is wrong."]
+                return advice_lines(self._game) or [NOTHING_WRONG]
             case "faults":
                 return list_lines(self._game.faults)
         if word in ANSWERS:
             return [NO_QUESTION]
         if word in ("undo", "redo"):
-            return [f"There is nothing to {word} in a game."]
+            return [nothing_to(word)]
         return None
 
     def _help(self) -> list[str]:
@@ -49,7 +49,7 @@ class Inquiries:
             return answer_help(verifying)
         meanings = [f"  {key}: {what}" for key, what in MEANINGS]
         if self._game.question is None:
-            return [HELP, *meanings, "While Tangy asks, type what it should do, in words."]
+            return [HELP, *meanings, SAY_IN_WORDS]
         known = self._game.world.activity.behaviours.values()
         spoken = [f"  {one.question}: say {one.phrases[0]!r}" for one in known]
         return [ANSWER_IN_WORDS, *spoken, HELP, *meanings]

@@ -12,16 +12,15 @@ answers what is asked, however fast the game is.
 from __future__ import annotations
 
 import queue
-import re
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from tangy_profiles.demonstration import Demonstration
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
-from tangy_tui.app.command_grammar import ANSWERS, nearest_command, read_answer, read_command
+from tangy_tui.app.command_grammar import ANSWERS, nearest_command, read_command
 from tangy_tui.app.game_commands import (
     AT_ONCE,
     CallExpert,
@@ -35,20 +34,21 @@ from tangy_tui.app.game_commands import (
 )
 from tangy_tui.app.game_controller import GameController, Told
 from tangy_tui.app.scripted_staff import go_on_by_script
-from tangy_tui.console.inquiries import ANSWER_IN_WORDS, Inquiries
+from tangy_tui.console.inputs import WAIT, any_waits
+from tangy_tui.console.inquiries import Inquiries
+from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.interaction.game_events import DoneOnce, GameEnded, Taught
+from tangy_tui.language.stop_sentence import prepare
 from tangy_tui.learning.verification import (
     ANSWER_HELP,
-    Asked,
     NotUnderstood,
-    Offered,
-    Refused,
-    Rejected,
     Reply,
     Say,
+    Verification,
     Verified,
 )
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text import staff_lines
 from tangy_tui.text.control import going_words, noted_words, proposal_words
 from tangy_tui.text.faults import HALTED, expert_line
 from tangy_tui.text.games import belief_lines, game_lines
@@ -56,14 +56,7 @@ from tangy_tui.text.situations import Name, verification_lines
 
 LOOK_SECONDS = 0.1  # between two looks at the devices, and for the next line
 WORKS_SECONDS = 5.0  # for what was still to be done when the last game ended
-LONGEST_WAIT = 600.0  # s that a script may wait
-ACCEPTABLE = "If all is well, type: all right. What should I do? Type: what."
-NOBODY = "Nobody is there any more, so the game ends here."
-NOT_BEGUN = "No other game is begun."
-NO_MORE = "There are no more lines: the game goes on by itself."
-_WAIT = re.compile(
-    r"wait (?:(\d{1,3}(?:\.\d{1,2})?)(?: ?s)?|until (asked|halted|called|over|paused))"
-)
+LONGESTWAIT = 600.0  # s that a script may wait
 
 
 class StaffLines:
@@ -80,6 +73,7 @@ class StaffLines:
         speed: float | None = None,
         also: Callable[[Sequence[Event]], Sequence[str]] = lambda events: (),
         demonstrations: Callable[[], Sequence[Demonstration]] | None = None,
+        yes: TypedYes | None = None,
     ) -> None:
         """Take a seat.
 
@@ -92,20 +86,20 @@ class StaffLines:
             speed: times life, in which the time of a simulated game passes; None: a robot's own.
             also: is told all events, and returns what else is to be written.
             demonstrations: gives all there are, for the grounds of a question.
+            yes: how a yes is typed.
         """
         self._controller = controller
         self._game = controller.supervision
         self._name, self._find_person = name, find_person
-        self._read, self._speed = read, speed
-        self._also = also
+        self._read, self._speed, self._also = read, speed, also
+        self._yes = yes or TypedYes()
         self._inquiries = Inquiries(controller, name, demonstrations)
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._writing = threading.Lock()
         self._write_line = write
-        self._prompted = ""
+        self._prompted = self._going = ""
         self._calls = 0
         self._alone = self._stopped = self._ended = self._by_turns = False
-        self._going = ""
         self._leaves = False  # staff ended it while no game could begin
         self._begun = threading.Event()
         self._tasks: queue.Queue[Callable[[], Sequence[Told]] | None] = queue.Queue()
@@ -113,6 +107,7 @@ class StaffLines:
 
     def run(self, games: int) -> bool:
         """Play games; return whether all came to their end, or to that which staff set."""
+        prepare()
         threading.Thread(target=self._read_all, daemon=True).start()
         working = threading.Thread(target=self._work_off, daemon=True)
         working.start()
@@ -161,14 +156,12 @@ class StaffLines:
 
     def _left_uncleared(self) -> bool:
         """Say that no other game is begun, where nobody cleared what halts Tangy."""
-        fault = self._game.halted
-        if fault is not None:
-            self._write(f"No other game is begun: nobody cleared {fault.name!r}.")
+        if (fault := self._game.halted) is not None:
+            self._write(staff_lines.not_begun(fault.name))
         return fault is not None
 
     def _end(self) -> bool:
-        for line in belief_lines(self._game, self._name):
-            self._write(line)
+        self._write_all(belief_lines(self._game, self._name))
         return not self._stopped
 
     # ----------------------------------------------------------------------------- the game
@@ -178,7 +171,7 @@ class StaffLines:
         controller, game = self._controller, self._game
         while not (events := controller.begin()):  # staff have stopped it between two games
             if self._alone or self._leaves:
-                self._write(NOBODY if self._alone else NOT_BEGUN)
+                self._write(staff_lines.NOBODY if self._alone else staff_lines.NOT_BEGUN)
                 self._stopped |= self._alone
                 return
             controller.nudge.wait(LOOK_SECONDS)
@@ -195,7 +188,7 @@ class StaffLines:
             self._prompt()
             busy = self._tasks.unfinished_tasks
             if self._alone and not busy and controller.phase not in ("running", "idle"):
-                self._write(NOBODY)
+                self._write(staff_lines.NOBODY)
                 self._tell(controller.give_up() or controller.apply(EndGame()))
             passed = 0.0 if self._speed is None else (game.seconds - before) / self._speed
             if not game.over and (passed or not events):
@@ -208,7 +201,7 @@ class StaffLines:
         if not asked and self._controller.phase == "halted":
             asked = HALTED
         if not asked and self._game.acceptable:
-            asked = ACCEPTABLE
+            asked = staff_lines.ACCEPTABLE
         if asked != self._prompted:
             self._prompted = asked
             if asked:
@@ -220,23 +213,25 @@ class StaffLines:
         for one in told:
             if isinstance(one, StaffNote):
                 self._write(noted_words(one, self._name))
-            elif isinstance(one, Asked | Offered | NotUnderstood | Refused | Rejected):
-                for line in verification_lines(one):
-                    self._write(line)
+            elif isinstance(one, Verification):
+                yes = self._yes.ask_of(one, None if self._by_turns else self._lines)
+                self._write_all(verification_lines(one, yes))
                 if isinstance(one, NotUnderstood):
-                    self._write(ANSWER_IN_WORDS)
-            elif not isinstance(one, Verified):
+                    self._write(staff_lines.ANSWER_IN_WORDS)
+            else:
                 events.append(one)
                 broken_off = isinstance(one, GameEnded) and one.stopped is not None
                 self._stopped |= broken_off and not self._ended
-                for line in game_lines(one, self._game, self._name, answered):
-                    self._write(line)
-        for line in filter(None, self._also(events)):
-            self._write(line)
+                self._write_all(game_lines(one, self._game, self._name, answered))
+        self._write_all(filter(None, self._also(events)))
 
     def _write(self, line: str) -> None:
         with self._writing:
             self._write_line(line)
+
+    def _write_all(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            self._write(line)
 
     # ----------------------------------------------------------------------------- the lines
 
@@ -265,36 +260,39 @@ class StaffLines:
                 line = self._lines.get(timeout=LOOK_SECONDS)
             except queue.Empty:
                 continue
-            waits = any(_WAIT.fullmatch(one.casefold()) for one in early)
             if line is None:
                 self._alone = not early
                 if early:  # they come first
                     self._lines.put(None)
                     time.sleep(LOOK_SECONDS)
                 elif self._controller.phase in ("idle", "running"):
-                    self._write(NO_MORE)
+                    self._write(staff_lines.NO_MORE)
                 self._controller.nudge.set()
-            elif self._is_due(line, early) or (not waits and self._needs_no_game(line)):
+            elif self._is_due(line, early) or (not any_waits(early) and self._needs_no_game(line)):
                 self._take_or_wait(line.strip(), playing)
             else:
                 early.append(line.strip())
 
     def _tell_where_it_goes(self) -> None:
         """Say that the robot begins to drive: who reads lines does not see it."""
-        going = self._controller.robot.going
-        if going != self._going:
+        if (going := self._controller.robot.going) != self._going:
             self._going = going
             if words := going_words(going, self._name):
                 self._write(words)
 
     def _is_due(self, line: str, early: deque[str]) -> bool:
-        """Say whether a line may be taken now: a game has begun, and no earlier line waits."""
-        if not self._begun.is_set() or not self._controller.taking_over:
-            return self._begun.is_set() and not early
+        """Say whether a line may be taken now: a game has begun, and no earlier line waits.
+
+        Only what must not wait, a STOP above all, overtakes an earlier line.
+        """
+        begun, taking_over = self._begun.is_set(), self._controller.taking_over
+        if not begun or not taking_over or any_waits(early):  # a script goes on in its order
+            return begun and not early
         try:  # until Tangy asks what to do next, commands alone are taken
-            return read_command(line, self._find_person, self._title) is not None
+            command = read_command(line, self._find_person, self._title)
         except TangyError:
-            return True
+            return not early
+        return isinstance(command, AT_ONCE) if early else command is not None
 
     def _needs_no_game(self, line: str) -> bool:
         """Say whether a line is a STOP, or goes on or ends after one."""
@@ -308,8 +306,8 @@ class StaffLines:
         return after or isinstance(command, StopRobot)
 
     def _take_or_wait(self, text: str, playing: threading.Thread) -> None:
-        if wait := _WAIT.fullmatch(text.casefold()):
-            self._wait(float(wait[1] or LONGEST_WAIT), wait[2], playing)
+        if wait := WAIT.fullmatch(text.casefold()):
+            self._wait(float(wait[1] or LONGESTWAIT), wait[2], playing)
         else:
             self._take(text)
 
@@ -346,7 +344,10 @@ class StaffLines:
         answer = text.casefold()
         if command is not None:
             self._carry_out(command)
-        elif controller.answers.verifying and (reply := read_answer(text)) is not None:
+        elif controller.answers.verifying and (reply := self._yes.answer(text)) is not None:
+            if isinstance(reply, str):
+                self._write(reply)
+                return
             said = controller.answers.reply(reply)
             self._tell([said])
             if isinstance(said, Verified):
@@ -354,16 +355,13 @@ class StaffLines:
         elif controller.proposal is not None and answer in ANSWERS:
             self._carry_out(Confirm(ANSWERS[answer]))
         elif (told := self._inquiries.lines(answer)) is not None:
-            for line in told:
-                self._write(line)
+            self._write_all(told)
         elif controller.answers.verifying:
             self._write(ANSWER_HELP)
         elif self._game.question is not None:
             self._tell([controller.answers.say(Say(text))])
         else:
-            near = nearest_command(text)
-            meant = f" Did you mean: {near}?" if near else ""
-            self._write(plain(f"I do not know {text[:60]!r} here.{meant} Type: help."))
+            self._write(plain(staff_lines.not_known(text[:60], nearest_command(text))))
 
     def _answer(self, said: Verified) -> None:
         """Have an answer carried out, which takes its time."""
@@ -381,7 +379,7 @@ class StaffLines:
 
     def _wait(self, seconds: float, what: str | None, playing: threading.Thread) -> None:
         """Let time pass before the next line, or until something has come about."""
-        until = time.monotonic() + min(seconds, LONGEST_WAIT)
+        until = time.monotonic() + min(seconds, LONGESTWAIT)
         calls = self._count_calls()
         while time.monotonic() < until and playing.is_alive():
             self._tell_where_it_goes()

@@ -15,6 +15,7 @@ from typing import Any
 from tangy_profiles.errors import TangyError
 from tangy_profiles.reading import plain
 from tangy_tui.app.command_grammar import AgainFrom, Inquiry, Leave, read_answer, read_teaching
+from tangy_tui.console.typed_yes import TypedYes
 from tangy_tui.learning.coverage import NOT_SHOWN
 from tangy_tui.learning.teaching_events import (
     Again,
@@ -30,6 +31,7 @@ from tangy_tui.learning.verification import (
     ANSWER_HELP,
     NO_QUESTION,
     WHICH,
+    Asked,
     Offered,
     Reply,
     Say,
@@ -37,9 +39,16 @@ from tangy_tui.learning.verification import (
     answer_help,
 )
 from tangy_tui.speech.input import Heard, SpeechInput
-from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import state_words
 from tangy_tui.text.teaching import teaching_lines
+from tangy_tui.text.teaching_commands import (
+    NOTHING_CHANGED,
+    STOPPED,
+    WHICH_STEP,
+    learn_next,
+    left_after,
+    next_or_quit,
+)
 
 Read = Callable[[], str | None]
 """Returns the next line, or None when there are no more."""
@@ -59,7 +68,6 @@ MEANINGS = (
     ("next", "begin another demonstration"),
     ("quit", "leave; what you confirmed is kept"),
 )
-STOPPED = "STOP: the simulated robot stands still until the next command is carried out."
 
 
 def command_line(verb: str, **options: str | None) -> str:
@@ -83,6 +91,7 @@ class TeachingLines:
         why: Callable[[], list[str]] = list,
         resume: str = "tangy teach",
         learn: str = "tangy learn",
+        yes: TypedYes | None = None,
     ) -> None:
         """Make the session.
 
@@ -96,6 +105,7 @@ class TeachingLines:
             why: says what Tangy would do now.
             resume: the command that goes on with this demonstration.
             learn: the command that learns from it.
+            yes: how a yes is typed.
         """
         self._together = ears is not None and ears.live and not scripted
         self._teaching = teaching
@@ -106,6 +116,7 @@ class TeachingLines:
         self._why = why
         self._resume = resume
         self._learn = learn
+        self._yes = yes or TypedYes()
         self._kept = False  # something of the present demonstration is in the log
         self._complete = False  # a demonstration was completed in this session
         self._spoken: asyncio.Future[Heard | None] | None = None
@@ -150,14 +161,11 @@ class TeachingLines:
         """Say what becomes of what was shown, and what to do next."""
         shown = self._teaching.demonstration
         if shown.finished or (self._complete and not shown.steps):
-            self._write(f"Let Tangy learn from it: `{self._learn}`.")
+            self._write(learn_next(self._learn))
         elif shown.steps and self._kept:
-            self._write(
-                f"Left after {counted(len(shown.steps), 'step')}. What you confirmed is kept: "
-                f"`{self._resume}` goes on from here."
-            )
+            self._write(left_after(len(shown.steps), self._resume))
         elif shown.steps:
-            self._write("You confirmed nothing, so nothing was changed.")
+            self._write(NOTHING_CHANGED)
 
     async def _next_line(self) -> str | Heard | None:
         """Return what comes next: the spoken command if one is due, otherwise a line.
@@ -222,6 +230,11 @@ class TeachingLines:
         word = read_teaching(text, self._teaching.phrasebook.game)
         answer, question = read_answer(text), self._teaching.question
         if question is not None and not isinstance(word, StopCommand | Leave):
+            typed = self._yes.answer(text)
+            if isinstance(typed, str):
+                self._write(typed)
+                return None
+            answer = typed
             if answer is None:
                 short = WHICH if isinstance(question, Offered) else ANSWER_HELP
                 self._write_all(answer_help(question) if word == "help" else [short])
@@ -235,7 +248,7 @@ class TeachingLines:
         elif isinstance(word, AgainFrom):
             if word.step is not None:
                 return Again(self._teaching.demonstration.id, word.step - 1)
-            self._write("Say which step: again 5 goes back before step 5.")
+            self._write(WHICH_STEP)
         else:
             return word
         return None
@@ -262,6 +275,12 @@ class TeachingLines:
         for line in lines:
             self._write(line)
 
+    def _drop_answer(self) -> None:
+        """Forget a line that was typed before the question that it would answer."""
+        typed = self._typed
+        if typed is not None and typed.done() and read_answer(typed.result() or "") is not None:
+            self._typed = None
+
     def _where(self) -> None:
         teaching = self._teaching
         state = teaching.world.observe()
@@ -281,10 +300,13 @@ class TeachingLines:
                     self._kept = True
                 case Finished():
                     self._complete = True
-            self._write_all(teaching_lines(event, self._teaching))
+                case Asked() | Offered():
+                    self._drop_answer()
+                    self._yes.ask()
+            self._write_all(teaching_lines(event, self._teaching, self._yes.key))
             if isinstance(event, Finished):
                 self._write_all(self._seen()[:1])
-                self._write(f"Type next for another demonstration, or quit and `{self._learn}`.")
+                self._write(next_or_quit(self._learn))
             if isinstance(event, Executed | StepUndone) and not self._teaching.world.over:
                 self._where()
 

@@ -29,10 +29,13 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
+from threading import Thread
 from time import monotonic
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
+from rich.console import RenderableType
 from textual import events
+from textual._compositor import ChopsUpdate, LayoutUpdate
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.css.query import NoMatches
@@ -40,9 +43,14 @@ from textual.notifications import SeverityLevel
 from textual.screen import Screen
 from textual.widgets import Input
 
-from tangy_tui.language.stop_sentence import stops
+from tangy_tui.app.terminal_session import QuestionKey, terminal_session
+from tangy_tui.language.stop_sentence import prepare, stops
+from tangy_tui.text import program as text
+from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import CleanOutput, clean
 from tangy_tui.ui.messages import Stop
+from tangy_tui.ui.round_trip import ReplyParser, RoundTrip
+from tangy_tui.ui.screen_diff import ScreenDiff, Written
 from tangy_tui.ui.terminal import TerminalKind
 from tangy_tui.ui.themes import ANSI, DARK, INK_DEFAULTS, LIGHT, THEMES
 from tangy_tui.ui.type_ahead_guard import Clock
@@ -74,6 +82,7 @@ class TangyApp(App[None]):
         Binding("escape", "back", "Back", id="app.back"),
         Binding("plus", "zoom", "Enlarge the panel", key_display="+", id="app.zoom"),
         Binding("s", "picture", "Save a picture of the screen", id="app.picture"),
+        Binding("ctrl+l", "draw_again", "Draw the screen again", show=False, id="app.draw"),
         Binding("m", "mouse", "Mouse on or off", id="app.mouse"),
     ]
 
@@ -84,6 +93,7 @@ class TangyApp(App[None]):
         kind: TerminalKind | None = None,
         pictures: Path | None = None,
         clock: Clock = monotonic,
+        question: QuestionKey = "auto",
     ) -> None:
         """Make the program.
 
@@ -92,6 +102,7 @@ class TangyApp(App[None]):
             kind: how the terminal is to be used (`terminal.terminal_kind()` finds out).
             pictures: the folder that pictures of the screen are saved to (default: the current).
             clock: seconds, on the scale of `time.monotonic`; dialogs and the room use it.
+            question: how a question takes a yes.
         """
         kind = kind or TerminalKind()
         super().__init__(ansi_color=True if kind.ansi else None)
@@ -108,12 +119,27 @@ class TangyApp(App[None]):
         self._pictures = pictures
         self._leaving = False
         self._typed_stop = TypedStop()
+        self._shown = ScreenDiff()
+        self._question = question
+        self.round_trip: RoundTrip | None = None
+        """What asks the terminal whether a question was seen; None where there is none."""
 
     async def on_event(self, event: events.Event) -> None:
         """Stop where the word is typed or pasted among keys, and let the rest of it be no keys."""
+        if isinstance(event, events.Resize):
+            self._shown.forget()
+            if self.round_trip is not None:
+                self.round_trip.resized(event.size)
         pressed = isinstance(event, events.Key | events.Paste)
-        if not (pressed and not isinstance(self.focused, Input) and self._says_stop(event)):
+        if pressed and not isinstance(self.focused, Input) and self._says_stop(event):
+            return
+        if not (isinstance(event, events.Key) and self._types(event)):
             await super().on_event(event)
+
+    def _types(self, event: events.Key) -> bool:
+        """Let the screen take a letter that it wants wherever the keys are."""
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, TangyScreen) and top.take_letter(event)
 
     def _says_stop(self, event: events.Event) -> bool:
         """Stop if the word is there now; say whether the event is no key, but belongs to it."""
@@ -145,6 +171,32 @@ class TangyApp(App[None]):
             # Not on Windows, and not outside of the main thread.
             with suppress(NotImplementedError, RuntimeError, ValueError):
                 loop.add_signal_handler(number, self._signalled, number.name, code)
+        self.call_after_refresh(Thread(target=prepare, daemon=True).start)
+        if not self.is_headless:
+            self.call_after_refresh(self._meet_terminal)
+
+    def _meet_terminal(self) -> None:
+        """Find out whether the terminal answers, and so proves that a question was seen."""
+        self.round_trip = RoundTrip(
+            self._to_terminal,
+            terminal_session,
+            self.clock,
+            cursor=lambda: self._previous_cursor_position,
+            setting=self._question,
+        )
+        ReplyParser.heard = self.round_trip.attributes
+        self.round_trip.begin(self.size)
+
+    def _to_terminal(self, sequence: str) -> None:
+        """Write behind everything that was drawn so far."""
+        if self._driver is not None:
+            self._driver.write(sequence)
+            self._driver.flush()
+
+    def on_cursor_position(self, event: events.CursorPosition) -> None:
+        """Take the terminal's answer: what was drawn before has reached it."""
+        if self.round_trip is not None:
+            self.round_trip.reported(event.x, event.y, event.time)
 
     def stop(self, reason: str) -> None:
         """Say to every open screen, the topmost first, that the robot must stop."""
@@ -175,8 +227,36 @@ class TangyApp(App[None]):
 
         moving = [s for s in self.screen_stack if hasattr(s, "on_stop")]
         if all(isinstance(screen, Dialog) for screen in moving):
-            self.say("Nothing is moving.")
+            self.say(text.NOTHING_MOVES)
         self.stop("ctrl+x was pressed")
+
+    def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
+        """Write only the cells that changed; where none did, nothing."""
+        if (
+            isinstance(renderable, LayoutUpdate | ChopsUpdate)
+            and self._driver is not None
+            and self._running
+            and not (self.is_headless or self._batch_count or self._closed)
+        ):
+            changed = self._shown.difference(renderable, self.console)
+            cursor = self.screen.outer_size.clamp_offset(self.cursor_position)
+            if not changed and cursor == self._previous_cursor_position:
+                self.post_display_hook()
+                return
+            super()._display(screen, cast("RenderableType", Written(changed)))
+            return
+        if renderable is not None:
+            self._shown.forget()
+        super()._display(screen, renderable)
+
+    def _handle_exception(self, error: Exception) -> None:
+        """Let a screen that was still being laid out when the program ended go unfinished.
+
+        Textual mounts nothing once a program exits, so that such a screen looks for its parts in
+        vain: no error for who has closed the window. Every other error is told.
+        """
+        if not (self._exit and isinstance(error, NoMatches)):
+            super()._handle_exception(error)
 
     async def action_quit(self) -> None:
         """Leave the program."""
@@ -217,17 +297,22 @@ class TangyApp(App[None]):
             folder.mkdir(parents=True, exist_ok=True)
             path = self.save_screenshot(filename=name, path=str(folder))
         except OSError as error:
-            self.say(f"The picture could not be saved in {folder}: {error.strerror}.", bad=True)
+            self.say(text.not_saved_words(folder, error.strerror), bad=True)
         else:
             self.say(f"Saved {path}")
+
+    def action_draw_again(self) -> None:
+        """Draw the whole screen: something else may have written on the terminal."""
+        self._shown.forget()
+        self.screen.refresh(layout=True)
 
     def action_mouse(self) -> None:
         """Take the mouse, or leave it to the terminal so that text can be copied."""
         self.use_mouse(not self.mouse)
         if self.mouse:
-            self.say("Mouse on. Press m to turn it off and select text.")
+            self.say(text.MOUSE_ON)
         else:
-            self.say("Mouse off: you can select text. Press m to turn it on again.")
+            self.say(text.MOUSE_OFF)
 
     def use_mouse(self, on: bool) -> None:
         """Take the mouse, or leave it to the terminal."""
@@ -262,9 +347,8 @@ class TangyApp(App[None]):
                     await self.run_action(action, node)
 
                 yield SystemCommand(binding.description, f"key {key}", run)
-        yield SystemCommand("Dark colours", "High contrast on black", self._themed(DARK.name))
-        yield SystemCommand("Light colours", "Dark on paper", self._themed(LIGHT.name))
-        yield SystemCommand("The terminal's colours", "Its own sixteen", self._themed(ANSI.name))
+        for (name, like), theme in zip(text.COLOURS.items(), (DARK, LIGHT, ANSI), strict=True):
+            yield SystemCommand(name, like, self._themed(theme.name))
 
     def action_command_palette(self) -> None:
         """Show the command palette, without a blinking cursor."""

@@ -102,6 +102,13 @@ class TangyScreen(Screen[ResultT]):
         if self.is_active:
             self.dismiss(result)
 
+    def take_letter(self, event: events.Key) -> bool:
+        """Take a key before it is looked at as one; False: it is a key like any other.
+
+        A screen on which people type commands takes letters here, wherever the keys are.
+        """
+        return False
+
     async def on_prune(self, event: Prune) -> None:
         """End what goes on beside the screen before its panels go: it writes on them."""
         self.workers.cancel_node(self)

@@ -17,6 +17,7 @@ from tangy_tui.speech.activity_check import CheckedFile
 from tangy_tui.speech.phrase_list import PhraseList, items
 from tangy_tui.text.faults import recovery_words
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.rules import UNRULED, UNSEEN, UNTRIED, together_words
 
 
 def print_activities(activities: Iterable[tuple[str, Activity]]) -> None:
@@ -69,11 +70,11 @@ def print_rules(rules: Rules) -> None:
         keys = ", ".join(looks_at(rule)) or "what no other rule explains"
         table.add_row(str(number), name, Text(recovery_words(rule)), Text(keys))
     console.print(table)
-    _print_left(console, "Evidence of devices that no rule looks at", rules.unseen)
-    _print_left(console, "Faults of the simulator that no rule is for", rules.unruled)
-    _print_left(console, "Rules that the simulator cannot bring about", rules.untried)
+    _print_left(console, UNSEEN, rules.unseen)
+    _print_left(console, UNRULED, rules.unruled)
+    _print_left(console, UNTRIED, rules.untried)
     for code, kinds in rules.together.items():
-        console.print(Text(plain(f"Only together do {' and '.join(kinds)} bring about: {code}.")))
+        console.print(Text(plain(together_words(kinds, code))))
     console.print(_verdict(rules.file, not rules.unruled, "no mistake"))
 
 

@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text.program import LEARNING
 
 if TYPE_CHECKING:
     from tangy_tui.ui.program import Program
@@ -46,7 +47,7 @@ async def tell_story(program: Program, seed: int) -> None:
         )
         if not complete:
             return
-    policy = await program.in_thread("Tangy is learning ...", lambda: learn(workspace))
+    policy = await program.in_thread(LEARNING, lambda: learn(workspace))
     if policy is None:
         return
     await program.open_policy(policy, leave_after=6.0)

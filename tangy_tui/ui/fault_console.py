@@ -31,6 +31,7 @@ from tangy_tui.monitoring.fault import (
 )
 from tangy_tui.monitoring.games import uncleared
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text import injections
 from tangy_tui.text.faults import (
     banner_words,
     doing_words,
@@ -38,6 +39,7 @@ from tangy_tui.text.faults import (
     status_words,
     told_in_banner,
 )
+from tangy_tui.text.halts import ALL_WELL, uncleared_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.critical import CriticalDialog
@@ -51,9 +53,6 @@ from tangy_tui.ui.widgets.status_line import StatusLine
 LOOK_SECONDS = 0.025
 """How often the devices are looked at between behaviours, also while the game stands still: so
 that, with the time that drawing takes, what is wrong is seen within 0.1 s."""
-
-NOT_SIMULATED = "Faults can be brought about in the simulated room only."
-NO_GAME = "No game is going on: press g to play one first."
 
 Tell = Callable[[list[Event], bool], None]
 """Shows events; the second is whether it is known already why a game was stopped."""
@@ -275,9 +274,8 @@ class FaultConsole:
         if fault is None:
             return True
         dialog = ConfirmDialog(
-            "Is all well now?",
-            f"The last game ended with: {fault.name}, which nobody cleared. Tangy moves as soon "
-            "as a game begins.",
+            ALL_WELL,
+            uncleared_words(fault.name),
             yes="all is well: begin the game",
             no="do not begin",
         )
@@ -339,8 +337,8 @@ class FaultConsole:
     def refuses(self) -> str:
         """Say why no fault can be brought about now; empty if one can."""
         if not self.simulated:
-            return NOT_SIMULATED
-        return NO_GAME if self.supervision.over else ""
+            return injections.NOT_SIMULATED
+        return injections.NO_GAME if self.supervision.over else ""
 
     async def inject(self) -> tuple[str, bool]:
         """Let a fault be chosen, and bring it about or lift it.
@@ -350,7 +348,7 @@ class FaultConsole:
         """
         world = self.supervision.world
         if not isinstance(world, FaultyWorld | BenchedWorld):
-            return NOT_SIMULATED, False
+            return injections.NOT_SIMULATED, False
         if self._game != self.supervision.games:
             self._game = self.supervision.games
             self._asked_for.clear()
@@ -370,13 +368,13 @@ class FaultConsole:
             world.lift(kind)
             self.supervision.note(f"a fault was lifted: {kind}", self._control.by)
             self._asked_for.pop(kind, None)
-            return f"Lifted: {kind}.", there
+            return injections.lifted_words(kind), there
         self._asked_for[kind] = len(world.came)
         self.supervision.note(f"a fault was brought about: {kind}", self._control.by)
         world.inject(kind)
         if comes_later(kind):
-            return f"{kind} comes as soon as it can show.", False
-        return f"Brought about: {kind}.", True
+            return injections.comes_later_words(kind), False
+        return injections.injected_words(kind), True
 
 
 def _told_so_far(fault: Fault) -> tuple[str, int]:

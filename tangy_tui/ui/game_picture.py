@@ -19,7 +19,8 @@ from tangy_tui.interaction.game_events import (
 )
 from tangy_tui.monitoring.fault import Diagnosed, Moved
 from tangy_tui.monitoring.supervision import Event, Supervision
-from tangy_tui.text.numbers import counted
+from tangy_tui.text.games import begun_words, broken_off_words, over_words, response_words
+from tangy_tui.text.learnt import replay_words
 from tangy_tui.text.situations import lesson_words, once_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.why import WhyDialog
@@ -71,7 +72,7 @@ class GamePicture:
         for event in events:
             match event:
                 case GameBegun(_, number, state):
-                    log.write(f"Game {number} begins.", "dim")
+                    log.write(begun_words(number), "dim")
                     room = self._screen.query_one(RoomView)
                     room.say("")
                     room.put(state.place)
@@ -83,11 +84,8 @@ class GamePicture:
                 case Acted():
                     self._show_step(event, taught.teacher if taught else "", pace)
                 case BeliefUpdated(response, belief):
-                    name = self._workspace.name(response.person)
-                    what = "complied" if response.complied else "followed, but late"
                     log.write(
-                        f"{name} {what}: {response.strategy} has worked "
-                        f"{belief.complied} of {belief.trials} times.",
+                        response_words(response, belief, self._workspace.name),
                         "good" if response.complied else "dim",
                     )
                     self._show_beliefs((response.person, response.strategy))
@@ -102,10 +100,9 @@ class GamePicture:
                     write_fault(self._screen, event)
                     self._show_scene(0, drive=False, pace=pace)
                 case GameEnded(_, steps, None):
-                    words = f"The game is over after {counted(steps, 'step')}."
-                    log.write(f"{words} g plays another.", "good")
+                    log.write(over_words(steps), "good")
                 case GameEnded(_, steps, str(reason)):
-                    log.write(f"The game stopped after {counted(steps, 'step')}. {reason}", "bad")
+                    log.write(broken_off_words(steps, reason), "bad")
 
     def show_status(self, robot: str, note: str, mode: str) -> None:
         """Say how the robot is, where in the game it is, and what else is to be said."""
@@ -166,8 +163,8 @@ class GamePicture:
         learnt = lesson_words(activity, lesson)
         log = self._screen.query_one(LogView)
         log.write(learnt, "good")
-        log.write(lesson.replay.words(), "warn" if lesson.replay.changed else "good")
-        self.lesson = clean(f"{learnt} {lesson.replay.words()}")
+        log.write(replay_words(lesson.replay), "warn" if lesson.replay.changed else "good")
+        self.lesson = clean(f"{learnt} {replay_words(lesson.replay)}")
         self._screen.notify(
             self.lesson,
             severity="warning" if lesson.replay.changed else "information",

@@ -17,6 +17,7 @@ from textual.app import App
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.learning.verification import Reply, Say, StopCommand
+from tangy_tui.text.voice import HANDS_FREE, OR_KEY_AND_SAY, OR_SAY, RECORDING
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.question import VerifyingDialog
 from tangy_tui.ui.widgets.microphone_line import MicrophoneLine
@@ -111,7 +112,7 @@ class Hearing:
         """How an answer to a question begins that is given by voice; "" if none can be."""
         if not self.ears.answers:
             return ""
-        return "Or ctrl+t, and say" if self.by_key else "Or say"
+        return OR_KEY_AND_SAY if self.by_key else OR_SAY
 
     def attend(self, listener: Listener) -> None:
         """Give what is heard to a listener from now on."""
@@ -159,9 +160,9 @@ class Hearing:
         if not self._watching:
             return
         if not self.ears.live:
-            self.tell("A recording is listened to: no key is needed.")
+            self.tell(RECORDING)
         elif self.ears.hands_free:
-            self.tell("No key is needed: just speak.")
+            self.tell(HANDS_FREE)
         else:
             if self.ears.state == "shut":
                 await self._hush()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from textual.constants import ESCAPE_DELAY
 
 from tangy_profiles.errors import TangyError
+from tangy_tui.text.live_games import BENCH, BENCH_DETAIL, SWITCH_ON_DETAIL, switch_on_words
 
 if TYPE_CHECKING:
     from tangy_hw.robot_client.live_world import LiveWorld
@@ -18,14 +19,6 @@ if TYPE_CHECKING:
 
 TYPED_AHEAD_SECONDS = 1.5 * ESCAPE_DELAY
 """After which an Esc that was typed before there was a screen is known to be one."""
-SWITCH_ON = (
-    "It stands at the front, facing people, with nobody close by, and somebody is near its stop "
-    "button. In the game ctrl+x stops it, too."
-)
-BENCH = (
-    "No robot is named, so its devices are simulated, and the people at the table; all else is as "
-    "in a live game. `tangy --robot FILE` names a robot."
-)
 
 
 async def play_from_home(program: Program, policy: Policy) -> None:
@@ -36,10 +29,10 @@ async def play_from_home(program: Program, policy: Policy) -> None:
     workspace = program.workspace
     bench = not workspace.robot.drivers
     if bench:
-        dialog = ConfirmDialog("Play on the bench?", BENCH, yes="play", no="back")
+        dialog = ConfirmDialog(BENCH, BENCH_DETAIL, yes="play", no="back")
     else:
-        question = f"Switch {workspace.robot.title} on?"
-        dialog = ConfirmDialog(question, SWITCH_ON, yes="switch it on, and play", no="back")
+        question = switch_on_words(workspace.robot.title)
+        dialog = ConfirmDialog(question, SWITCH_ON_DETAIL, yes="switch it on, and play", no="back")
     if await program.push_screen_wait(dialog):
         seed = workspace.game_seed(None)
         opening = opening_of(workspace, bench=bench, seed=seed)
@@ -65,6 +58,8 @@ async def play_live(
 
         supervision = workspace.supervision(policy, seed, asks=True, world=world)
         screen = LiveScreen(workspace, supervision, world, games=games, teacher=teacher)
+        if program.hearing is not None:
+            program.hearing.ears.begin()
         await program.push_screen_wait(screen)
     finally:
         await asyncio.shield(asyncio.to_thread(robot.close))

@@ -13,6 +13,7 @@ from rich.text import Text
 from tangy_profiles.game_world import BENCH, LIVE, SIMULATED
 from tangy_profiles.reading import plain
 from tangy_tui.monitoring.games import NONE_YET, Game
+from tangy_tui.text.log import HOW_TO_GO_ON
 from tangy_tui.text.times import local_time
 
 SHORT = 6
@@ -54,7 +55,7 @@ def print_games(games: Sequence[Game]) -> None:
     for game in games:
         if game.ended is None or game.stopped is not None:
             console.print(Text(plain(f"Game {game.number}: {game.ending}")))
-    console.print(Text("tangy log show 1: a game step by step. tangy log report 1: its report."))
+    console.print(Text(HOW_TO_GO_ON))
 
 
 def _ended(game: Game) -> Text:

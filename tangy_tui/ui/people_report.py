@@ -11,19 +11,27 @@ from rich.text import Text
 
 from tangy_profiles.reading import plain
 from tangy_tui.interaction.record import Record
-from tangy_tui.text.people import entry_words, method_words, prior_words, sentence, tally
+from tangy_tui.text.people import (
+    COMPLIED,
+    HISTORY,
+    NO_HISTORY,
+    P_BEST,
+    SETTLED,
+    STAR,
+    entry_words,
+    method_words,
+    prior_words,
+    sentence,
+    tally,
+)
 from tangy_tui.text.times import on_day
-
-LEGEND = "P(best): probability of being the best of those on. "
-STAR = "*: the most probable one."
-SETTLED = "settled: at least 0.9."
 
 
 def print_people(records: Sequence[Record]) -> None:
     """Print everybody with the strategies tried on them, and what works with whom in words."""
     console = Console(highlight=False)
     strategies = tuple(records[0].beliefs)
-    title = f"Complied, of times tried (P(best)), in {records[0].world} games"
+    title = f"{COMPLIED}, in {records[0].world} games"
     table = _table(title, "person", *strategies)
     for record in records:
         cells = (_short(record, strategy) for strategy in strategies)
@@ -61,7 +69,7 @@ def print_person(record: Record) -> None:
 def print_history(record: Record) -> None:
     """Print what a person was asked to do, game by game."""
     console = Console(highlight=False)
-    table = _table("History by game", "no.", "when", "strategy", "what came of it")
+    table = _table(HISTORY, "no.", "when", "strategy", "what came of it")
     for game in record.games:
         where = "game of" if game.id is not None else "outside of a game,"
         table.add_row("", Text(f"{where} {on_day(game.begun)}", style="bold"), "", "")
@@ -70,7 +78,7 @@ def print_history(record: Record) -> None:
             words = plain(entry_words(entry))
             row = (str(entry.number), on_day(entry.at), entry.strategy, words)
             table.add_row(*(Text(cell, style=style) for cell in row))
-    console.print(table if record.games else Text("There is no history yet."))
+    console.print(table if record.games else Text(NO_HISTORY))
 
 
 def _short(record: Record, strategy: str) -> Text:
@@ -89,7 +97,7 @@ def _mark(record: Record, strategy: str) -> str:
 
 
 def _print_legend(console: Console, mark: str) -> None:
-    console.print(Text(LEGEND + mark, style="dim"))
+    console.print(Text(P_BEST + mark, style="dim"))
 
 
 def _table(title: str, *columns: str) -> Table:

@@ -9,7 +9,14 @@ from rich.cells import cell_len
 from tangy_profiles.beliefs import Beta
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
-from tangy_tui.text.people import entry_words, method_words, prior_words, sentence, tally
+from tangy_tui.text.people import (
+    NO_REQUESTS,
+    entry_words,
+    method_words,
+    prior_words,
+    sentence,
+    tally,
+)
 from tangy_tui.text.times import on_day
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine
@@ -96,7 +103,7 @@ def _strategy(record: Record, strategy: str, label: int, drawn: str) -> Row:
 def history_lines(record: Record, width: int) -> list[ChoiceLine]:
     """Write the history, the newest game first, and within a game the newest response first."""
     if not record.games:
-        return [ChoiceLine((("No request was put to this person yet.", "dim"),))]
+        return [ChoiceLine(((NO_REQUESTS, "dim"),))]
     strategy = min(12, max(cell_len(clean(e.strategy)) for e in record.history))
     digits = len(str(len(record.history)))
     lines = []

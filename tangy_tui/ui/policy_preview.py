@@ -12,6 +12,7 @@ from tangy_profiles.errors import TangyError
 from tangy_profiles.state import Situation
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.explanation import Why
+from tangy_tui.text.program import THINKING
 
 
 async def show_why(
@@ -21,7 +22,7 @@ async def show_why(
     from tangy_tui.ui.dialogs.why import WhyDialog
 
     app: Any = screen.app
-    app.say("Tangy is working out what it would do ... (esc: cancel)")
+    app.say(THINKING)
     worker: Worker[Why] = screen.run_worker(
         lambda: _grounds(workspace, present, situation),
         thread=True,

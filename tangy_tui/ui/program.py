@@ -13,6 +13,7 @@ from textual.worker import Worker, WorkerCancelled, WorkerFailed
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace, teacher_name
 from tangy_tui.learning import library, policies
+from tangy_tui.text import program as text
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.demo import tell_story_aside
 from tangy_tui.ui.live_games import play_from_home
@@ -78,7 +79,7 @@ class Program(SoundingApp):
         store = self.workspace.store
         aside = [store.aside[seq] for seq in sorted(store.aside)]
         if len(aside) > 1:
-            aside = [f"{aside[0]} And {len(aside) - 1} more: `tangy store check` names them."]
+            aside = [text.left_out_words(aside[0], len(aside) - 1)]
         for sentence in (*store.notices, *aside):
             if sentence not in self._told:
                 self._told.add(sentence)
@@ -199,7 +200,7 @@ class Program(SoundingApp):
             return
         if not await settle_conflicts(self, self.workspace, "let Tangy learn"):
             return
-        policy = await self.in_thread("Tangy is learning ...", lambda: learn(self.workspace))
+        policy = await self.in_thread(text.LEARNING, lambda: learn(self.workspace))
         if policy is not None:
             await self.open_policy(policy)
 
@@ -260,7 +261,7 @@ class Program(SoundingApp):
 
         workspace = self.workspace
         made = await self.in_thread(
-            "Tangy is preparing the drill ...",
+            text.PREPARING_DRILL,
             lambda: Drill.of(
                 workspace.activity,
                 workspace.robot,
@@ -289,7 +290,7 @@ class Program(SoundingApp):
         if len(wanted) < 2:
             return
         found = await self.in_thread(
-            "Tangy is recalling both ...",
+            text.RECALLING_BOTH,
             lambda: [find_policy(workspace.store, workspace.activity, one) for one in wanted],
         )
         if found is not None:
@@ -299,12 +300,8 @@ class Program(SoundingApp):
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """List what the command palette offers, with what no key of home leads to."""
         yield from super().get_system_commands(screen)
-        yield SystemCommand(
-            "Compare policies", "Teacher against teacher, before against after", self.action_compare
-        )
-        yield SystemCommand(
-            "Phrases", "All that can be said or typed, and how it is said", self.action_phrases
-        )
+        yield SystemCommand(*text.COMPARE_POLICIES, self.action_compare)
+        yield SystemCommand(*text.PHRASES, self.action_phrases)
 
     async def action_phrases(self) -> None:
         """Open the phrasebook; while it says a word aloud, the microphone is shut."""
@@ -343,7 +340,7 @@ class Program(SoundingApp):
         """Learn the kept policy again; what must be said of it is said before it is used."""
         workspace = self.workspace
         loaded = await self.in_thread(
-            "Tangy is recalling what it learnt ...",
+            text.RECALLING,
             lambda: policies.load_policy(workspace.store, workspace.activity, wanted),
         )
         if loaded is None:

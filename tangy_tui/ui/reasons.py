@@ -10,6 +10,7 @@ from tangy_tui.interaction.game_events import Acted
 from tangy_tui.learning.explanation import Why, explain
 from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text.decisions import WHY_ASKED, answered_words, why_row_title, why_step_title
 from tangy_tui.ui.dialogs.why import WhyDialog
 
 
@@ -31,12 +32,12 @@ def why_of(workspace: Workspace, policy: Policy, situation: Situation) -> Why:
 def why_step(workspace: Workspace, ground: Ground, number: int) -> WhyDialog:
     """Explain a step of a game."""
     acted = ground.acted
-    done = f"Tangy asked, and {ground.teacher} answered: {acted.action.behaviour.name}."
+    done = answered_words(ground.teacher, acted.action.behaviour.name)
     return WhyDialog(
         workspace,
         why_of(workspace, ground.policy, acted.state.situation),
         acted.choice,
-        title=f"Step {number}: why this?",
+        title=why_step_title(number),
         remarks=(done,) if ground.teacher else (),
     )
 
@@ -44,10 +45,10 @@ def why_step(workspace: Workspace, ground: Ground, number: int) -> WhyDialog:
 def why_row(workspace: Workspace, policy: Policy, situation: Situation) -> WhyDialog:
     """Explain a row of a policy."""
     return WhyDialog(
-        workspace, why_of(workspace, policy, situation), title=f"{policy.name}: why this?"
+        workspace, why_of(workspace, policy, situation), title=why_row_title(policy.name)
     )
 
 
 def why_asked(workspace: Workspace, policy: Policy, situation: Situation) -> WhyDialog:
     """Explain why Tangy asks."""
-    return WhyDialog(workspace, why_of(workspace, policy, situation), title="Why does Tangy ask?")
+    return WhyDialog(workspace, why_of(workspace, policy, situation), title=WHY_ASKED)

@@ -23,7 +23,9 @@ from tangy_tui.learning.demonstration_rows import ListRow
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.library import Library
 from tangy_tui.learning.policy import Decision, Policy
+from tangy_tui.text.demonstrations import NONE_YET
 from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text.people import COMPLIED
 from tangy_tui.text.situations import agreement_words, conflict_lines
 from tangy_tui.text.times import local_time
 
@@ -91,7 +93,7 @@ def print_demonstrations(rows: Sequence[ListRow]) -> None:
     """Print the demonstrations, one row each, with what to mind of them."""
     console = Console(highlight=False)
     if not rows:
-        console.print("There are no demonstrations yet: begin with `tangy teach`.")
+        console.print(NONE_YET)
         return
     table = _table("Demonstrations", "", "teacher", "date", "steps", "shown", "state", "notes")
     for row in rows:
@@ -148,7 +150,7 @@ def print_tally(workspace: Workspace, tally: Tally, beliefs: Mapping[str, Belief
 
 def _people_table(workspace: Workspace, beliefs: Mapping[str, Beliefs]) -> Table:
     strategies = tuple(workspace.activity.strategies)
-    table = _table("Complied, of times tried (P(best))", "person", *strategies)
+    table = _table(COMPLIED, "person", *strategies)
     for person, profile in beliefs.items():
         best = probability_best(profile)
         leads = leading(best)

@@ -10,6 +10,7 @@ from tangy_tui.ui.app import run_app
 from tangy_tui.ui.demo import tell_story
 from tangy_tui.ui.live_games import play_live
 from tangy_tui.ui.program import Program, Start
+from tangy_tui.ui.round_trip import read_replies
 from tangy_tui.ui.terminal import terminal_kind
 from tangy_tui.ui.writer import outlive_terminal
 
@@ -153,8 +154,16 @@ def _run(
     live: bool = False,
 ) -> int:
     outlive_terminal()
+    read_replies()
     kind = terminal_kind(ascii=True if ascii_only else None)
     program = Program(
-        workspace, start, kind=kind, ears=ears, voice=voice, sensors=sensors, live=live
+        workspace,
+        start,
+        kind=kind,
+        ears=ears,
+        voice=voice,
+        sensors=sensors,
+        live=live,
+        question=workspace.settings.question,
     )
     return run_app(program)

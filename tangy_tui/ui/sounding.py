@@ -10,16 +10,15 @@ from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from tangy_profiles.activity import Activity
+from tangy_tui.text.program import VOICE
+from tangy_tui.text.voice import OFF, ON
 from tangy_tui.ui.app import FirstScreen, TangyApp
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.hearing import Hearing
-from tangy_tui.ui.speaking import OFF, ON, Speaker
+from tangy_tui.ui.speaking import Speaker
 
 if TYPE_CHECKING:
     from tangy_tui.speech.input import SpeechInput
-
-
-VOICE = "Voice on or off"
 
 
 class SoundingApp(TangyApp):
@@ -30,7 +29,7 @@ class SoundingApp(TangyApp):
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+t", "talk", "Talk to Tangy", priority=True, show=False, id="app.talk"),
-        Binding("v", "voice", VOICE, id="app.voice"),
+        Binding("v", "voice", VOICE[0], id="app.voice"),
     ]
 
     def __init__(
@@ -95,8 +94,8 @@ class SoundingApp(TangyApp):
         """List what the command palette offers, with the voice."""
         listed = list(super().get_system_commands(screen))
         yield from listed
-        if VOICE not in (command.title for command in listed):  # v is another key there
-            yield SystemCommand(VOICE, "Tangy speaks what it says", self.action_voice)
+        if VOICE[0] not in (command.title for command in listed):  # v is another key there
+            yield SystemCommand(*VOICE, self.action_voice)
 
     def _told_to_stop(self) -> None:
         self.action_stop()

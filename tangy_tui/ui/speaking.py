@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from tangy_profiles.activity import Activity
 from tangy_profiles.voice import VoicePreference
+from tangy_tui.text.voice import shown_words
 from tangy_tui.ui.hearing import Hearing
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 
 GAP = 0.15
 """Seconds for which a line waits that cuts another one: in fast games most are cut themselves."""
-
-ON = "Tangy speaks now. In a game every line is heard to its end at x1; v switches the voice off."
-OFF = "Tangy does not speak any more: what it says is shown."
 
 
 class CanSpeak(Protocol):
@@ -75,7 +73,7 @@ def make_voice(
         player = open_player()
     except PlayerError as error:
         if not synthesiser.reason:
-            tell(f"{error} What Tangy says is shown as text.")
+            tell(shown_words(str(error)))
     return SpeechVoice(
         synthesiser, player, deck=activity.deck, on_begin=begin, on_end=end, tell=tell
     )

@@ -12,7 +12,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.coverage import Coverage, missing_words
 from tangy_tui.learning.teaching_events import Executed, StepUndone
 from tangy_tui.learning.teaching_session import TeachingSession
-from tangy_tui.text.numbers import counted
+from tangy_tui.text import teaching as text
 from tangy_tui.text.situations import state_words, step_words
 from tangy_tui.ui.shown_so_far import ShownSoFar
 from tangy_tui.ui.widgets.coverage_list import CoverageList
@@ -43,20 +43,14 @@ class TeachingPicture:
             step_words(activity, event.step, self._teaching.name)
         )
         if self._shown.first(situation):
-            self._log.write(f"New to Tangy: {activity.in_words(situation)}.", "good")
+            self._log.write(text.new_words(activity.in_words(situation)), "good")
         self._log.write(event.speech)
         self._screen.query_one(RoomView).say(event.speech)
         self._scene(event.step.state.place)
 
     def undone(self, undone: Sequence[StepUndone]) -> None:
         """Tell of steps that were taken back, the last one first."""
-        last, first = undone[0], undone[-1]
-        words = (
-            f"Step {last.number} is undone: {last.step.behaviour}."
-            if last is first
-            else f"Steps {first.number} to {last.number} are undone."
-        )
-        self._log.write(f"{words} U brings {'it' if last is first else 'them'} back.", "warn")
+        self._log.write(text.undone_words(undone), "warn")
         self._screen.query_one(RoomView).say("")
         self._scene(self._teaching.world.observe().place)
 
@@ -64,24 +58,18 @@ class TeachingPicture:
         """Show a game that begins, or that goes on with the steps it has."""
         teaching = self._teaching
         shown = teaching.demonstration
-        steps = len(shown.steps)
         self._shown.begin()
         self._screen.query_one(Transcript).fill(
             [step_words(teaching.activity, s, teaching.name) for s in shown.steps]
         )
         self._scene(teaching.world.observe().place)
-        if resumed:
-            self._log.write(f"Going on where you left, after {counted(steps, 'step')}.", "good")
-        elif shown.origin == "again":
-            self._log.write(f"Show it again from step {steps + 1}; what was before stays.", "good")
-        else:
-            title, teacher = teaching.activity.title, teaching.teacher
-            arranged = ", arranged to show everything" if shown.guided else ""
-            self._log.write(f"A new game of {title}{arranged}, demonstrated by {teacher}.", "dim")
+        goes_on = resumed or shown.origin == "again"
+        words = text.beginning_words(teaching, resumed=resumed)
+        self._log.write(words, "good" if goes_on else "dim")
 
     def finished(self, steps: int) -> None:
         """Say that the game is over."""
-        self._log.write(f"The game is complete: {counted(steps, 'step')}.", "good")
+        self._log.write(text.complete_words(steps), "good")
 
     def state(self) -> None:
         """Show where the game is, and what was shown up to here."""
@@ -100,7 +88,7 @@ class TeachingPicture:
             )
         )
         words = (
-            "The game is over. Press esc, then d for another game, or r to let Tangy learn."
+            text.OVER
             if teaching.world.over
             else state_words(teaching.activity, state, teaching.world.scene(), teaching.name)
         )

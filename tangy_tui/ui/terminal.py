@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TextIO
 
+from tangy_tui.text.program import too_small_words
+
 MIN_WIDTH = 60
 MIN_HEIGHT = 18
 
@@ -60,10 +62,7 @@ def too_small(width: int, height: int) -> str | None:
     """Return the sentence for a window that is too small, or None."""
     if width >= MIN_WIDTH and height >= MIN_HEIGHT:
         return None
-    return (
-        f"Tangy needs {MIN_WIDTH} x {MIN_HEIGHT} characters; this window has "
-        f"{width} x {height}. Make it larger: nothing is lost."
-    )
+    return too_small_words(width, height, (MIN_WIDTH, MIN_HEIGHT))
 
 
 def _is_tty(stream: TextIO | None) -> bool:

@@ -14,6 +14,13 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.comparison import SituationComparison, compare
 from tangy_tui.learning.policy import Decision, Policy
 from tangy_tui.text.numbers import counted
+from tangy_tui.text.policies import (
+    ALL_THE_SAME,
+    NOTHING_TO_COMPARE,
+    ONE_POLICY,
+    WHICH,
+    compared_words,
+)
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -33,17 +40,12 @@ SIDE_BY_SIDE = 110
 WIDEST = 44
 """Columns that one policy has at the most, so that both can be looked at together."""
 
-NOTHING_TO_COMPARE = (
-    "There is only one policy so far, or none: learn again after another demonstration, or let "
-    "somebody else teach."
-)
-
 
 async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> list[str]:
     """Let two policies or teachers be chosen; `first` is one already. Fewer than two: no choice."""
     options = comparison_options(workspace.store, workspace.activity)
     if len(options) < 2:
-        await app.push_screen_wait(MessageDialog(NOTHING_TO_COMPARE, title="Nothing to compare"))
+        await app.push_screen_wait(MessageDialog(ONE_POLICY, title=NOTHING_TO_COMPARE))
         return []
     wanted = [] if first is None else [first]
     for question in ("Compare:", "Compare with:")[len(wanted) :]:
@@ -58,7 +60,7 @@ async def choose_two(app: App[Any], workspace: Workspace, first: str | None) -> 
 async def choose_policy(app: App[Any], workspace: Workspace) -> str | None:
     """Let one of the policies that were kept be chosen."""
     options = policy_options(workspace.store, workspace.activity)
-    return await app.push_screen_wait(ChooseDialog("Look at which policy?", options))
+    return await app.push_screen_wait(ChooseDialog(WHICH, options))
 
 
 def decision_words(decision: Decision) -> str:
@@ -150,8 +152,7 @@ class CompareScreen(TangyScreen[None]):
 
     def _summary(self) -> str:
         differ = sum(not row.same for row in self._all)
-        count = counted(len(self._all), "situation")
-        said = f"They differ in {differ} of {count}." if differ else f"They agree in all {count}."
+        said = compared_words(differ, len(self._all))
         names = [
             f"{letter}: {policy.name} ({policy.digest[:DIGEST_SHOWN]}, "
             f"{counted(len(policy.demonstrations), 'demonstration')})"
@@ -162,7 +163,7 @@ class CompareScreen(TangyScreen[None]):
     def _write(self, width: int) -> list[PageLine]:
         rows = self.rows
         if not rows:
-            return [PageLine((("They do the same everywhere; d shows all rows.", "dim"),))]
+            return [PageLine(((ALL_THE_SAME, "dim"),))]
         activity = self._workspace.activity
         words = [clean(activity.in_words(row.situation)) for row in rows]
         label = max(cell_len(word) for word in words) + 2

@@ -17,21 +17,16 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Conflict
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.text.numbers import counted
+from tangy_tui.text import conflicts as text
 from tangy_tui.text.situations import edit_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.dialogs.words import WordsDialog
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine, panel
-from tangy_tui.ui.type_ahead_guard import FreshKeys, clock_of
+from tangy_tui.ui.type_ahead_guard import FreshKeys
 from tangy_tui.ui.widgets.answer_steps import AnswerSteps
 from tangy_tui.ui.widgets.log_view import LogView
 from tangy_tui.ui.widgets.status_line import Status, StatusLine
-
-ASKED = (
-    "Which is right? Press its number, b if all of them are, o for something else. Esc leaves it "
-    "open: Tangy will not act there in a game, but ask."
-)
 
 
 class ConflictsScreen(TangyScreen[bool]):
@@ -137,14 +132,13 @@ class ConflictsScreen(TangyScreen[bool]):
         self._answered.append(edit)
         words = edit_words(self._workspace.activity, self._library, edit)
         aside = len(edit.done.resolution.wrong) if isinstance(edit.done, Settlement) else 0
-        put = f" {counted(aside, 'step')} set aside." if aside else ""
-        self._log.write(f"{words}{put}", "good")
+        self._log.write(text.settled_words(words, aside), "good")
         await self._show()
 
     async def _other(self, conflict: Conflict) -> None:
         """Let another behaviour be chosen that nobody showed here."""
         others = [b for b in self._workspace.activity.behaviours if b not in conflict.answers]
-        dialog = WordsDialog("What is right here?", others)
+        dialog = WordsDialog(text.OTHER, others)
         chosen = await self.app.push_screen_wait(dialog)
         if chosen is not None and conflict is self._present:
             await self._resolve(conflict, chosen)
@@ -152,13 +146,13 @@ class ConflictsScreen(TangyScreen[bool]):
     async def _leave_open(self, conflict: Conflict) -> None:
         self._answered.append(None)
         words = self._workspace.activity.in_words(conflict.situation)
-        self._log.write(f"{words}: left open. Tangy will ask when it comes up in a game.", "warn")
+        self._log.write(text.left_open_words(words), "warn")
         await self._show()
 
     async def _undo(self) -> None:
         """Take back the last answer, and ask again."""
         if not self._answered:
-            self._log.write("There is no answer to take back.", "warn")
+            self._log.write(text.NOTHING_TAKEN_BACK, "warn")
             return
         edit = self._answered[-1]
         try:
@@ -168,7 +162,7 @@ class ConflictsScreen(TangyScreen[bool]):
             self._log.write(str(error), "bad")
             return
         self._answered.pop()
-        self._log.write("Your last answer is taken back.", "warn")
+        self._log.write(text.TAKEN_BACK, "warn")
         await self._show()
 
     # ------------------------------------------------------------------------------- showing
@@ -184,11 +178,9 @@ class ConflictsScreen(TangyScreen[bool]):
         )
         self.query_one(KeyLine).show(*self._key_words())
         self.query_one("#asked", Static).update(
-            f"Press enter to {self._then}, esc to go back, u to take the last answer back."
-            if present is None
-            else ASKED
+            text.keys_words(self._then) if present is None else text.ASKED
         )
-        self.call_after_refresh(self._keys.painted, clock_of(self.app))
+        self._keys.watch(self)
 
     async def _show_answers(self, present: Conflict | None) -> None:
         grid = self.query_one(Grid)
@@ -214,16 +206,11 @@ class ConflictsScreen(TangyScreen[bool]):
 
     def _situation(self, conflict: Conflict) -> str:
         words = self._workspace.activity.in_words(conflict.situation)
-        return clean(f"Different answers were shown to this situation: {words}.")
+        return clean(text.situation_words(words))
 
     def _summary(self) -> str:
         left = sum(edit is None for edit in self._answered)
-        if not self._conflicts:
-            return "The demonstrations agree in every situation."
-        settled = len(self._answered) - left
-        if not left:
-            return f"Settled: {settled}. Nothing is left open."
-        return f"Settled: {settled}. Left open: {left}; Tangy will ask there when it plays."
+        return text.done_words(len(self._answered) - left, left)
 
     @property
     def _log(self) -> LogView:

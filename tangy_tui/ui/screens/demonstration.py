@@ -16,6 +16,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.demonstration_rows import heard_words, state_of
 from tangy_tui.learning.library import Library, read_library
 from tangy_tui.learning.quality import quality_notes
+from tangy_tui.text.demonstrations import AGAIN_DETAIL, NO_STEPS, again_words
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import step_words
 from tangy_tui.text.times import local_time
@@ -31,9 +32,8 @@ from tangy_tui.ui.widgets.transcript import Transcript
 async def show_again(app: App[Any], library: Library, id: str, number: int) -> None:
     """Show a demonstration again from a step on, if the teacher means it."""
     dialog = ConfirmDialog(
-        f"Show {library.name(id)} again from step {number}?",
-        "The steps before it stay as they are. It is replaced when you have shown the game to "
-        "its end, and not before.",
+        again_words(library.name(id), number),
+        AGAIN_DETAIL,
         yes="show it again",
         no="leave it as it is",
     )
@@ -84,7 +84,7 @@ class DemonstrationScreen(TangyScreen[None]):
         name = self._library.name(self._shown.id)
         yield StatusLine(Status(mode=name, note=state_of(self._entry)))
         yield Static(self._summary(), id="summary", markup=False)
-        yield panel(Transcript(empty="It has no steps.", id="transcript"))
+        yield panel(Transcript(empty=NO_STEPS, id="transcript"))
         with panel(VerticalScroll(id="step"), "This step"):
             yield Static(id="told", markup=False)
         yield key_line(

@@ -12,10 +12,12 @@ from textual.widgets import Static
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.learning.demonstration_rows import UNFINISHED, ListRow, list_rows
+from tangy_tui.learning.demonstration_rows import ListRow, list_rows
 from tangy_tui.learning.editing import Editor
 from tangy_tui.learning.library import Edit
-from tangy_tui.text.numbers import counted, listed
+from tangy_tui.text import demonstrations as text
+from tangy_tui.text.conflicts import NONE_LEFT
+from tangy_tui.text.numbers import counted
 from tangy_tui.text.situations import edit_words, step_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -28,8 +30,6 @@ from tangy_tui.ui.widgets.transcript import Transcript
 
 TAKEN_BACK = "undone"
 """The state of what an edit made that was taken back: it is not in the list."""
-
-NOTHING_LOST = "Nothing is lost: u takes it back."
 
 
 class DemonstrationsScreen(TangyScreen[None]):
@@ -78,7 +78,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         yield StatusLine()
         yield panel(DemonstrationList())
         yield Static(id="notes", markup=False)
-        yield panel(Transcript(empty="It has no steps.", id="transcript"))
+        yield panel(Transcript(empty=text.NO_STEPS, id="transcript"))
         yield key_line(
             ("x", "delete"), ("a", "again"), ("space", "mark"), ("g", "merge"),
             ("/", "split"), ("u U", "undo"), ("c", "conflicts"), ("esc", "back"), ("?", "help"),
@@ -130,13 +130,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         if self._library.entries[row.id].hidden:
             self._do(lambda: self._editor.restore(row.id))
             return
-        detail = f"Tangy will not learn from its {counted(row.steps, 'step')}. {NOTHING_LOST}"
-        self._confirm(
-            f"Delete demonstration {row.number} by {row.teacher}?",
-            detail,
-            "delete it",
-            lambda: self._editor.delete(row.id),
-        )
+        self._confirm(text.delete_words(row), "delete it", lambda: self._editor.delete(row.id))
 
     def action_mark(self) -> None:
         """Mark the chosen demonstration, or take the mark off."""
@@ -152,18 +146,12 @@ class DemonstrationsScreen(TangyScreen[None]):
         """Make one demonstration of those that are marked, in the order of their marks."""
         ids = [id for id in self._marked if id in self._rows]
         if len(ids) < 2:
-            self._say("Mark two or more with space first, and then merge them with g.")
+            self._say(text.MARK_FIRST)
             return
         if self._refused(*ids):
             return
-        names = listed(self._rows[id].number for id in ids)
-        steps = sum(self._rows[id].steps for id in ids)
-        self._confirm(
-            f"Merge demonstrations {names}?",
-            f"They give way to one of {counted(steps, 'step')}, in this order. {NOTHING_LOST}",
-            "merge them",
-            lambda: self._editor.merge(*ids),
-        )
+        asked = text.merge_words([self._rows[id] for id in ids])
+        self._confirm(asked, "merge them", lambda: self._editor.merge(*ids))
 
     def action_split(self) -> None:
         """Make two demonstrations of the chosen one, after the chosen step."""
@@ -171,27 +159,21 @@ class DemonstrationsScreen(TangyScreen[None]):
         if row is None:
             return
         if step is None:
-            self._say("Choose the step that ends the first part: tab goes to the steps.")
+            self._say(text.CHOOSE_LAST)
             return
         if self._refused(row.id):
             return
         if step >= row.steps:
-            self._say(f"Nothing comes after step {step}: choose one before it.", bad=True)
+            self._say(text.nothing_after_words(step), bad=True)
             return
-        self._confirm(
-            f"Split demonstration {row.number} after step {step}?",
-            f"It gives way to two: {counted(step, 'step')}, and {row.steps - step} after them. "
-            f"{NOTHING_LOST}",
-            "split it",
-            lambda: self._editor.split(row.id, step),
-        )
+        asked = text.split_words(row, step)
+        self._confirm(asked, "split it", lambda: self._editor.split(row.id, step))
 
     def _refused(self, *ids: str) -> bool:
         """Say of the first demonstration that cannot be merged or split why that is so."""
         for row in (self._rows[id] for id in ids):
             if not row.in_use:
-                why = "not finished yet" if row.state == UNFINISHED else f"not in use: {row.state}"
-                self._say(f"Demonstration {row.number} by {row.teacher} is {why}.", bad=True)
+                self._say(text.refused_words(row), bad=True)
                 return True
         return False
 
@@ -209,7 +191,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         if row is None:
             return
         if step is None:
-            self._say("Choose the step to begin with: tab goes to the steps.")
+            self._say(text.CHOOSE_FIRST)
         else:
             from tangy_tui.ui.screens.demonstration import show_again
 
@@ -222,7 +204,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         if self._library.conflicts:
             self.app.push_screen(ConflictsScreen(self._workspace, then="go back to the list"))
         else:
-            self._say("The demonstrations agree in every situation.")
+            self._say(NONE_LEFT)
 
     async def action_learn(self) -> None:
         """Learn from those that are in use."""
@@ -236,9 +218,11 @@ class DemonstrationsScreen(TangyScreen[None]):
         else:
             close(self, None)
 
-    def _confirm(self, question: str, detail: str, yes: str, change: Callable[[], Edit]) -> None:
+    def _confirm(self, asked: tuple[str, str], yes: str, change: Callable[[], Edit]) -> None:
+        """Ask a question, with what it means, and make the change if it is meant."""
+
         async def ask() -> None:
-            if await self.app.push_screen_wait(ConfirmDialog(question, detail, yes=yes)):
+            if await self.app.push_screen_wait(ConfirmDialog(*asked, yes=yes)):
                 self._do(change)
 
         self.run_worker(ask(), name="confirm")
@@ -254,7 +238,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         self._refusal = ""
         self._read()
         words = edit_words(self._workspace.activity, self._library, edit)
-        self._say(f"{before}: {words}" if before else f"{words} u takes it back.")
+        self._say(text.changed_words(words, before))
 
     def _say(self, sentence: str, *, bad: bool = False) -> None:
         app: Any = self.app
@@ -297,7 +281,7 @@ class DemonstrationsScreen(TangyScreen[None]):
         steps = self._library.entries[row.id].demonstration.steps
         words = [step_words(workspace.activity, step, workspace.name) for step in steps]
         transcript = self.query_one(Transcript)
-        transcript.border_title = f"Steps of demonstration {row.number}"
+        transcript.border_title = text.steps_title(row.number)
         transcript.fill(words)
 
     def _show_notes(self) -> None:

@@ -14,11 +14,19 @@ from textual.widgets import Static
 from tangy_tui.monitoring.drill import Drill
 from tangy_tui.monitoring.drill_rounds import Round
 from tangy_tui.text.drills import (
+    LEAVE,
+    LEAVE_DETAIL,
+    NO_HURRY,
+    SAW,
+    SEE_NOW,
+    SHEET_KEPT,
+    WAS_RIGHT,
     WELCOME,
     Told,
     question_words,
     round_parts,
     sheet_lines,
+    so_far_words,
     told_lines,
 )
 from tangy_tui.ui.base import TangyScreen
@@ -78,9 +86,9 @@ class DrillScreen(TangyScreen[None]):
         """Say what it is, and wait for a key."""
         page = self.query_one(Page)
         page.border_title = "Rehearse"
-        text = [self._drill.note, WELCOME, "There is no hurry: the time is told, and not scored."]
+        told = [self._drill.note, WELCOME, NO_HURRY]
         page.show(lambda width: [
-            line for part in text if part for line in [*paragraph(part, width), PageLine()]
+            line for part in told if part for line in [*paragraph(part, width), PageLine()]
         ])  # fmt: skip
         self._ask("Ready?", (("enter", "the first round"),))
 
@@ -116,8 +124,8 @@ class DrillScreen(TangyScreen[None]):
             return
         self.app.push_screen(
             ConfirmDialog(
-                "Leave the drill?",
-                "What you answered is kept as an unfinished sheet.",
+                LEAVE,
+                LEAVE_DETAIL,
                 yes="leave",
                 no="go on with the drill",
             ),
@@ -143,7 +151,7 @@ class DrillScreen(TangyScreen[None]):
             return
         self._status(f"{shown.number} of {self._drill.rounds}")
         page = self.query_one(Page)
-        page.border_title = "What you see"
+        page.border_title = SEE_NOW
         page.show(lambda width: _seen(self._drill, shown, width))
         page.scroll_home(animate=False)
         self._show_question()
@@ -158,18 +166,17 @@ class DrillScreen(TangyScreen[None]):
 
     def _show_told(self, shown: Round, told: Sequence[Told]) -> None:
         page = self.query_one(Page)
-        page.border_title = "What was right"
+        page.border_title = WAS_RIGHT
         page.show(
             lambda width: [
-                *(line for ink, text in told for line in paragraph(clean(text), width, ink)),
-                *heading("What you saw"),
+                *(line for ink, words in told for line in paragraph(clean(words), width, ink)),
+                *heading(SAW),
                 *_seen(self._drill, shown, width),
             ]
         )
         page.scroll_home(animate=False)
-        sheet = self._drill.sheet
         what = "your score" if self._drill.over else "the next round"
-        self._ask(f"{sheet.points} of {sheet.most} so far.", (("enter", what),))
+        self._ask(so_far_words(self._drill.sheet), (("enter", what),))
 
     def _show_sheet(self) -> None:
         self._at_end = True
@@ -180,13 +187,13 @@ class DrillScreen(TangyScreen[None]):
         page.show(
             lambda width: [
                 line
-                for ink, text in sheet_lines(sheet, width, self._drill.before)
-                for line in ([PageLine(((text, ink),))] if len(text) <= width else
-                             paragraph(text, width, ink))
+                for ink, words in sheet_lines(sheet, width, self._drill.before)
+                for line in ([PageLine(((words, ink),))] if len(words) <= width else
+                             paragraph(words, width, ink))
             ]
         )  # fmt: skip
         page.scroll_home(animate=False)
-        self._ask("The sheet is kept.", (("enter", "back"),))
+        self._ask(SHEET_KEPT, (("enter", "back"),))
 
     def _status(self, note: str) -> None:
         self.query_one(StatusLine).show(Status(mode="rehearse", note=note))

@@ -14,6 +14,7 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
+from tangy_tui.text.program import ALL_PHRASES
 from tangy_tui.ui.base import Dialog
 
 KEY = "$accent bold"
@@ -45,7 +46,7 @@ def help_for(screen: Screen[Any]) -> Help:
             keys = everywhere if active.node is screen.app else here
             keys.setdefault(binding.description, screen.app.get_key_display(binding))
     if _has_phrases(screen):
-        here.setdefault("All that can be said or typed", "p")
+        here.setdefault(ALL_PHRASES, "p")
     title = str(screen.TITLE or "Tangy")
     if focused is not None and isinstance(focused.border_title, str) and focused.border_title:
         title = f"{title} · {focused.border_title}"

@@ -13,6 +13,7 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
+from tangy_tui.text.program import TAGLINE
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.panels import key_line
@@ -147,9 +148,9 @@ class Menu(Widget, can_focus=True):
 
     def _heading(self, y: int) -> Row:
         if y == 0:
-            return (("T A N G Y", "robot"),)
+            return ((" ".join("TANGY"), "robot"),)
         if y == 1:
-            return (("Teach a robot a group activity, and let it run that activity.", "dim"),)
+            return ((TAGLINE, "dim"),)
         return ()
 
     def _row(self, choice: MenuItem, here: bool, width: int) -> Row:

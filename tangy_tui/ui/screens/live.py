@@ -37,12 +37,21 @@ from tangy_tui.app.simulated_devices_world import BenchedWorld
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.verification import Verified
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.control import (
+    BUSY,
+    NOT_WHILE_WORKING,
+    VOID_DETAIL,
+    WHO_NEEDS_HELP,
+    void_call_words,
+)
+from tangy_tui.text.live_games import LOOKS_ROUND, MAY_MOVE, frozen_words
+from tangy_tui.text.live_news import seated_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.driving import DrivingDialog
 from tangy_tui.ui.fault_console import Work
 from tangy_tui.ui.panels import KeyLine
-from tangy_tui.ui.screens import live_keys, live_words
+from tangy_tui.ui.screens import live_keys
 from tangy_tui.ui.screens.live_cards import LiveCards
 from tangy_tui.ui.screens.live_keys import NOT_LIVE
 from tangy_tui.ui.screens.live_marks import track
@@ -80,7 +89,7 @@ class LiveScreen(PlayScreen):
         self.working = 0  # how many things are being done, or wait for their turn
         self._seen_doing = ""
         self._frozen = 0.0
-        self._seats = Seats(workspace.name)
+        self._seats = Seats()
         self._cards = LiveCards(workspace, supervision, world, self._write)
 
     def on_mount(self) -> None:
@@ -106,7 +115,7 @@ class LiveScreen(PlayScreen):
     async def _begin_game(self) -> list[Event]:
         await self._until_going()
         if self._world.lost:
-            self._write(live_words.LOOKS_ROUND, "warn")
+            self._write(LOOKS_ROUND, "warn")
         return await super()._begin_game()
 
     async def _beside(self, work: Callable[[], T]) -> T:
@@ -146,7 +155,7 @@ class LiveScreen(PlayScreen):
         """Pause, or go on; after a STOP this is what lets the robot move again."""
         if self._at_rest and self.control.robot.frozen:  # in a game that is a fault
             self._do(GoOn())
-            self._tell_now(live_words.MAY_MOVE, "dim")
+            self._tell_now(MAY_MOVE, "dim")
         else:
             super().action_pause()
 
@@ -170,7 +179,7 @@ class LiveScreen(PlayScreen):
     def action_drive(self) -> None:
         """Let staff drive; the game waits meanwhile."""
         if self.working:
-            self._tell_now("Not in the middle of what it does: p pauses, ctrl+x stops it.", "warn")
+            self._tell_now(NOT_WHILE_WORKING, "warn")
         elif not self._refused():
             self.run_worker(self._drive(), name="drive", group="drive")
 
@@ -181,14 +190,14 @@ class LiveScreen(PlayScreen):
     def action_call_again(self) -> None:
         """Say the last number once more."""
         if self.working or self._refused():
-            self._tell_now("Not now: Tangy is busy.", "dim")
+            self._tell_now(BUSY, "dim")
         else:
             self._do(CallAgain())
 
     def action_void_call(self) -> None:
         """Take the last call back."""
         if self.working:
-            self._tell_now("Not now: Tangy is busy.", "dim")
+            self._tell_now(BUSY, "dim")
         elif not self._world.called:
             self._do(TakeBackCall())
         else:
@@ -196,8 +205,9 @@ class LiveScreen(PlayScreen):
 
     async def _void_call(self) -> None:
         label = self._workspace.activity.deck.label(self._world.called[-1])
-        text = "It counts as not called then, and comes again later."
-        dialog = ConfirmDialog(f"Take {label} back?", text, yes="take it back", no="leave it")
+        dialog = ConfirmDialog(
+            void_call_words(label), VOID_DETAIL, yes="take it back", no="leave it"
+        )
         if await self.app.push_screen_wait(dialog):
             await self._do_beside(TakeBackCall(label))
             self.query_one(RoomView).show(self._world.scene())
@@ -209,7 +219,7 @@ class LiveScreen(PlayScreen):
 
     async def _ask_for(self) -> None:
         options = [Option(person.id, person.name) for person in self._workspace.people]
-        person = await self.app.push_screen_wait(ChooseDialog("Who needs help?", options))
+        person = await self.app.push_screen_wait(ChooseDialog(WHO_NEEDS_HELP, options))
         if person is not None:
             self._do(AskFor(person))
 
@@ -245,8 +255,8 @@ class LiveScreen(PlayScreen):
     def _tell(self, events: list[Event], known: bool = False) -> None:
         """Show events, and who was seen where somebody else usually sits."""
         super()._tell(events, known)
-        for line in self._seats.news(events, self._world.sitting):
-            self._write(line, "warn")
+        for seated in self._seats.news(events, self._world.sitting):
+            self._write(seated_words(seated, self._workspace.name), "warn")
         self._cards.tell(events)
 
     def _track(self) -> None:
@@ -261,7 +271,7 @@ class LiveScreen(PlayScreen):
             self._seen_doing = doing
             self._show_status()
         if state.frozen and not self._frozen:
-            self._write(live_words.WAS_FROZEN.format(state.frozen), "bad")
+            self._write(frozen_words(state.frozen), "bad")
             self.control.note(f"the robot process was frozen for {state.frozen:.1f} s")
         self._frozen = state.frozen
         track(room, state)

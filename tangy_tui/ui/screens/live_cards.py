@@ -12,11 +12,12 @@ from tangy_tui.app.card_news import BY, CardNews
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text.cards import KEY_HINT, LEARNT_NEXT, WHOSE, which_words
+from tangy_tui.text.live_news import note_words
 from tangy_tui.ui.dialogs.choose import ChooseDialog, Option
 from tangy_tui.ui.widgets.log_view import Kind
 
 LEARN = "learn"
-KEY_HINT = " Press b to say whose it is."
 
 
 class LiveCards:
@@ -34,14 +35,14 @@ class LiveCards:
         self._supervision = supervision
         self._cards = world.cards
         self._write = write
-        self._news = CardNews(workspace.name)
+        self._news = CardNews()
 
     def tell(self, events: Sequence[Event] = ()) -> None:
         """Show and log what is new, as soon as it is known."""
         for note in self._news.take(events, self._cards):
             self._supervision.note(note.note, BY)
-            if note.words:
-                self._write(note.words + KEY_HINT, "warn" if note.doubt else "dim")
+            if words := note_words(note, self._workspace.name):
+                self._write(f"{words} {KEY_HINT}", "warn" if note.doubt else "dim")
 
     async def say_whose(self, app: App[Any], control: GameController) -> None:
         """Ask staff who has which card, and keep it.
@@ -55,14 +56,13 @@ class LiveCards:
             people.append(
                 Option(person.id, person.name, f"has card {known}" if known else "not known yet")
             )
-        whom = await app.push_screen_wait(ChooseDialog("Whose card is it?", people))
+        whom = await app.push_screen_wait(ChooseDialog(WHOSE, people))
         if whom is None:
             return
         seen = sorted({*self._cards.in_sight})
         options = [Option(str(card), f"card {card}", "was in sight last") for card in seen]
-        options.append(Option(LEARN, "another one", "Tangy takes the next that it sees there"))
-        question = f"Which card does {name(whom)} have?"
-        told = await app.push_screen_wait(ChooseDialog(question, options))
+        options.append(Option(LEARN, "another one", LEARNT_NEXT))
+        told = await app.push_screen_wait(ChooseDialog(which_words(name(whom)), options))
         if told is None:
             return
         dealt.give(whom, None if told == LEARN else int(told))

@@ -15,8 +15,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import FeedbackEntry
 from tangy_tui.interaction.record import Record
 from tangy_tui.speech.aloud import hear
-from tangy_tui.text.people import change_words, entry_words
-from tangy_tui.text.times import on_day
+from tangy_tui.text import people as text
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close, close_after
@@ -77,9 +76,9 @@ class PeopleScreen(TangyScreen[None]):
         yield StatusLine(self._status)
         with Container(id="body"):
             with Container(id="left"):
-                yield panel(ChoiceList("People", PEOPLE_HELP, id="people"))
-                yield panel(ChoiceList("What works", STRATEGIES_HELP, id="strategies"))
-            yield panel(ChoiceList("History", HISTORY_HELP, id="history"))
+                yield panel(ChoiceList("People", text.PEOPLE_HELP, id="people"))
+                yield panel(ChoiceList("What works", text.STRATEGIES_HELP, id="strategies"))
+            yield panel(ChoiceList("History", text.HISTORY_HELP, id="history"))
         yield key_line(
             ("tab", "panel"),
             ("v", "void"),
@@ -103,7 +102,7 @@ class PeopleScreen(TangyScreen[None]):
         self._feedback = self._workspace.memory(self._world).feedback
         self.query_one(StatusLine).show(self._status)
         self._read()
-        self._say(f"What is known from {self._world} games.")
+        self._say(text.world_words(self._world))
 
     def on_mount(self) -> None:
         """Fill the panels from the log."""
@@ -123,13 +122,12 @@ class PeopleScreen(TangyScreen[None]):
         """Ask whether the chosen response is not to count."""
         entry = self._entry()
         if entry is None or not entry.counts:
-            self._say("Choose a response that counts: tab goes to the history, arrows choose.")
+            self._say(text.CHOOSE_COUNTING)
             return
         person, why = self._record.person, WHY[bool(entry.complied)]
 
         self._ask(
-            "Shall this response no longer count?",
-            f"{entry.strategy}: {person.name} {entry_words(entry)}, {on_day(entry.at)}.",
+            (text.VOID, text.void_detail(entry, person.name)),
             f"{why}: leave it out",
             lambda: self._feedback.void(person.id, entry.seq, why),
         )
@@ -138,7 +136,7 @@ class PeopleScreen(TangyScreen[None]):
         """Ask what the person did about the chosen request."""
         entry = self._entry()
         if entry is None or not entry.open:
-            self._say("Choose a request without an answer; void a wrong answer first, with v.")
+            self._say(text.CHOOSE_OPEN)
             return
         person = self._record.person
 
@@ -148,8 +146,7 @@ class PeopleScreen(TangyScreen[None]):
                     lambda: self._feedback.give(person.id, entry.strategy, complied, entry.seq)
                 )
 
-        detail = f"The request with {entry.strategy}, {on_day(entry.at)}."
-        self.app.push_screen(AnswerDialog(f"Did {person.name} comply?", detail), answered)
+        self.app.push_screen(AnswerDialog(*text.comply_words(entry, person.name)), answered)
 
     def action_switch(self) -> None:
         """Ask whether the chosen strategy is to be used with this person."""
@@ -158,8 +155,7 @@ class PeopleScreen(TangyScreen[None]):
         among = self._workspace.activity.strategies
         state = "on again" if on else "off"
         self._ask(
-            f"Switch {strategy} {state} for {record.person.name}?",
-            "What Tangy has learnt of it stays.",
+            text.switch_words(strategy, record.person.name, on=on),
             f"switch it {state}",
             lambda: self._feedback.switch(record.person.id, strategy, on, among),
         )
@@ -201,11 +197,10 @@ class PeopleScreen(TangyScreen[None]):
         person = self._record.person
         change = self._feedback.last_change(person.id)
         if change is None:
-            self._say(f"There is nothing to take back for {person.name}.")
+            self._say(text.nothing_back_words(person.name))
             return
         self._ask(
-            f"Take this back for {person.name}?",
-            f"What was said: {change_words(change)}.",
+            text.take_back_words(change, person.name),
             "take it back",
             lambda: self._feedback.undo(person.id),
         )
@@ -237,7 +232,9 @@ class PeopleScreen(TangyScreen[None]):
     def _show_person(self) -> None:
         record = self._record
         strategies, history = self._list("strategies"), self._list("history")
-        strategies.border_title = clean(f"What works with {record.person.name}").replace("[", "\\[")
+        strategies.border_title = clean(text.strategies_title(record.person.name)).replace(
+            "[", "\\["
+        )
         strategies.set_class(record.known.chosen.prior == "people", "-lent")
         strategies.show(lambda width, height: strategy_lines(record, width, height))
         history.show(lambda width, _: history_lines(record, width))
@@ -248,14 +245,14 @@ class PeopleScreen(TangyScreen[None]):
         hint = strategy_hint(self._workspace.activity.strategies, strategies.chosen)
         strategies.border_subtitle = hint.replace("[", "\\[")
 
-    def _ask(self, question: str, detail: str, yes: str, change: Callable[[], object]) -> None:
+    def _ask(self, asked: tuple[str, str], yes: str, change: Callable[[], object]) -> None:
         """Make a change once it is confirmed."""
 
         def answered(sure: bool | None) -> None:
             if sure:
                 self._do(change)
 
-        dialog = ConfirmDialog(question, detail, yes=yes, no="leave it as it is")
+        dialog = ConfirmDialog(*asked, yes=yes, no="leave it as it is")
         self.app.push_screen(dialog, answered)
 
     def _do(self, change: Callable[[], object]) -> None:
@@ -269,21 +266,3 @@ class PeopleScreen(TangyScreen[None]):
     def _say(self, sentence: str, *, bad: bool = False) -> None:
         severity = "error" if bad else "information"
         self.notify(clean(sentence), severity=severity, markup=False)  # type: ignore[arg-type]
-
-
-PEOPLE_HELP = (
-    "Everybody, with what works and on how many responses that rests. It is said to work when it "
-    "is at least 90% probable that no other way of asking is better; of one that alone is switched "
-    "on nobody can tell. Up and down choose a person."
-)
-STRATEGIES_HELP = (
-    "For each way of asking: the curve of what Tangy believes from 0 (never) to 1 (always), how "
-    "often the person complied of how often it was tried, the mean, the interval in which the "
-    "truth lies with 90%, and the probability of being the best of those that are on. Then how "
-    "the next one is chosen, and where the beliefs began. x switches the chosen one off for this "
-    "person, or on again."
-)
-HISTORY_HELP = (
-    "What was asked and what came of it, the newest game first. v voids the chosen response; what "
-    "is void, or has no response yet, can be answered with f."
-)

@@ -16,6 +16,8 @@ from tangy_profiles.errors import TangyError
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.speech.aloud import hear
 from tangy_tui.speech.phrase_list import Item, items, list_phrases
+from tangy_tui.text import phrases as text
+from tangy_tui.text.phrases import NONE_FOUND
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.closing import close
@@ -84,7 +86,7 @@ class PhrasesScreen(TangyScreen[None]):
     def compose(self) -> ComposeResult:
         """Lay out the list and the line to search with."""
         yield StatusLine(Status(mode="phrases", note=self._workspace.activity.title))
-        yield panel(ChoiceList("What can be said or typed", LIST_HELP, id="phrases"))
+        yield panel(ChoiceList(text.LIST_TITLE, text.LIST_HELP, id="phrases"))
         search = SearchInput(
             placeholder="search for ...",
             max_length=LONGEST_SEARCH,
@@ -106,7 +108,7 @@ class PhrasesScreen(TangyScreen[None]):
     def on_mount(self) -> None:
         """Look the words up beside the screen."""
         self._list.focus()
-        self._list.show(lambda width, height: [ChoiceLine((("Looking the words up ...", "dim"),))])
+        self._list.show(lambda width, height: [ChoiceLine(((text.LOOKING_UP, "dim"),))])
         self.run_worker(self._read(), group="read", exclusive=True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
@@ -133,7 +135,7 @@ class PhrasesScreen(TangyScreen[None]):
         """Say the chosen entry aloud."""
         item = self._chosen
         if item is None or not item.phones:
-            self._say("Choose something that can be said: a word, a person, a behaviour.")
+            self._say(text.CHOOSE_SAYABLE)
         else:
             self._hear(item.phones)
 
@@ -141,7 +143,7 @@ class PhrasesScreen(TangyScreen[None]):
         """Change how the name of the chosen person is said."""
         item = self._chosen
         if item is None or item.person is None:
-            self._say("Choose a person: words of the activity are changed in its file.")
+            self._say(text.CHOOSE_PERSON)
             return
         person = self._workspace.find_person(item.person)
 
@@ -216,10 +218,4 @@ def phrase_lines(entries: tuple[Item, ...], wanted: str, width: int) -> list[Cho
                 text = right[n] if n < len(right) else ""
                 ink = "person" if item.person else "robot"
                 lines.append(ChoiceLine(((name, ink), (text, "text")), place))
-    return lines or [ChoiceLine((("Nothing is found: esc shows everything again.", "dim"),))]
-
-
-LIST_HELP = (
-    "Up and down choose an entry, / searches, h says it aloud. Of what is only guessed nothing is "
-    "heard yet: choose the person and press e."
-)
+    return lines or [ChoiceLine(((NONE_FOUND, "dim"),))]

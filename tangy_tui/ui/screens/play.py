@@ -23,6 +23,7 @@ from tangy_tui.interaction.game_events import GameEnded
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.interaction.voiding import void_last
 from tangy_tui.monitoring.supervision import Event, Supervision
+from tangy_tui.text import games as text
 from tangy_tui.text.control import noted_words
 from tangy_tui.ui.closing import close, close_after
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
@@ -31,8 +32,6 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.panels import LOW, WIDE, KeyLine
 from tangy_tui.ui.screens import play_keys
 from tangy_tui.ui.screens.play_keys import (
-    NOT_IN_THE_DEMO,
-    TRIES_AGAIN,
     faster,
     keys,
 )
@@ -173,8 +172,8 @@ class PlayScreen(PlayStaff):
         going = self.control.going
         self._do(Pause())
         dialog = ConfirmDialog(
-            "Leave in the middle of the game?",
-            "It ends here, and the log says so. What was learnt from it stays.",
+            text.LEAVE,
+            text.LEAVE_DETAIL,
             yes="leave",
             no="go on",
         )
@@ -307,19 +306,19 @@ class PlayScreen(PlayStaff):
         self._halted = True
         self._skipping = False
         self.control.apply(Pause())
-        self._write(f"{reason} p tries again.", "bad")
+        self._write(text.halted_words(reason), "bad")
         self._show_status()
 
     async def _hold(self, reason: str) -> None:
         """Stand still after a failure until somebody lets it try again."""
         self._stand_still(reason)
-        await self._say_why(reason, TRIES_AGAIN)
+        await self._say_why(reason, text.TRIES_AGAIN)
         await self._until_going()
 
     def _fail(self, reason: str) -> None:
         """Stand still after a failure that came between two steps."""
         self._stand_still(reason)
-        self.run_worker(self._say_why(reason, TRIES_AGAIN), name="why", group="why")
+        self.run_worker(self._say_why(reason, text.TRIES_AGAIN), name="why", group="why")
 
     async def _wait(self, seconds: float) -> None:
         """Let a step's time (in the game, in s) pass; a key that changes the pace ends it early."""
@@ -345,22 +344,21 @@ class PlayScreen(PlayStaff):
         for event in events:
             if isinstance(event, GameEnded) and event.stopped is not None and not known:
                 self._halted = True
-                text = "Esc leads home, where t teaches; g plays another game."
-                self.run_worker(self._say_why(event.stopped, text), name="why")
+                self.run_worker(self._say_why(event.stopped, text.LEADS_HOME), name="why")
         self._show_status()
 
     async def _say_why(self, reason: str, then: str) -> None:
         """Tell why a game could not go on, at every size of the window."""
         if self._leave_after is None:
-            text = f"{reason}\n{then}"
-            await self.app.push_screen_wait(MessageDialog(text, title="The game stopped"))
+            dialog = MessageDialog(text.stopped_words(reason, then), title=text.STOPPED)
+            await self.app.push_screen_wait(dialog)
 
     # -------------------------------------------------------------------------------- status
 
     def action_inject(self) -> None:
         """Bring about a fault in the simulated room, or lift one."""
         if self._leave_after is not None:
-            self._tell_now(NOT_IN_THE_DEMO, "warn")
+            self._tell_now(text.NOT_IN_THE_DEMO, "warn")
         else:
             super().action_inject()
 

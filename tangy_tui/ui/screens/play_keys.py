@@ -7,12 +7,6 @@ from textual.binding import Binding, BindingType
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Times life; at 1 a game takes the half hour that it takes among people."""
 
-NOT_ACCEPTABLE = "Tangy asks about nothing that could be said to be all right."
-
-NOT_IN_THE_DEMO = "The demo shows a game in which nothing goes wrong."
-
-TRIES_AGAIN = "p tries again; esc leads home."
-
 
 def keys(*, going: bool, over: bool = False) -> tuple[tuple[str, str], ...]:
     """Return the keys and what they do while the game goes on, stands still, or is over."""

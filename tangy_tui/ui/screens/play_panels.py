@@ -14,6 +14,7 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.tally import Tally
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.games import NO_UNSEEN_FAULT, NOTHING_DECIDED
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.camera_session import CameraSession
 from tangy_tui.ui.fault_console import FaultConsole
@@ -117,7 +118,7 @@ class PlayPanels(TangyScreen[Tally]):
         if dialog is not None:
             self.app.push_screen(dialog)
         else:
-            self._tell_now("Nothing has been decided yet.", "dim")
+            self._tell_now(NOTHING_DECIDED, "dim")
 
     def on_transcript_chosen(self, event: Transcript.Chosen) -> None:
         """Tell why, for the step that was chosen with Enter."""
@@ -146,7 +147,7 @@ class PlayPanels(TangyScreen[Tally]):
         """Say that the fault in the banner was seen."""
         try:
             if not self._faults.see():
-                self._tell_now("No fault that nobody has seen.", "dim")
+                self._tell_now(NO_UNSEEN_FAULT, "dim")
         except TangyError as error:
             self._fail(str(error))
 

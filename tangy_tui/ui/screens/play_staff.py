@@ -20,10 +20,9 @@ from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
 from tangy_tui.learning.verification import Verified
-from tangy_tui.text.control import REFUSALS, noted_words
+from tangy_tui.text.control import NOT_ACCEPTABLE, REFUSALS, confirmed_words, noted_words
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.game_voice import GameVoice
-from tangy_tui.ui.screens.play_keys import NOT_ACCEPTABLE
 from tangy_tui.ui.screens.play_panels import PlayPanels
 from tangy_tui.ui.screens.question_panel import AskingPanel, Instead, wanted
 
@@ -79,10 +78,8 @@ class PlayStaff(PlayPanels):
 
     async def _propose(self, proposal: Proposal) -> None:
         """Ask whether the next behaviour is to be done; if not, staff say what else."""
-        whom = f" ({self._workspace.name(proposal.target)})" if proposal.target else ""
         dialog = ConfirmDialog(
-            f"Next: {proposal.behaviour}{whom}?",
-            f"{proposal.share:.0%} of the votes. After this, i turns the questions off.",
+            *confirmed_words(proposal, self._workspace.name),
             yes="do it",
             no="say what else",
         )

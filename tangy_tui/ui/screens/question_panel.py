@@ -40,6 +40,7 @@ from tangy_tui.learning.verification import (
     Say,
     Verified,
 )
+from tangy_tui.text import questions as text
 from tangy_tui.text.situations import ALL_RIGHT
 from tangy_tui.ui.base import Dialog
 from tangy_tui.ui.clean_output import clean
@@ -50,11 +51,10 @@ from tangy_tui.ui.messages import Stop
 from tangy_tui.ui.screens.question_text import question_words, seen_words
 from tangy_tui.ui.type_ahead_guard import SETTLE_SECONDS
 from tangy_tui.ui.widgets.answer_bar import AnswerBar
-from tangy_tui.ui.widgets.command_bar import CommandBar, CommandInput
+from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 
 ResultT = TypeVar("ResultT")
-HELD = "Tangy was stopped: press p to go on first, then answer."
 
 KEYS = "w why   : answer   p {}   esc give the game up"
 ACCEPTING_KEYS = "w why   r all right   : answer   p {}   esc give the game up"
@@ -148,8 +148,10 @@ class AskingPanel(Vertical):
         yield Static(self._before, classes="said", markup=False)
         yield AnswerBar(
             lambda typed: self._phrasebook.complete(typed),
+            sayable=lambda: self._answers.sayable,
             placeholder=f"what should Tangy do? (or: {other}why, help, quit)",
             resting=self._keys.format("pause"),
+            closed=True,
             id="command",
         )
 
@@ -158,7 +160,6 @@ class AskingPanel(Vertical):
 
         Where a key is pushed to talk, the screen keeps them.
         """
-        self.query_one(CommandInput).closed = True
         self._take_keys()
         self.set_timer(SETTLE_SECONDS, self._ready)
         if self._hearing is not None:
@@ -207,7 +208,7 @@ class AskingPanel(Vertical):
     def accept(self) -> bool:
         """Say that what happened is all right; False: that cannot be said of this question."""
         if self._acceptable and self._held:
-            self.say(HELD)
+            self.say(text.STOPPED_FIRST)
         elif self._acceptable:
             self._settle(Instead.ACCEPT)
         return self._acceptable
@@ -221,8 +222,8 @@ class AskingPanel(Vertical):
 
     async def _confirm(self) -> None:
         dialog = ConfirmDialog(
-            "Give this game up?",
-            "It ends here without an answer, and Tangy will ask again the next time.",
+            text.GIVE_UP,
+            text.GIVE_UP_DETAIL,
             yes="give the game up",
             no="go on",
         )
@@ -249,7 +250,7 @@ class AskingPanel(Vertical):
         self._held = held
         if held:
             self.screen.set_focus(None)
-            self.say(HELD)
+            self.say(text.STOPPED_FIRST)
         else:
             self.say("")
             self._take_keys()
@@ -269,7 +270,7 @@ class AskingPanel(Vertical):
             return
         if command is None or (isinstance(command, Accept) and not self._acceptable):
             if self._held:
-                self._return(event.text, HELD)
+                self._return(event.text, text.STOPPED_FIRST)
             else:
                 self._tell(self._answers.say(Say(event.text)))
         else:
@@ -305,10 +306,9 @@ class AskingPanel(Vertical):
                 self._be_open(False)
                 self.screen.run_worker(self._verify(said), name="question", group="question")
             case NotUnderstood(heard, suggestions):
-                near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
-                self._return(heard, f"I do not know what {heard!r} means.{near}")
+                self._return(heard, text.not_understood_words(heard, suggestions))
             case Rejected(heard):
-                self._return(heard, HELD if self._held else "Not done. Give a new command.")
+                self._return(heard, text.STOPPED_FIRST if self._held else text.REJECTED)
             case Refused(reason, heard):
                 self._return(heard, reason)
             case Verified():
@@ -356,7 +356,7 @@ class AskingPanel(Vertical):
         """Put a spoken answer to Tangy."""
         self._by_voice = True
         if self._held:
-            self._return(said.text, HELD)
+            self._return(said.text, text.STOPPED_FIRST)
         else:
             self._tell(self._answers.say(said))
 

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.game_events import Unsure
-from tangy_tui.learning.explanation import Why
 from tangy_tui.monitoring.supervision import Supervision
-from tangy_tui.text.numbers import counted
-from tangy_tui.text.situations import ALL_RIGHT, state_words
+from tangy_tui.text.questions import acceptable_words, asked_words, given_words
+from tangy_tui.text.situations import state_words
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.reasons import why_of
 
 
 def question_words(workspace: Workspace, game: Supervision, question: Unsure) -> str:
     """Write why Tangy asks; where answers were given, which."""
-    words = question.reason
     if game.acceptable:
-        return clean(f"{words} If all is well, type: {ALL_RIGHT[0]}. If not, what to do?")
+        return clean(acceptable_words(question.reason))
     if not question.fault and question.decision.seen:
         why = why_of(workspace, game.policy, question.state.situation)
-        words = f"{words} {_answers_words(why)}"
-    return clean(f"{words} What should Tangy do?")
+        return clean(asked_words(question.reason, given_words(why)))
+    return clean(asked_words(question.reason))
 
 
 def seen_words(workspace: Workspace, game: Supervision, question: Unsure) -> str:
@@ -28,15 +26,3 @@ def seen_words(workspace: Workspace, game: Supervision, question: Unsure) -> str
     scene = game.world.scene()
     words = state_words(workspace.activity, question.state, scene, workspace.name)
     return clean(f"Now: {words}")
-
-
-def _answers_words(why: Why) -> str:
-    """Say which answers demonstrations give in a situation, how often and by whom."""
-    given: dict[str, list[str]] = {}
-    for shown in (*why.rests_on, *why.against):
-        given.setdefault(shown.step.behaviour, []).append(shown.teacher)
-    parts = [
-        f"{behaviour} ({counted(len(teachers), 'time')}, by {', '.join(dict.fromkeys(teachers))})"
-        for behaviour, teachers in given.items()
-    ]
-    return f"Shown so far: {', '.join(parts)}." if parts else ""

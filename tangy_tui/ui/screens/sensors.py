@@ -14,6 +14,7 @@ from textual.widget import Widget
 
 from tangy_profiles.health import Health
 from tangy_tui.app.workspace import Workspace
+from tangy_tui.text import sensors as text
 from tangy_tui.text.sensors import Sensing, Teller, Told, age_words, card_words, rate_words, remark
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.clean_output import clean
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
 
 LOOK_SECONDS = 0.25
 """How often the devices are told of, and how often a picture is drawn at most."""
-
-NO_SOURCE = (
-    "No camera is named. Give one when you start Tangy, as in: tangy {} --camera camera=0; "
-    "or write its source into the robot's file."
-)
 
 TINY_OR_WIDE = [(0, "-tiny"), (77, "-narrow"), WIDE[-1]]
 """Below so many columns devices and picture are not seen side by side."""
@@ -101,7 +97,7 @@ class SensorsScreen(TangyScreen[None]):
         self._workspace = workspace
         self._sensors = sensors
         self._teller = Teller(workspace.robot, sensors, health, live=live)
-        self._no_source = NO_SOURCE.format("live" if live else "sensors")
+        self._no_source = text.no_source_words("live" if live else "sensors")
         self._where = where
         self._shown = shown
         self._told: dict[str, Told] = {}
@@ -114,10 +110,10 @@ class SensorsScreen(TangyScreen[None]):
         yield StatusLine(self._status())
         with Container(id="body"):
             with Container(id="left"):
-                yield panel(DeviceList("Devices", DEVICES_HELP, id="devices"))
+                yield panel(DeviceList("Devices", text.DEVICES_HELP, id="devices"))
                 yield panel(Page(id="about"))
             with Container(id="right"):
-                yield panel(BlockPicture("Picture", PICTURE_HELP, id="picture"))
+                yield panel(BlockPicture("Picture", text.PICTURE_HELP, id="picture"))
                 yield panel(Page(id="card"), "Last card")
         yield key_line(
             ("up down", "choose"), ("v", "picture"), ("tab", "panel"), ("+", "enlarge"),
@@ -194,7 +190,7 @@ class SensorsScreen(TangyScreen[None]):
         await asyncio.to_thread(__import__, "numpy")
         picture, loop = self.query_one(BlockPicture), asyncio.get_running_loop()
         seq, size = -1, picture.fit
-        picture.say("The first picture is coming ...")
+        picture.say(text.PICTURE_COMES)
         while True:
             began = loop.time()
             if self.is_active and picture.is_on_screen:
@@ -250,9 +246,9 @@ class SensorsScreen(TangyScreen[None]):
         if not self._cameras:
             picture.say(self._no_source)
         elif told.device.name not in self._cameras:
-            picture.say(f"No pictures come from the {told.device.label}.")
+            picture.say(text.no_pictures_words(told.device.label))
         elif not self._seen:
-            picture.say(f"v shows what the {told.device.label} sees.")
+            picture.say(text.look_words(told.device.label))
         elif picture.there:
             below = "live" if told.well else f"{told.state}, {age_words(told.age)} old"
         self._frame(picture, below=below)
@@ -270,7 +266,7 @@ class SensorsScreen(TangyScreen[None]):
     def _tell_of_card(self) -> None:
         sensors, page = self._sensors, self.query_one("#card", Page)
         if sensors is None or not sensors.card_device:
-            words = "No camera looks at cards."
+            words = text.NO_CARD_CAMERA
             page.show(lambda width: paragraph(words, width, "dim"), None)
             return
         cards = sensors.cards
@@ -331,10 +327,3 @@ def card_page(cards: CardSight, letters: list[str], width: int) -> list[PageLine
         lines += [PageLine(row) for row in seen_card_lines(cards.last, letters)]
         lines.append(PageLine(SEEN_LEGEND))
     return lines
-
-
-DEVICES_HELP = (
-    "Each device with a word for its state: a ! where something is wrong with it, !! where "
-    "nothing can be known by it, and a ~ where it is simulated. Up and down choose one."
-)
-PICTURE_HELP = "What the chosen camera sees now, in small. Nothing of it is kept."

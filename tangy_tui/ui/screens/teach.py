@@ -20,6 +20,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.teaching_events import (
     Again,
     Begun,
+    Contradicted,
     Executed,
     Finished,
     Next,
@@ -39,6 +40,8 @@ from tangy_tui.learning.verification import (
     Say,
     StopCommand,
 )
+from tangy_tui.text import teaching as text
+from tangy_tui.text.questions import REJECTED, not_understood_words
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.question import dialog_for
@@ -48,7 +51,7 @@ from tangy_tui.ui.panels import LOW, WIDE, panel, room_panel
 from tangy_tui.ui.policy_preview import show_why
 from tangy_tui.ui.screens import teach_keys
 from tangy_tui.ui.screens.teach_hearing import TeachHearing
-from tangy_tui.ui.screens.teach_keys import WATCHING, WHICH_STEP
+from tangy_tui.ui.screens.teach_keys import WATCHING
 from tangy_tui.ui.screens.teach_scripted import follow_script
 from tangy_tui.ui.speaking import preference_of, speaker_of
 from tangy_tui.ui.teaching_picture import TeachingPicture
@@ -110,14 +113,13 @@ class TeachScreen(TangyScreen[bool]):
     def compose(self) -> ComposeResult:
         """Lay out status, room, what was said, the trajectory, the situation, the commands."""
         hearing = hearing_of(self.app) if self._scripted is None else None
-        how = "Type" if hearing is None else "Say or type"
         yield StatusLine()
         with Horizontal(id="body"):
             with Vertical(id="left"):
                 yield room_panel(self._workspace)
                 yield panel(LogView(id="log"))
             with Vertical(id="right"):
-                yield panel(Transcript(empty=f"No steps yet. {how} what Tangy should do first."))
+                yield panel(Transcript(empty=text.begin_words(heard=hearing is not None)))
                 yield panel(CoverageList())
         yield Static(id="now", markup=False)
         if hearing is not None:
@@ -127,14 +129,16 @@ class TeachScreen(TangyScreen[bool]):
             yield HearingLine(hearing)
         yield CommandBar(
             lambda typed: self._teaching.phrasebook.complete(typed),
+            sayable=lambda: self._teaching.sayable,
             resting=self._listener.keys if self._scripted is None else WATCHING,
+            letters=False,
             id="command",
         )
 
     def on_mount(self) -> None:
         """Begin the session."""
         phrases = (b.phrases[0] for b in self._teaching.activity.behaviours.values())
-        said = f"You can say: {', '.join(phrases)}."
+        said = text.sayable_words(phrases)
         self.HELP = f"{type(self).HELP}{self._listener.help} {said}"  # type: ignore[misc]
         self._tell(self._begun or self._begin())
         if self._scripted is not None:
@@ -173,7 +177,7 @@ class TeachScreen(TangyScreen[bool]):
             case AgainFrom(step):
                 self.query_one(CommandBar).ready()
                 if step is None:
-                    self._log.write(WHICH_STEP, "warn")
+                    self._log.write(text.WHICH_STEP, "warn")
                 else:
                     self.again(self._teaching.demonstration.id, step - 1)
             case "why":
@@ -194,6 +198,21 @@ class TeachScreen(TangyScreen[bool]):
         alone = ("undo", "redo", "again", "next", "learn")
         return self._scripted is None or action not in alone
 
+    def take_letter(self, event: events.Key) -> bool:
+        """Type letters into the line, wherever the keys are: no letter does anything here."""
+        bar = next(iter(self.query(CommandBar)), None)
+        known = event.character if event.is_printable else None
+        if bar is None or known is None or bar.has_keys or self._scripted is not None:
+            return False
+        if (
+            known == ":"  # to type
+            or (known == "?" and not bar.text)  # for help
+            or (known == "t" and self._listener.by_key)  # to talk
+        ):
+            return False
+        bar.type(known)
+        return True
+
     async def action_talk(self) -> None:
         """Push to talk: begin, or end what is being said."""
         await self.run_action("app.talk")
@@ -210,7 +229,7 @@ class TeachScreen(TangyScreen[bool]):
         """Show the present game again from the step that is chosen."""
         number = self.query_one(Transcript).chosen
         if number is None:
-            self._log.write(WHICH_STEP, "warn")
+            self._log.write(text.WHICH_STEP, "warn")
         else:
             self.again(self._teaching.demonstration.id, number - 1)
 
@@ -223,17 +242,8 @@ class TeachScreen(TangyScreen[bool]):
         steps = len(present.steps)
         if command.demonstration == present.id and 0 <= command.kept < steps:
             first = command.kept + 1
-            gone, back = (
-                (f"Step {first} is", "it back")
-                if first == steps
-                else (f"Steps {first} to {steps} are", "them back one by one")
-            )
-            dialog = ConfirmDialog(
-                f"Go back before step {first} and show it again?",
-                f"{gone} taken back; U brings {back} until you show another.",
-                yes="go back",
-                no="go on here",
-            )
+            asked = text.again_words(first, steps)
+            dialog = ConfirmDialog(*asked, yes="go back", no="go on here")
             if not await self._alone(dialog):
                 self._listener.open(True)
                 return
@@ -317,7 +327,7 @@ class TeachScreen(TangyScreen[bool]):
         """Let the robot stand where it is seen until the next command is carried out."""
         self.query_one(RoomView).hold(True)
         self.query_one(CommandBar).ready()
-        self._log.write("STOP: the simulated robot stands still.", "warn")
+        self._log.write(text.STOPPED, "warn")
 
     def _apply(self, command: TeacherCommand) -> None:
         try:
@@ -345,11 +355,10 @@ class TeachScreen(TangyScreen[bool]):
                     self.run_worker(self._verify(event), name="question")
                     return
                 case NotUnderstood(heard, suggestions):
-                    near = f" Did you mean: {', '.join(suggestions)}?" if suggestions else ""
-                    self._log.write(f"I do not know what {heard!r} means.{near}", "warn")
+                    self._log.write(not_understood_words(heard, suggestions), "warn")
                     self._listener.give_back(heard)
                 case Rejected(heard):
-                    self._log.write("Not done. Give a new command.", "dim")
+                    self._log.write(REJECTED, "dim")
                     self._listener.give_back(heard)
                 case Refused(reason, heard):
                     self._log.write(reason, "warn")
@@ -359,6 +368,8 @@ class TeachScreen(TangyScreen[bool]):
                     self._picture.step(event)
                     preference = preference_of(self._workspace, event.action.target)
                     speaker_of(self.app).interject(event.speech, preference)
+                case Contradicted():
+                    self._log.write(text.contradicted_words(event, self._teaching), "warn")
                 case StepUndone():
                     self.query_one(Transcript).remove_last()
                     speaker_of(self.app).hush()

@@ -12,8 +12,9 @@ from tangy_tui.language.commands import Phrasebook
 from tangy_tui.learning.teaching_events import TeachingEvent
 from tangy_tui.learning.teaching_session import TeachingSession
 from tangy_tui.learning.verification import Say
+from tangy_tui.text.teaching import BY_KEY, HANDS_FREE
 from tangy_tui.ui.hearing import Hearing
-from tangy_tui.ui.screens.teach_keys import BY_KEY, HANDS_FREE, HEARING_KEYS, KEYS
+from tangy_tui.ui.screens.teach_keys import HEARING_KEYS, KEYS
 from tangy_tui.ui.widgets.command_bar import CommandBar
 from tangy_tui.ui.widgets.log_view import Kind, LogView
 

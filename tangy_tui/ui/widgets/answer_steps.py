@@ -9,6 +9,7 @@ from textual.message import Message
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.conflicts import Shown
 from tangy_tui.learning.library import Library
+from tangy_tui.text.conflicts import ANSWER_HELP
 from tangy_tui.text.numbers import counted
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
@@ -44,8 +45,7 @@ class AnswerSteps(ChoiceList):
     ) -> None:
         super().__init__(
             f"{number} {clean(behaviour)}",
-            "The steps that gave this answer. Enter opens one in its demonstration; the number "
-            "before the answer says that it is right.",
+            ANSWER_HELP,
         )
         self.border_subtitle = counted(len(steps), "time")
         self._workspace = workspace

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import ClassVar
 
-from rich.cells import cell_len
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.screen import Screen
-from textual.strip import Strip
-from textual.suggester import Suggester
 from textual.timer import Timer
-from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from tangy_tui.ui.clean_output import clean
-from tangy_tui.ui.themes import INK_CLASSES
-from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
-
-Complete = Callable[[str], tuple[str, ...]]
-"""Gives the commands that begin with (or are meant by) what was typed, likeliest first."""
+from tangy_tui.ui.widgets.command_matches import (
+    CommandMatches,
+    CommandSuggester,
+    Complete,
+    Sayable,
+)
 
 CLOSED_SECONDS = 2.0
 """How long the bar stays closed after a command if nobody says what became of it."""
@@ -33,67 +29,6 @@ ANSWERED_SECONDS = 0.2
 
 MOST_HISTORY = 200
 LONGEST = 200
-
-
-class _Ghost(Suggester):
-    """Shows the first match that goes on from what was typed."""
-
-    def __init__(self, complete: Complete) -> None:
-        super().__init__(use_cache=False, case_sensitive=True)
-        self._complete = complete
-
-    async def get_suggestion(self, value: str) -> str | None:
-        matches = self._complete(value) if value.strip() else ()
-        return next((value + m[len(value) :] for m in matches if _goes_on(value, m)), None)
-
-
-def _goes_on(value: str, match: str) -> bool:
-    return len(match) > len(value) and match.lower().startswith(value.lower())
-
-
-class Matches(Widget):
-    """One line with the commands that fit what was typed so far, or with the keys there are."""
-
-    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
-    DEFAULT_CSS = """
-    Matches { height: 1; padding: 0 0 0 2; }
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._matches: tuple[str, ...] = ()
-        self._typed = ""
-        self._keys = ""
-
-    def show(self, typed: str, matches: tuple[str, ...], keys: str = "") -> None:
-        """Show these matches, what was typed of them written strongly; or, if given, the keys."""
-        if (typed, matches, keys) != (self._typed, self._matches, self._keys):
-            self._typed = typed
-            self._matches = matches
-            self._keys = keys
-            self.refresh()
-
-    def render_line(self, y: int) -> Strip:
-        """Draw the line."""
-        return draw(self, self._row(self.size.width), self.size.width)
-
-    def _row(self, width: int) -> Row:
-        if self._keys:
-            return ((shorten(self._keys, width), "dim"),)
-        row: list[Span] = []
-        used = 0
-        for n, match in enumerate(self._matches):
-            text = clean(match)
-            left = len(self._matches) - n
-            more = f"  +{left - 1}" if left > 1 else ""
-            gap = "   " if row else ""
-            if used + len(gap) + cell_len(text) + len(more) > width:
-                row.append((f"  +{left}", "dim"))
-                break
-            head = len(self._typed) if _goes_on(self._typed, text) else 0
-            row += [(gap + text[:head], "strong"), (text[head:], "dim")]
-            used += len(gap) + cell_len(text)
-        return tuple(row)
 
 
 class CommandInput(Input):
@@ -106,9 +41,9 @@ class CommandInput(Input):
         Binding("escape", "leave", "Leave the command bar"),
     ]
     HELP = (
-        "Type what Tangy should do. Tab or the right arrow completes "
-        "it, Enter gives it, and Tangy asks before it does anything. Esc leaves the bar, so that "
-        "single letters are keys again."
+        "Type what Tangy should do. On an empty line Tab lists what can be said now; pressed again "
+        "it takes one after the other. Tab or the right arrow completes what you type, Enter gives "
+        "it, and Tangy asks before it does anything. Esc leaves the bar."
     )
 
     closed = False
@@ -121,10 +56,17 @@ class CommandInput(Input):
             super().__init__()
             self.text = text
 
-    def __init__(self, complete: Complete, placeholder: str) -> None:
+    class Listed(Message):
+        """Tab was pressed on an empty line: these commands can be carried out now."""
+
+        def __init__(self, commands: tuple[str, ...]) -> None:
+            super().__init__()
+            self.commands = commands
+
+    def __init__(self, complete: Complete, sayable: Sayable, placeholder: str) -> None:
         super().__init__(
             placeholder=placeholder,
-            suggester=_Ghost(complete),
+            suggester=CommandSuggester(complete),
             select_on_focus=False,
             max_length=LONGEST,
             compact=True,
@@ -134,6 +76,9 @@ class CommandInput(Input):
         self.history: list[str] = []
         self._at = 0
         self._draft = ""
+        self._sayable = sayable
+        self._listed: tuple[str, ...] = ()
+        self._taken = -1  # which of those listed stands in the line
 
     async def _on_key(self, event: events.Key) -> None:
         """Handle each key before the next one.
@@ -178,16 +123,40 @@ class CommandInput(Input):
         text = self.value.strip()
         if text:
             self.closed = True
+            self.forget_list()  # it is another situation then
             self.remember(text)
             self.clear()
             self.post_message(self.Entered(text))
 
     def action_accept(self) -> None:
-        """Take the suggestion, or go to the next widget if there is none."""
-        if self._suggestion:
+        """Take the suggestion, or list what can be said now and take one after the other of it.
+
+        Where there is none of it, go to the next widget.
+        """
+        if self.listed:
+            self._taken = (self._taken + 1) % len(self._listed)
+            self.put(self._listed[self._taken])
+        elif self._suggestion:
             self.put(self._suggestion)
+        elif not self.value and (listed := self._sayable()):
+            self._listed, self._taken = listed, -1
+            self.post_message(self.Listed(listed))
         else:
             self.screen.focus_next()
+
+    @property
+    def _standing(self) -> str:
+        """What of the list stands in the line, if nothing else was typed."""
+        return self._listed[self._taken] if self._taken >= 0 else ""
+
+    @property
+    def listed(self) -> tuple[str, ...]:
+        """What was listed, while one chooses from it."""
+        return self._listed if self.value == self._standing else ()
+
+    def forget_list(self) -> None:
+        """List anew next time: something else was typed, or can be done."""
+        self._listed, self._taken = (), -1
 
     def action_recall(self, by: int) -> None:
         """Bring back a command from the history; after the last one, what was being typed."""
@@ -244,15 +213,31 @@ class CommandBar(Vertical):
         self,
         complete: Complete = lambda prefix: (),
         *,
+        sayable: Sayable = lambda: (),
         placeholder: str = "type a command, or ? for help",
         resting: str = "",
+        closed: bool = False,
+        letters: bool = True,
         id: str | None = "command",
     ) -> None:
+        """Make the bar.
+
+        Args:
+            complete: gives the commands that fit what was typed.
+            sayable: gives the commands that can be carried out now.
+            placeholder: what stands in the empty line.
+            resting: the keys there are while the bar does not have them.
+            closed: take no keys until it is `ready`.
+            letters: letters are among these keys; otherwise they work while one types, too.
+            id: its id.
+        """
         super().__init__(id=id)
         self._complete = complete
-        self._matches = Matches()
+        self._matches = CommandMatches()
         self._texts = (placeholder, resting or placeholder)
-        self._input = CommandInput(complete, self._texts[1])
+        self._input = CommandInput(complete, sayable, self._texts[1])
+        self._input.closed = closed
+        self._letters = letters
         self._prompt = Static("> ", classes="prompt", markup=False)
         self._reopen: Timer | None = None
 
@@ -278,13 +263,28 @@ class CommandBar(Vertical):
         self._input.focus()
 
     @property
+    def has_keys(self) -> bool:
+        """Whether keys go to the line."""
+        return self._input.has_focus
+
+    def type(self, character: str) -> None:
+        """Write a character that was typed elsewhere, and take the keys from then on."""
+        if not self._input.closed:
+            self._input.replace(character, *self._input.selection)
+            self._input.focus()
+
+    @property
     def typing(self) -> bool:
         """Whether somebody is typing in it: it has the keys, and there is a text."""
         return self._input.has_focus and bool(self._input.value)
 
     def restore(self, text: str, *, focus: bool = True) -> None:
-        """Put a text back to be changed, open the bar, and give it the keys."""
+        """Put a text back, selected: what is typed next replaces it, and an arrow keeps it.
+
+        Opens the bar, and gives it the keys.
+        """
         self._input.put(clean(text)[:LONGEST])
+        self._input.select_all()
         self.ready()
         if focus:
             self._input.focus()
@@ -296,6 +296,7 @@ class CommandBar(Vertical):
     def ready(self) -> None:
         """Open the bar for the next command."""
         self._stop_waiting()
+        self._input.forget_list()
         if self._input.closed:
             self._input.closed = False
             self._prompt.update("> ")
@@ -313,13 +314,24 @@ class CommandBar(Vertical):
     def on_input_changed(self, event: Input.Changed) -> None:
         """Show what fits."""
         event.stop()
+        if not self._input.listed:
+            self._input.forget_list()
         self._show_above()
+
+    def on_command_input_listed(self, event: CommandInput.Listed) -> None:
+        """Show what can be said now."""
+        event.stop()
+        self._matches.show("", event.commands)
 
     def _show_above(self) -> None:
         """Show what fits; over a text that was left there, the keys, which are keys again."""
         typed = self._input.value
-        if typed and not self._input.has_focus:
+        if self._input.listed:
+            self._matches.show(typed, self._input.listed)
+        elif typed and not self._input.has_focus:
             self._matches.show(typed, (), self._texts[1])
+        elif not typed and not self._letters:
+            self._matches.show("", (), self._texts[1] if self._input.has_focus else "")
         else:
             self._matches.show(typed, self._complete(typed) if typed.strip() else ())
 

@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
+from tangy_tui.text.teaching import ALL_SHOWN
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Rows, shorten
@@ -80,7 +81,7 @@ class CoverageList(ScrollView, can_focus=True):
             return
         rows: list[Row] = []
         if self._seen and not self._missing:
-            rows += _sentence("✓ ", "Everything that can come about was shown.", "good", width)
+            rows += _sentence("✓ ", ALL_SHOWN, "good", width)
         for sentence in self._missing:
             rows += _sentence("! ", clean(sentence), "text", width)
         for words, times in self._seen:

@@ -8,6 +8,7 @@ from rich.cells import cell_len
 from textual.message import Message
 
 from tangy_tui.learning.demonstration_rows import ListRow
+from tangy_tui.text.demonstrations import LIST_HELP, NONE_TO_LIST
 from tangy_tui.text.times import local_time
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choice_list import ChoiceLine, ChoiceList
@@ -39,8 +40,7 @@ class DemonstrationList(ChoiceList):
     def __init__(self) -> None:
         super().__init__(
             "Demonstrations",
-            "One line for each demonstration: its number, who showed it and when, how many steps "
-            "it has, how many of the situations it shows, and whether it is learnt from.",
+            LIST_HELP,
             id="demonstrations",
         )
 
@@ -58,9 +58,7 @@ def demonstration_lines(
 ) -> list[ChoiceLine]:
     """Write the table for so many columns; with no demonstrations, how to begin."""
     if not rows:
-        return [
-            ChoiceLine((("No demonstrations yet: press t at home to show Tangy a game.", "dim"),))
-        ]
+        return [ChoiceLine(((NONE_TO_LIST, "dim"),))]
     teacher = min(WIDEST_TEACHER, max(7, *(cell_len(clean(row.teacher)) for row in rows)))
     state = max(5, *(cell_len(clean(row.state)) for row in rows))
     notes = width - (teacher + state + BESIDE)

@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tangy_tui.monitoring.fault import OPEN, Fault
+from tangy_tui.text.fault_views import LIST_HELP, NO_FAULTS, NONE_FOUND
 from tangy_tui.text.faults import (
     Name,
     last_words,
@@ -59,9 +60,7 @@ class FaultList(ChoiceList):
     def __init__(self, name: Name) -> None:
         super().__init__(
             "Faults",
-            "What went wrong in this game: when, after which step, whether it is critical (!!), "
-            "what it is, and what was done about it. Enter opens one. / keeps those in which "
-            "the words that you type occur: name, code, state or person; esc shows all again.",
+            LIST_HELP,
             id="faults",
         )
         self._person_name = name
@@ -123,7 +122,7 @@ class FaultList(ChoiceList):
         typed = f"/{clean(self.filter)}{'_' if self._typing else ''}" if self.filtered else ""
         hint = HINT if self._faults else ""
         self.border_subtitle = (f"{typed}  {of}".strip() or hint).replace("[", "\\[")
-        none = "No fault has these words." if self._faults else "No faults in this game."
+        none = NONE_FOUND if self._faults else NO_FAULTS
         self.show(lambda width, height: fault_list_lines(kept, width, none))
 
     def _tell(self, index: int) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from rich.cells import cell_len
 from textual.message import Message
 
+from tangy_tui.text.policies import NOTHING_LEARNT
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, Span, fit
@@ -71,7 +72,7 @@ class PolicyTable(Choosable):
     def __init__(
         self,
         *,
-        empty: str = "Nothing learnt yet.",
+        empty: str = NOTHING_LEARNT,
         id: str | None = "policy",
         classes: str | None = None,
     ) -> None:

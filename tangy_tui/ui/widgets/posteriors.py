@@ -12,6 +12,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from tangy_profiles.beliefs import Beliefs, Beta, leading, probability_best, settled
+from tangy_tui.text.people import NOBODY_KNOWN
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.themes import INK_CLASSES
 from tangy_tui.ui.widgets.rows import Row, Rows, Span, fit, shorten
@@ -139,7 +140,7 @@ class Posteriors(ScrollView, can_focus=True):
                 if self._highlight == (person, strategy):
                     marks[len(rows)] = "now"
                 rows.append(self._line(person, strategy, belief, width))
-        self._rows.put(rows or [(("Nothing is known of anybody yet.", "dim"),)], marks)
+        self._rows.put(rows or [((NOBODY_KNOWN, "dim"),)], marks)
         if marks:
             self._rows.show(min(marks))
 

@@ -8,6 +8,7 @@ from rich.cells import cell_len
 
 from tangy_profiles.person import Person
 from tangy_profiles.scene import CardView, Scene
+from tangy_tui.text.cards import card_title
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.card_lines import LEGEND, card_lines
 from tangy_tui.ui.widgets.room_plan import SPRITE_WIDTH, Grid, PlanLine, RoomPlan
@@ -97,7 +98,7 @@ class RoomDrawing:
         """Draw a card on the floor beside the robot's column, where there is room for it."""
         plan = self._plan
         name = next((clean(p.name) for p in self._people if p.id == card.person), card.person)
-        title: Row = ((shorten(f"The card of {name}", 30), "strong"),)
+        title: Row = ((shorten(card_title(name), 30), "strong"),)
         rows = [title, *card_lines(card), LEGEND]
         width = max(sum(cell_len(text) for text, _ in row) for row in rows)
         right = robot + SPRITE_WIDTH + 2

@@ -8,6 +8,7 @@ from functools import lru_cache
 from rich.cells import cell_len
 from textual.message import Message
 
+from tangy_tui.text.teaching import NO_STEPS
 from tangy_tui.ui.clean_output import clean
 from tangy_tui.ui.widgets.choosable import Choosable
 from tangy_tui.ui.widgets.rows import Row, shorten
@@ -59,7 +60,7 @@ class Transcript(Choosable):
         self,
         *,
         most: int = 2_000,
-        empty: str = "No steps yet.",
+        empty: str = NO_STEPS,
         id: str | None = "transcript",
         classes: str | None = None,
     ) -> None:

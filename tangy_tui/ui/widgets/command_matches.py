@@ -1,0 +1,84 @@
+"""What fits what was typed: the ghost behind the cursor, and the line of commands above it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+from rich.cells import cell_len
+from textual.strip import Strip
+from textual.suggester import Suggester
+from textual.widget import Widget
+
+from tangy_tui.ui.clean_output import clean
+from tangy_tui.ui.themes import INK_CLASSES
+from tangy_tui.ui.widgets.rows import Row, Span, draw, shorten
+
+Sayable = Callable[[], tuple[str, ...]]
+"""Gives the commands that can be carried out now, best first."""
+
+Complete = Callable[[str], tuple[str, ...]]
+"""Gives the commands that begin with (or are meant by) what was typed, likeliest first."""
+
+
+class CommandSuggester(Suggester):
+    """Shows the first match that goes on from what was typed."""
+
+    def __init__(self, complete: Complete) -> None:
+        super().__init__(use_cache=False, case_sensitive=True)
+        self._complete = complete
+
+    async def get_suggestion(self, value: str) -> str | None:
+        """Return the whole line with the first command that goes on from it."""
+        matches = self._complete(value) if value.strip() else ()
+        return next((value + m[len(value) :] for m in matches if goes_on(value, m)), None)
+
+
+def goes_on(value: str, match: str) -> bool:
+    """Say whether a command goes on from what was typed."""
+    return len(match) > len(value) and match.lower().startswith(value.lower())
+
+
+class CommandMatches(Widget):
+    """One line with the commands that fit what was typed so far, or with the keys there are."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = set(INK_CLASSES)
+    DEFAULT_CSS = """
+    CommandMatches { height: 1; padding: 0 0 0 2; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._matches: tuple[str, ...] = ()
+        self._typed = ""
+        self._keys = ""
+
+    def show(self, typed: str, matches: tuple[str, ...], keys: str = "") -> None:
+        """Show these matches, what was typed of them written strongly; or, if given, the keys."""
+        if (typed, matches, keys) != (self._typed, self._matches, self._keys):
+            self._typed = typed
+            self._matches = matches
+            self._keys = keys
+            self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """Draw the line."""
+        return draw(self, self._row(self.size.width), self.size.width)
+
+    def _row(self, width: int) -> Row:
+        if self._keys:
+            return ((shorten(self._keys, width), "dim"),)
+        row: list[Span] = []
+        used = 0
+        for n, match in enumerate(self._matches):
+            text = clean(match)
+            left = len(self._matches) - n
+            more = f"  +{left - 1}" if left > 1 else ""
+            gap = "   " if row else ""
+            if used + len(gap) + cell_len(text) + len(more) > width:
+                row.append((f"  +{left}", "dim"))
+                break
+            head = len(self._typed) if goes_on(self._typed, text) else 0
+            row += [(gap + text[:head], "strong"), (text[head:], "dim")]
+            used += len(gap) + cell_len(text)
+        return tuple(row)
