@@ -22,18 +22,20 @@ from tangy_profiles.person import Person, load_people
 from tangy_profiles.store import Store
 from tangy_sim.worlds.users import load_users
 from tangy_sim.worlds.world import SimulatedWorld
+from tests.support.laws import AT_LENGTH, FEW
 
 # The same examples in every run; HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile(
     "tangy",
     deadline=None,
     derandomize=True,
-    max_examples=30,  # so that the suite stays under five minutes; `explore` looks at many more
+    max_examples=FEW,  # so that the suite stays under five minutes; `explore` looks at many more
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.register_profile(
     "explore", settings.get_profile("tangy"), derandomize=False, max_examples=400
 )
+settings.register_profile(AT_LENGTH, settings.get_profile("tangy"))
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tangy"))
 
 # Screens and forests are many objects that live as long as their test: looking for cycles among

@@ -11,12 +11,16 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_profiles.events import EventRecord
+from tangy_tui.app.command_grammar import read_command
 from tangy_tui.app.game_commands import GoOn, StopRobot
 from tangy_tui.app.game_controller import GameController
 from tangy_tui.app.workspace import Workspace
-from tangy_tui.console.staff import NO_MORE, NOBODY, StaffLines
+from tangy_tui.console.staff import StaffLines
 from tangy_tui.learning.policies import load_policy
+from tangy_tui.text.staff_lines import NO_MORE, NOBODY
 from tests.support.staff_lines import play_by_turns
+
+LAST = "# the last line"
 
 
 @pytest.fixture
@@ -27,18 +31,36 @@ def workspace(taught: Path) -> Iterator[Workspace]:
 
 
 def told(
-    workspace: Workspace, *lines: str, inject: tuple[str, ...] = (), speed: float = 1000
+    workspace: Workspace,
+    *lines: str,
+    inject: tuple[str, ...] = (),
+    speed: float = 1000,
+    after: threading.Event | None = None,
 ) -> tuple[list[str], bool]:
-    """Play a game in which these lines are typed; return what was written, and how it ended."""
+    """Play a game in which these lines are typed; return what was written, and how it ended.
+
+    Args:
+        workspace: whose policy plays.
+        lines: are typed at once, from the beginning, or `after` something.
+        inject: faults.
+        speed: times life.
+        after: what the first line waits for.
+    """
     learnt, _ = load_policy(workspace.store, workspace.activity)
     supervision = workspace.supervision(learnt, 4, asks=True, injections=inject)
     written: list[str] = []
     typed = iter(lines)
+
+    def read() -> str | None:
+        if after is not None:
+            after.wait(20)
+        return next(typed, None)
+
     games = StaffLines(
         GameController(supervision, "Ada"),
         workspace.name,
         lambda wanted: workspace.find_person(wanted).id,
-        lambda: next(typed, None),
+        read,
         written.append,
         speed=speed,
     )
@@ -154,6 +176,29 @@ def test_what_tangy_is_to_do_next_may_be_typed_before_it_asks(workspace: Workspa
     written, ended = told(workspace, "take over", "tell a joke", "y", "end", speed=100)
     text = "\n".join(written)
     assert ended and "joke, as Ada said" in text and "I do not know" not in text
+
+
+def test_an_end_typed_ahead_comes_after_what_was_typed_before_it(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go_on, begun, all_read = GameController.next, threading.Event(), threading.Event()
+
+    def late(self: GameController) -> Any:
+        begun.set()
+        if self.taking_over:
+            all_read.wait(20)
+        return go_on(self)
+
+    def read(line: str, *more: Any) -> Any:
+        if line == LAST:
+            all_read.set()
+        return read_command(line, *more)
+
+    monkeypatch.setattr(GameController, "next", late)
+    monkeypatch.setattr("tangy_tui.console.staff.read_command", read)
+    lines = "take over", "tell a joke", "y", "end", LAST
+    written, ended = told(workspace, *lines, speed=100, after=begun)
+    assert ended and "joke, as Ada said" in "\n".join(written)
 
 
 def test_nothing_that_moves_the_robot_is_guessed_from_words_that_are_far_from_it(

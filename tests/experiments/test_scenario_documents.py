@@ -12,9 +12,9 @@ from xml.etree import ElementTree
 import pytest
 
 from tangy_tui.experiments import figures, published
-from tangy_tui.experiments.comparison import compare, of_all
 from tangy_tui.experiments.figures import INKS
 from tangy_tui.experiments.report import report
+from tangy_tui.text.comparison import compare, of_all
 from tangy_tui.text.numbers import counted, percent
 from tests.experiments.conftest import Ran, run
 

@@ -16,7 +16,6 @@ from tangy_profiles.fault_file import load_faults
 from tangy_profiles.robot import load_robot
 from tangy_sim.worlds.injection import KINDS
 from tangy_tui.experiments import published, recovering
-from tangy_tui.experiments.comparison import compare
 from tangy_tui.experiments.induced import (
     LATEST,
     NOT_BOTH,
@@ -31,6 +30,7 @@ from tangy_tui.experiments.report import report
 from tangy_tui.experiments.scenarios import Recovering, recovery
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.monitoring.fault import Fault
+from tangy_tui.text.comparison import compare
 
 pytestmark = pytest.mark.xdist_group("scenario three")  # what is played is played once
 

@@ -9,9 +9,9 @@ import pytest
 
 from tangy_profiles.errors import TangyError
 from tangy_tui.experiments import algorithms, figures, other_choices, persuading, published
-from tangy_tui.experiments.comparison import compare
 from tangy_tui.experiments.sweep import Where
 from tangy_tui.interaction.methods import BayesUcb, Thompson
+from tangy_tui.text.comparison import compare
 
 SEED = 31
 LANTERNS = Path(__file__).parent.parent / "lanterns.toml"

@@ -11,7 +11,6 @@ from random import Random
 
 import pytest
 from hypothesis import given
-from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.beliefs import Beta
@@ -24,6 +23,7 @@ from tangy_tui.interaction.feedback import Feedback
 from tangy_tui.interaction.memory import PersonModels
 from tangy_tui.interaction.persuasion import Persuasion
 from tests.support.append_body import append_body
+from tests.support.laws import tried
 
 STRATEGIES = ("plain", "warm", "brisk")
 FORGETFUL = PersuasionConfig(forgetting=0.9)
@@ -150,7 +150,7 @@ def refused(attempt: object) -> bool:
     return False
 
 
-@examples(max_examples=60)
+@tried(60)
 @given(moves)
 def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedback_and_undo(
     log: Store, told: list[tuple[str, str | int, bool]]
@@ -177,7 +177,7 @@ def test_counts_are_what_the_log_says_after_any_order_of_plays_voids_late_feedba
     assert len(requests) == len(set(requests)), "no request is counted twice"
 
 
-@examples(max_examples=30)
+@tried(30)
 @given(moves, st.sampled_from([FORGETFUL, DAILY, PersuasionConfig("bayes-ucb", "people")]))
 def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_recalled_ones(
     log: Store, clock: Clock, told: list[tuple[str, str | int, bool]], chosen: PersuasionConfig
@@ -202,7 +202,7 @@ def test_with_any_method_the_counts_are_the_logs_and_the_live_beliefs_are_the_re
         assert live.beliefs[person][strategy].beta == pytest.approx(recalled[strategy].beta)
 
 
-@examples(max_examples=20)
+@tried(20)
 @given(
     st.lists(st.tuples(st.sampled_from(STRATEGIES), st.booleans()), min_size=1, max_size=8),
     st.randoms(use_true_random=False),

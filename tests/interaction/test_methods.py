@@ -328,9 +328,9 @@ def test_an_activity_may_choose_and_a_mistake_says_where() -> None:
 
 
 def test_each_method_can_be_made_and_has_words_for_people() -> None:
-    from tangy_tui.ui.dialogs import method as dialog
+    from tangy_tui.text import people
 
-    assert set(dialog.METHODS) == set(METHODS)
+    assert set(people.METHODS) == set(METHODS)
     assert {method_of(PersuasionConfig(name)).words for name in METHODS} == {
         "Thompson sampling",
         "Bayes-UCB",

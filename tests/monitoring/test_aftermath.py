@@ -16,7 +16,7 @@ from tangy_tui.monitoring.detection import device_evidence
 from tangy_tui.monitoring.diagnosis import diagnose
 from tangy_tui.monitoring.supervision import Supervision
 from tangy_tui.text.faults import still_there_words
-from tests.monitoring.conftest import codes, moves
+from tests.support.games import codes, moves
 
 ROBOT = load_robot()
 LONG = 4.0  # s for which nothing was heard

@@ -18,7 +18,8 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.effects import Effects
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.detection import Detector, device_evidence, symptoms
-from tests.monitoring.conftest import Supervise, acts, codes, moves, play, until, world_of
+from tests.monitoring.conftest import Supervise
+from tests.support.games import acts, codes, moves, play, until, world_of
 
 
 @pytest.fixture

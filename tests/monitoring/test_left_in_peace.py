@@ -13,7 +13,8 @@ from tangy_tui.interaction.game_events import Acted
 from tangy_tui.interaction.persuasion import Persuasion
 from tangy_tui.monitoring.fault import Moved
 from tangy_tui.monitoring.supervision import Event
-from tests.monitoring.conftest import Supervise, codes, ended, play
+from tests.monitoring.conftest import Supervise
+from tests.support.games import codes, ended, play
 
 MOST = 3
 """Requests that a person who refuses hears in a visit."""

@@ -8,7 +8,7 @@ from tangy_hw.drivers.camera_state import Sight
 from tangy_profiles.health import Health
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
-from tests.monitoring.conftest import codes, moves, until
+from tests.support.games import codes, moves, until
 
 WELL = Sight("OK", "", 8.0, 0.05, 0.0, 0.5, 0.2, 0.6)
 COVERED = Sight("COVERED", "Nothing can be seen.", 1.0, 0.05, 0.0, 0.01, 0.005, None)

@@ -7,10 +7,11 @@ from typing import cast
 from tangy_hw.robot_client.client import RobotLink
 from tangy_hw.robot_client.live_world import LiveWorld
 from tangy_profiles.game_records import StaffAction
-from tangy_tui.app.live_games import LiveGames
+from tangy_tui.app.live_games import LiveGames, News
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.supervision import Event
+from tangy_tui.text.live_news import live_lines
 from tests.hw.links import FakeLink, LaidCard
 
 PEOPLE = ("user1", "user2", "user3", "user4")
@@ -36,8 +37,8 @@ def test_it_is_said_once_in_each_game_who_sits_where_somebody_else_does(
     played = LiveGames(workspace, game)
     lines: list[str] = []
 
-    def tell(events: list[Event]) -> None:
-        lines.extend(played.lines(events))
+    def tell(events: list[Event], news: list[News]) -> None:
+        lines.extend(live_lines(events, news, workspace.name))
         if game.steps in (2, 12):
             link.sign(2)
         elif world.tracker.place == "user2":
@@ -68,8 +69,8 @@ def test_what_is_not_judged_is_said_logged_and_counted(
     played = LiveGames(workspace, game)
     lines: list[str] = []
 
-    def tell(events: list[Event]) -> None:
-        lines.extend(played.lines(events))
+    def tell(events: list[Event], news: list[News]) -> None:
+        lines.extend(live_lines(events, news, workspace.name))
         if game.steps == 2:
             link.sign(2)
         elif world.tracker.place == "user2":

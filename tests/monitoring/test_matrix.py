@@ -15,7 +15,8 @@ from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
 from tangy_tui.experiments import monitoring
 from tangy_tui.interaction.game_events import Acted
 from tangy_tui.monitoring.diagnosis import diagnose
-from tests.monitoring.conftest import Supervise, world_of
+from tests.monitoring.conftest import Supervise
+from tests.support.games import world_of
 
 WITH_MARKS = ("incorrectly marked", "missing numbers")
 

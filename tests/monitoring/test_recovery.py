@@ -27,16 +27,8 @@ from tangy_tui.learning.library import read_library
 from tangy_tui.learning.policy import ForestSettings, Policy, learn_policy
 from tangy_tui.monitoring.fault import ENDINGS, OVER, read_faults
 from tangy_tui.monitoring.supervision import Supervision
-from tests.monitoring.conftest import (
-    Supervise,
-    acts,
-    codes,
-    ended,
-    moves,
-    play,
-    until,
-    world_of,
-)
+from tests.monitoring.conftest import Supervise
+from tests.support.games import acts, codes, ended, moves, play, until, world_of
 
 CRITICAL = ("emergency-stop", "link-lost", "laser-disconnected", "camera-frozen", "base-failed")
 EASY = ("voice-dead", "arm-failed", "requests-silent", "laser-occluded", "camera-occluded")

@@ -12,7 +12,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.observation import MOST_LOOKS, Observation
 from tangy_tui.learning.policy import Policy
 from tangy_tui.world import World
-from tests.monitoring.conftest import codes, moves, play
+from tests.support.games import codes, moves, play
 from tests.support.odd_looks import ODD, OddCards, OddStates, OddWorld
 
 GAMES = 12

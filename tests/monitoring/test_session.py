@@ -24,8 +24,9 @@ from tangy_tui.monitoring.replay import AnsweredRequest, Done, GameReplay, Noted
 from tangy_tui.monitoring.session import RESULTS, Session, read_session
 from tangy_tui.pages.session import session_page
 from tangy_tui.text.log import MOST_TOLD, replay_lines, session_lines
-from tests.monitoring.conftest import Supervise, acts, play
+from tests.monitoring.conftest import Supervise
 from tests.support.append_body import append_body
+from tests.support.games import acts, play
 
 FAULTS = ("laser-disconnected@6", "path-blocked", "voice-dead@9", "request-stuck", "no-effect@20")
 

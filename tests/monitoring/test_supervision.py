@@ -20,16 +20,8 @@ from tangy_tui.interaction.game_events import DoneOnce
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.accepted import read_accepted, take_back
 from tangy_tui.monitoring.fault import read_faults
-from tests.monitoring.conftest import (
-    Supervise,
-    acts,
-    codes,
-    ended,
-    moves,
-    play,
-    until,
-    world_of,
-)
+from tests.monitoring.conftest import Supervise
+from tests.support.games import acts, codes, ended, moves, play, until, world_of
 from tests.support.staff_lines import play_by_turns
 
 
@@ -238,7 +230,7 @@ def test_what_only_excludes_another_fault_is_not_told_as_its_evidence(supervise:
 def test_by_lines_no_game_is_begun_after_what_nobody_cleared(supervise: Supervise) -> None:
     game = supervise("link-lost@3", seed=3)
     said = play_by_turns(game, "quit", games=2)
-    assert "No other game is begun: nobody cleared 'Link to the robot lost'." in said
+    assert "Tangy begins no other game: nobody has cleared 'Link to the robot lost'." in said
     assert "Game 2 begins." not in said
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Hashable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -29,6 +29,9 @@ from syrupy.assertion import SnapshotAssertion
 from syrupy.extensions.image import SVGImageSnapshotExtension
 from textual import events
 from textual.app import App
+from textual.css.model import RuleSet
+from textual.css.stylesheet import Stylesheet
+from textual.css.types import CSSLocation
 from textual.keys import _character_to_key
 from textual.pilot import Pilot
 from textual.screen import Screen
@@ -100,8 +103,8 @@ async def until_idle(app: App[Any], least: float = 0.0, most: float = LONGEST) -
     start = monotonic()
     quiet = 0
     while monotonic() - start < most:
-        used = process_time()
         thread = any(worker._thread_worker and worker.is_running for worker in app.workers)
+        used = process_time() if thread else 0.0
         await asyncio.sleep(GLANCE if thread else 0)  # the loop looks what has arrived, too
         thinks = thread and process_time() - used >= GLANCE / 20
         screen = app._screen_stack[-1] if app._screen_stack else None
@@ -183,6 +186,37 @@ class Sample:
     def names(self) -> dict[str, str]:
         """Return the names by id."""
         return {person.id: person.name for person in self.people}
+
+
+_RULES: dict[Hashable, list[RuleSet]] = {}
+_parse_rules = Stylesheet._parse_rules
+
+
+def _parse_once(
+    sheet: Stylesheet,
+    css: str,
+    read_from: CSSLocation,
+    is_default_rules: bool = False,
+    tie_breaker: int = 0,
+    scope: str = "",
+) -> list[RuleSet]:
+    """Parse a style sheet once for all programs that tests start, not anew for each.
+
+    Textual keeps what it parsed for one program, of which a person starts one and tests a thousand.
+    """
+    variables = tuple(sheet._variables.items())
+    key = (css, read_from, is_default_rules, tie_breaker, scope, variables)
+    if key not in _RULES:
+        _RULES[key] = _parse_rules(sheet, css, read_from, is_default_rules, tie_breaker, scope)
+    return _RULES[key]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _style_sheets() -> Iterator[None]:
+    """Let all programs share what was parsed of the same style sheets."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Stylesheet, "_parse_rules", _parse_once)
+        yield
 
 
 Run = Callable[..., AbstractAsyncContextManager[TangyPilot]]

@@ -67,7 +67,7 @@ async def asked(pilot: TangyPilot) -> AskingPanel:
     """Wait until Tangy asks and a command can be typed."""
     screen = game_of(pilot)[0]
     await until_shown(pilot, lambda: screen.query(AskingPanel))
-    await until_shown(pilot, lambda: not screen.query_one(CommandBar).closed)
+    await until_shown(pilot, lambda: any(not bar.closed for bar in screen.query(CommandBar)))
     return screen.query_one(AskingPanel)
 
 

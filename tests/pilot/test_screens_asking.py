@@ -69,7 +69,7 @@ async def asked(pilot: TangyPilot) -> PlayScreen:
     """Wait until Tangy asks and a command can be typed."""
     while not (isinstance(pilot.app.screen, PlayScreen) and pilot.app.screen.query(AskingPanel)):
         await pilot.pause(0.02)
-    while pilot.app.screen.query_one(CommandBar).closed:
+    while all(bar.closed for bar in pilot.app.screen.query(CommandBar)):
         await pilot.pause(0.02)
     return pilot.app.screen
 

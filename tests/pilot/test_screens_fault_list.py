@@ -9,6 +9,7 @@ from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
 from tangy_tui.monitoring.fault import BORNE
 from tangy_tui.text.faults import status_words
+from tangy_tui.text.games import NO_UNSEEN_FAULT
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.dialogs.fault import FaultDialog
 from tangy_tui.ui.dialogs.inject import InjectDialog
@@ -54,7 +55,7 @@ async def test_a_borne_fault_stays_in_the_banner_until_it_is_seen(
         assert "robot WARN" in pilot.lines()[0]
         await pilot.press("a")
         await pilot.pause()
-        assert screen.query_one(LogView).sentences[-1] == "No fault that nobody has seen."
+        assert screen.query_one(LogView).sentences[-1] == NO_UNSEEN_FAULT
 
 
 async def test_what_tangy_says_when_it_asks_for_help_is_seen_and_heard(
@@ -94,7 +95,7 @@ async def test_a_try_is_seen_at_once_and_agreed_upon_before_what_came_of_it(
         await pilot.press("a")
         await pilot.pause()
         assert not screen.query_one(FaultBanner).display
-        assert "No fault that nobody has seen." not in sentences(screen)
+        assert NO_UNSEEN_FAULT not in sentences(screen)
         await pilot.press("e")
         await until_shown(pilot, lambda: game.over)
         assert any("camera covered: recovered" in said for said in sentences(screen))

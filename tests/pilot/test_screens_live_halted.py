@@ -13,6 +13,7 @@ from tangy_profiles.faults import Remedy
 from tangy_profiles.health import ERROR, STALE, DeviceState
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.learning.policy import Policy
+from tangy_tui.text import halts
 from tangy_tui.ui.dialogs.critical import CriticalDialog
 from tangy_tui.ui.program import Program
 from tangy_tui.ui.screens.help import HelpScreen
@@ -79,19 +80,17 @@ async def test_the_screen_lives_while_the_robot_process_is_started_again(
         link.free = False
         try:
             await pilot.press("e")
-            assert "! The robot process is started again ..." in seen(pilot)
+            assert f"! {halts.RESTARTING}" in seen(pilot)
             await lives(pilot, link)
             await pilot.press("c")
-            assert "! Wait. The robot process is started again ..." in seen(pilot)
+            assert f"! {halts.wait_words(halts.RESTARTING)}" in seen(pilot)
             assert "^x STOP" in pilot.text() and "c clear" not in pilot.text()
             await pilot.press("ctrl+x")
             assert link.told[-1] == "stop: staff stopped it" and "STOPPED" in pilot.lines()[0]
             link.told.append("another process")
         finally:
             link.free = True
-        await until_shown(
-            pilot, lambda: "The robot process was started again. No expert is named" in seen(pilot)
-        )
+        await until_shown(pilot, lambda: f"{halts.RESTARTED} No expert is named" in seen(pilot))
         assert link.told[-1] == "stop: staff stopped it"  # the new process is told as well
         assert "c clear" in pilot.text()
 
@@ -105,10 +104,10 @@ async def test_the_screen_lives_while_it_is_looked_whether_a_fault_is_gone(
         link.free = False
         try:
             await pilot.press("a", "c")
-            assert "! Looking whether it is gone ..." in seen(pilot)
+            assert f"! {halts.LOOKING}" in seen(pilot)
             await lives(pilot, link)
             await pilot.press("g")
-            assert "! Wait. Looking whether it is gone ..." in seen(pilot)
+            assert f"! {halts.wait_words(halts.LOOKING)}" in seen(pilot)
             await pilot.press("ctrl+x")
             assert "stop: staff stopped it" in link.told
         finally:

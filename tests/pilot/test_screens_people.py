@@ -15,6 +15,7 @@ from tangy_profiles.persuading import PersuasionConfig
 from tangy_profiles.store import Store
 from tangy_tui.app.workspace import Workspace
 from tangy_tui.interaction.feedback import Feedback
+from tangy_tui.text.people import NO_REQUESTS
 from tangy_tui.ui.dialogs.answer import AnswerDialog
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.method import MethodDialog
@@ -116,7 +117,7 @@ async def test_another_person_is_chosen_with_the_arrows(run: Run, workspace: Wor
         await pilot.press("down", "down", "down")
         await pilot.pause()
         assert "What works with User 4" in pilot.text()
-        assert "No request was put to this person yet." in pilot.text()
+        assert NO_REQUESTS in pilot.text()
         assert "★" not in pilot.text(), "equal is not best"
 
 

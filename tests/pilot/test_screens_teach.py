@@ -110,7 +110,7 @@ async def test_undo_takes_the_last_step_back(run: Run, workspace: Workspace) -> 
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
-        await pilot.press("escape", "u")
+        await pilot.press("f2")
         await pilot.pause()
         assert pilot.app.screen.query_one(Transcript).count == 1
         assert steps(workspace) == ["greeting"]
@@ -123,10 +123,10 @@ async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspac
     async with run(app=program(workspace)) as pilot:
         await say(pilot, "greet everyone")
         await say(pilot, "call number")
-        await pilot.press("escape", "u", "u")
+        await pilot.press("f2", "f2")
         await pilot.pause()
         assert "seen 0/11" in screen_text(pilot.app)
-        await pilot.press("U")
+        await pilot.press("f3")
         await pilot.pause()
         assert steps(workspace) == ["greeting"]
         await pilot.press("ctrl+y")
@@ -134,7 +134,7 @@ async def test_redo_brings_the_steps_back_in_order(run: Run, workspace: Workspac
         assert steps(workspace) == ["greeting", "call number"]
         assert pilot.app.screen.query_one(Transcript).count == 2
         assert "seen 2/11" in screen_text(pilot.app)
-        await pilot.press("U")
+        await pilot.press("f3")
         await pilot.pause()
         assert "no step to do again" in " ".join(pilot.app.screen.query_one(LogView).sentences)
 
@@ -159,17 +159,17 @@ async def test_the_game_is_shown_again_from_a_step(
         if typed:
             await pilot.press(*"again 13", "enter")
         else:
-            await pilot.press("escape", "up", "up", "a")
+            await pilot.press("escape", "up", "up", "f9")
         await pilot.pause()
         assert isinstance(pilot.app.screen, ConfirmDialog)
         assert "before step 13" in screen_text(pilot.app)
-        assert "Steps 13 to 14 are taken back; U brings them" in screen_text(pilot.app)
+        assert "Steps 13 to 14 are taken back; F3 brings them" in screen_text(pilot.app)
         await pilot.press("y")
         await pilot.pause()
         screen = pilot.app.screen
         assert screen.query_one(Transcript).count == len(steps(workspace)) == 12
         assert screen_text(pilot.app).count("Steps 13 to 14 are undone") == 1
-        await pilot.press(*(["escape"] if typed else []), "U")
+        await pilot.press("f3")
         await pilot.pause()
         assert len(steps(workspace)) == 13
 
@@ -177,9 +177,9 @@ async def test_the_game_is_shown_again_from_a_step(
 async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 4)
-        await pilot.press("escape", "up", "a")
+        await pilot.press("escape", "up", "f9")
         await pilot.pause()
-        assert "Step 4 is taken back; U brings it back until" in screen_text(pilot.app)
+        assert "Step 4 is taken back; F3 brings it back until" in screen_text(pilot.app)
         await pilot.press("n")
         await pilot.pause()
         assert len(steps(workspace)) == 4
@@ -188,7 +188,7 @@ async def test_a_no_leaves_the_game_as_it_is(run: Run, workspace: Workspace) -> 
 async def test_it_says_what_nobody_has_shown_yet(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
         assert "nobody has had a wrong mark yet" not in screen_text(pilot.app)
-        await pilot.press("escape", "c")
+        await pilot.press("f8")
         await pilot.pause()
         seen = pilot.app.screen.query_one(CoverageList)
         assert "nobody has had a wrong mark yet" in seen.missing
@@ -212,12 +212,12 @@ async def test_earlier_demonstrations_count(run: Run, taught: Path) -> None:
     try:
         async with run(app=program(workspace, seed=9)) as pilot:
             assert "seen 11/11" in screen_text(pilot.app)
-            await pilot.press("escape", "c")
+            await pilot.press("f8")
             await pilot.pause()
             assert "11 of 11 situations shown, 0 in this game" in screen_text(pilot.app)
             await pilot.press("escape")
             await mid_game(pilot, 3)
-            await pilot.press("c")
+            await pilot.press("f8")
             await pilot.pause()
             assert "11 of 11 situations shown, 2 in this game" in screen_text(pilot.app)
             assert not pilot.app.screen.query_one(CoverageList).missing
@@ -242,16 +242,16 @@ async def test_a_guided_session_says_so(run: Run, workspace: Workspace) -> None:
 
 async def test_why_tells_what_tangy_would_do_here_by_now(run: Run, workspace: Workspace) -> None:
     async with run(app=program(workspace)) as pilot:
-        await pilot.press("escape", "w")  # nothing was shown, so there is nothing to tell
+        await pilot.press("f4")  # nothing was shown, so there is nothing to tell
         await ended(pilot, "why")
         assert isinstance(pilot.app.screen, TeachScreen)
         await mid_game(pilot, 4)
-        await pilot.press("w")
+        await pilot.press("f4")
         await ended(pilot, "why")
         dialog = pilot.app.screen
         assert isinstance(dialog, WhyDialog)
         assert dialog.why.decision.behaviour == "call number"
-        await pilot.press("escape", "up", "up", "up", "up", "enter")
+        await pilot.press("escape", "escape", "up", "up", "up", "up", "enter")
         await ended(pilot, "why")
         chosen = pilot.app.screen
         assert isinstance(chosen, WhyDialog)
@@ -267,14 +267,44 @@ async def ended(pilot: Pilot[None], name: str) -> None:
             return
 
 
-async def test_letters_are_keys_only_outside_of_the_command_line(
-    run: Run, workspace: Workspace
+@pytest.mark.parametrize("where", ["the line", "nothing", "a chosen step"])
+async def test_letters_go_to_the_line_wherever_the_keys_are(
+    run: Run, workspace: Workspace, where: str
 ) -> None:
     async with run(app=program(workspace)) as pilot:
-        await pilot.press("u")
+        await say(pilot, "greet everyone")
+        if where != "the line":
+            await pilot.press("escape")
+        if where == "a chosen step":
+            await pilot.press("up")
+        screen, logged = pilot.app.screen, len(list(workspace.store.events()))
+        letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+/"
+        await pilot.press(*letters)
         await pilot.pause()
-        assert pilot.app.screen.query_one(CommandBar).text == "u"
-        assert "no step to undo" not in screen_text(pilot.app)
+        assert pilot.app.screen is screen
+        assert screen.query_one(CommandBar).text == letters
+        assert len(list(workspace.store.events())) == logged
+        assert steps(workspace) == ["greeting"]
+
+
+async def test_what_was_not_understood_stays_selected(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        bar = pilot.app.screen.query_one(CommandBar)
+        await pilot.press(*"what can I say", "enter")
+        await pilot.pause()
+        assert bar.text == "what can I say"
+        await pilot.press(*"greet everyone")
+        assert bar.text == "greet everyone"
+
+
+async def test_tab_lists_only_what_can_be_done_now(run: Run, workspace: Workspace) -> None:
+    async with run(app=program(workspace)) as pilot:
+        await pilot.press("tab")
+        await pilot.pause()
+        listed = screen_text(pilot.app)
+        assert "greet everyone   call number" in listed and "check card" not in listed
+        await pilot.press("tab")
+        assert pilot.app.screen.query_one(CommandBar).text == "greet everyone"
 
 
 async def test_going_where_nobody_asks_is_refused_with_a_way_out(
@@ -284,7 +314,8 @@ async def test_going_where_nobody_asks_is_refused_with_a_way_out(
         await pilot.press(*"go to user", "enter")
         await pilot.pause()
         assert "go to user 1" in screen_text(pilot.app)
-        await say(pilot, " 3")  # what was typed is still there
+        await pilot.press("end")  # what was typed is still there
+        await say(pilot, " 3")
         assert workspace.store.last("demonstration step") is not None
         assert "Tangy is with User 3" in str(pilot.app.screen.query_one("#now", Static).render())
 
@@ -314,7 +345,7 @@ async def test_a_whole_game_can_be_demonstrated_and_the_next_begun(
                 await pilot.press("y")
                 await pilot.pause()
         assert "The game is over" in screen_text(pilot.app)
-        await pilot.press("escape", "d")
+        await pilot.press("f7")
         await pilot.pause()
         assert screen.query_one(Transcript).count == 0
         finished = read_demonstrations(workspace.store, workspace.activity.name)
@@ -385,7 +416,7 @@ async def test_how_it_looks_to_see_what_is_missing(
 ) -> None:
     async with run(app=program(workspace)) as pilot:
         await mid_game(pilot, 14)
-        await pilot.press("escape", "c")
+        await pilot.press("f8")
         await pilot.pause()
         picture(pilot.app)
 
@@ -410,7 +441,7 @@ async def test_the_picture_in_the_readme_shows_the_question_as_it_is_asked(
         await pilot.pause()
         assert isinstance(pilot.app.screen, QuestionDialog)
         shown = str(pilot.app.screen.query_one("#question", Static).render())
-        assert shown.startswith("Did you say: ask to remove markers") and "Y  yes" in shown
+        assert shown.startswith("Did you say: ask to remove markers") and "Y yes" in shown
         drawn = draw(pilot.app)
     if os.environ.get("TANGY_NEW_PICTURES"):
         kept.write_text(drawn, encoding="utf-8")

@@ -118,10 +118,9 @@ async def test_nothing_is_made_before_it_is_switched_on(
     async with run(app=teaching(workspace, voice=False), notifications=True) as pilot:
         await do(pilot, "greet everyone")
         assert voices == []
-        await pilot.press("escape", "v")
+        await pilot.press(*"voice", "enter")
         await pilot.pause()
         assert "Tangy speaks now" in screen_text(pilot.app)
-        await pilot.press("colon")
         await do(pilot, "call number")
         assert len(voices[0].lines) == 1
         await pilot.press(*"voice", "enter")

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 
 PHRASES = ("call number", "call a number", "call the next number", "celebrate", "greet everyone")
+NOW = ("celebrate", "call number")
 
 
 class Bar(TangyScreen[None]):
@@ -31,7 +32,10 @@ class Bar(TangyScreen[None]):
 
     def compose(self) -> ComposeResult:
         yield Label("room")
-        yield CommandBar(lambda typed: tuple(p for p in PHRASES if p.startswith(typed.lower())))
+        yield CommandBar(
+            lambda typed: tuple(p for p in PHRASES if p.startswith(typed.lower())),
+            sayable=lambda: NOW,
+        )
 
     def on_command_bar_given(self, event: CommandBar.Given) -> None:
         self.given.append(event.text)
@@ -110,6 +114,28 @@ async def test_tab_goes_on_when_there_is_nothing_to_complete(run: Run) -> None:
     async with run(Bar()) as pilot:
         await pilot.press("x", "tab")
         assert bar_of(pilot).text == "x"
+
+
+async def test_tab_lists_what_can_be_said_now_and_takes_one_after_the_other(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        for taken in ("", *NOW, *NOW):
+            await pilot.press("tab")
+            await pilot.pause()
+            assert "celebrate   call number" in pilot.text()
+            assert bar_of(pilot).text == taken
+        await pilot.press("s", "tab")
+        await pilot.pause()
+        assert bar_of(pilot).text == "call numbers" and "celebrate" not in pilot.text()
+
+
+async def test_a_list_is_made_anew_once_something_was_done(run: Run) -> None:
+    async with run(Bar()) as pilot:
+        await pilot.press("tab")
+        await pilot.pause()
+        bar_of(pilot).ready()
+        await pilot.pause()
+        await pilot.press("tab")
+        assert bar_of(pilot).text == ""
 
 
 async def test_history_by_up_and_down_keeps_what_was_being_typed(run: Run) -> None:

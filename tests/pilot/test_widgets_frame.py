@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from syrupy.assertion import SnapshotAssertion
 from textual.app import ComposeResult
+from textual.css.query import NoMatches
 from textual.widgets import Input, Label
 
 from tangy_tui.ui.app import TangyApp
@@ -55,6 +56,20 @@ class Plain(TangyScreen[None]):
 
     def action_mark(self) -> None:
         self.marks += 1
+
+
+class Late(TangyScreen[None]):
+    """A screen that is still being laid out when the program ends."""
+
+    TITLE = "Late"
+    HELP = "A late screen."
+
+    def compose(self) -> ComposeResult:
+        self.app.exit()
+        yield Label("late")
+
+    def on_mount(self) -> None:
+        self.query_one(Label).update("on time")
 
 
 def app_of(pilot: Any) -> TangyApp:
@@ -431,3 +446,19 @@ async def test_everything_survives_any_size(run: Run) -> None:
         await pilot.press("escape")
         await pilot.pause()
         assert "Steps" in pilot.text()
+
+
+async def test_a_screen_that_is_laid_out_as_the_program_ends_leaves_no_error(run: Run) -> None:
+    async with run(Plain()) as pilot:
+        await pilot.app.push_screen(Late())
+    assert pilot.app.return_code == 0
+
+
+async def test_an_error_of_a_screen_is_never_hidden(run: Run) -> None:
+    class Wrong(Plain):
+        def on_mount(self) -> None:
+            self.query_one(Input)
+
+    with pytest.raises(NoMatches):
+        async with run(Plain()) as pilot:
+            await pilot.app.push_screen(Wrong())

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from textual import events
 from textual.app import ComposeResult
 
+from tangy_tui.app.terminal_session import TerminalSession
 from tangy_tui.ui.base import TangyScreen
 from tangy_tui.ui.dialogs.confirm import ConfirmDialog
 from tangy_tui.ui.dialogs.message import MessageDialog
 from tangy_tui.ui.dialogs.question import Answer, QuestionDialog
+from tangy_tui.ui.round_trip import READING_SECONDS, RoundTrip
 from tangy_tui.ui.widgets.command_bar import CommandBar
 
 if TYPE_CHECKING:
@@ -205,7 +208,7 @@ async def test_the_question_names_behaviour_words_confidence_and_alternatives(ru
         assert "Did you say: call number?" in text
         assert "cal numbr" in text
         assert "0.83" in text
-        assert "3  three" in text
+        assert "3 three" in text
         assert "four" not in text
 
 
@@ -223,8 +226,78 @@ async def test_it_fits_with_all_that_it_can_say(run: Run, size: tuple[int, int])
         box = dialog.query_one(".box")
         assert box.region.bottom <= size[1]
         lines = pilot.text().splitlines()
-        last = next(n for n, line in enumerate(lines) if "3  c" in line)
-        assert last < box.region.bottom - 1
+        last = next(n for n, line in enumerate(lines) if "3 c" in line)
+        assert last < box.region.bottom
+
+
+class FakeTerminal:
+    """Notes what is asked of a terminal, which answers when it is told to."""
+
+    def __init__(self, pilot: TangyPilot, session: TerminalSession, **settings: Any) -> None:
+        self.written: list[str] = []
+        app: Any = pilot.app
+        self.trip = RoundTrip(self.written.append, lambda: session, app.clock, **settings)
+        app.round_trip = self.trip
+        self.trip.begin((80, 24))
+
+    def answer(self, time: float) -> None:
+        """Answer what was asked last, at this time."""
+        place = re.search(r"\[(\d+);(\d+)H\x1b\[6n", self.written[-1])
+        assert place is not None
+        self.trip.reported(int(place[2]) - 1, int(place[1]) - 1, time)
+
+
+async def test_a_y_counts_only_after_the_terminal_has_answered(run: Run, clock: StillClock) -> None:
+    screen = Asking()
+    async with run(screen, clock=clock) as pilot:
+        terminal = FakeTerminal(pilot, TerminalSession(remote=True))
+        terminal.answer(monotonic())
+        await ask(pilot)
+        await pilot.press("y")
+        await pilot.pause()
+        assert screen.answers == []
+        assert "Too early: please answer again." in pilot.text()
+        terminal.answer(monotonic() - READING_SECONDS)
+        await pilot.press("y")
+        await pilot.pause()
+        assert screen.answers == [Answer(True)]
+
+
+async def test_where_a_multiplexer_answers_from_afar_the_yes_is_another_digit_each_time(
+    run: Run,
+) -> None:
+    screen = Asking()
+    async with run(screen) as pilot:
+        terminal = FakeTerminal(pilot, TerminalSession(remote=True, multiplexer=True))
+        terminal.answer(monotonic())
+        digits: list[str] = []
+        for count in range(3):
+            await ask(pilot)
+            found = re.search(r"(\d) yes, do it", pilot.text())
+            assert found is not None
+            digits.append(found[1])
+            await pilot.press("y", *({*"456789"} - {found[1]}))
+            await pilot.pause()
+            assert len(screen.answers) == count
+            assert f"The yes of this question is {found[1]}." in pilot.text()
+            await pilot.press(found[1])
+            await pilot.pause()
+            assert screen.answers[-1] == Answer(True)
+            bar_of(pilot).ready()
+        assert digits[0] != digits[1] != digits[2]
+
+
+async def test_a_confirmation_takes_the_same_digit(run: Run) -> None:
+    answers: list[bool | None] = []
+    async with run() as pilot:
+        FakeTerminal(pilot, TerminalSession(), setting="digit")
+        await pilot.app.push_screen(ConfirmDialog("Forget User 2?"), answers.append)
+        await pilot.pause()
+        found = re.search(r"(\d)  yes", pilot.text())
+        assert found is not None
+        await pilot.press("y", found[1])
+        await pilot.pause()
+        assert answers == [True]
 
 
 async def test_confirm_takes_y_and_n_only(run: Run) -> None:

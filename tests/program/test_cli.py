@@ -129,7 +129,7 @@ def test_a_session_by_lines_is_left_and_resumed(tangy: Tangy, tmp_path: Path) ->
     first = tangy("teach", *data, stdin="greet everyone\ny\nnext number\ny\ntell a joke\nn\n")
     assert first.returncode == 0
     assert "2. facilitate" in first.stdout
-    assert "Left after 2 steps" in first.stdout
+    assert "You left after 2 steps" in first.stdout
     second = tangy("teach", *data, stdin="undo\nundo\nquit\n")
     assert "Going on with Ada's demonstration of 2 steps" in second.stdout
     assert "Step 1 is undone: greeting." in second.stdout

@@ -337,7 +337,7 @@ def test_what_goes_wrong_is_told_in_one_document(tangy: Tangy, taught: Path) -> 
     assert (cleared["finished"], cleared["stopped"]) == (1, [])
     assert "did_not_come_about" not in document(tangy(*at, "--json"))
     said = tangy(*at, "--expert", "scripted", *asked).stdout
-    assert "base-stuck@999 did not come about in 1 of 1 games." in said
+    assert "base-stuck@999 did not come about in 1 of 1 game." in said
     assert "1 fault, 1 of them critical" in said
 
 

@@ -52,7 +52,7 @@ def test_a_session_by_lines_runs_in_any_terminal_and_locale(
     )
     assert (taught.returncode, taught.stderr) == (0, b"")
     assert b"1. start" in taught.stdout
-    assert b"Left after 1 step." in taught.stdout
+    assert b"You left after 1 step." in taught.stdout
 
 
 def test_bytes_that_are_no_text_are_words_that_nobody_knows(tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ def test_an_answer_without_a_question_is_told_so(workspace: Workspace, answer: s
 def test_a_typed_stop_stops_and_answers_what_is_asked_with_no(
     workspace: Workspace, words: str
 ) -> None:
-    stands = "STOP: the simulated robot stands still until the next command is carried out."
+    stands = "STOP: the simulated robot stands still until your next command."
     assert told(workspace, words)[-1] == stands
     said = told(workspace, "greet everyone", words, "y")
     assert said[-2:] == [stands, "There is no question open: give a command."]
@@ -115,7 +115,7 @@ def test_what_only_mentions_stopping_is_a_command_like_another(
 
 @pytest.mark.parametrize("words", ["again", "Again", "again from step", "again N"])
 def test_again_wants_a_step(workspace: Workspace, words: str) -> None:
-    assert told(workspace, words)[-1] == "Say which step: again 5 goes back before step 5."
+    assert told(workspace, words)[-1] == "Say which step: `again 5` goes back to before step 5."
 
 
 def test_n_gives_the_words_back(workspace: Workspace) -> None:
@@ -153,7 +153,7 @@ def test_undo_where_help_and_quit_are_understood(workspace: Workspace) -> None:
 def test_a_session_that_is_left_is_gone_on_with(workspace: Workspace) -> None:
     said = told(workspace, "greet everyone", "y", "next number", "y", "quit")
     assert said[-1] == (
-        "Left after 2 steps. What you confirmed is kept: `tangy teach` goes on from here."
+        "You left after 2 steps. What you confirmed is kept. Go on from here with `tangy teach`."
     )
     assert told(workspace)[1] == "Going on with Ada's demonstration of 2 steps (game 1)."
     assert told(workspace, resume=False)[1].startswith("A new demonstration by Ada")
@@ -162,13 +162,13 @@ def test_a_session_that_is_left_is_gone_on_with(workspace: Workspace) -> None:
 def test_what_is_not_in_the_log_is_not_said_to_be_kept(workspace: Workspace) -> None:
     told(workspace, "greet everyone", "y", "next number", "y", "quit")
     kept = told(workspace, "quit")
-    assert kept[-1].startswith("Left after 2 steps.")
+    assert kept[-1].startswith("You left after 2 steps.")
     first = next(workspace.store.events()).body["demonstration"]
     left = told(workspace, "quit", teacher="Bea", again=Again(first, 1))
-    assert left[-1] == "You confirmed nothing, so nothing was changed."
+    assert left[-1] == "You confirmed nothing, so nothing has changed."
     assert told(workspace, "quit", teacher="Bea")[1].startswith("A new demonstration by Bea")
     gone_on = told(workspace, "next number", "y", "quit", teacher="Bea", again=Again(first, 1))
-    assert gone_on[-1].startswith("Left after 2 steps.")
+    assert gone_on[-1].startswith("You left after 2 steps.")
 
 
 def test_what_is_missing_stands_under_a_heading(workspace: Workspace) -> None:
@@ -205,7 +205,7 @@ def test_the_command_that_is_told_goes_on_where_it_was_left(
     for who, name in ((("--teacher", "Ada Lovelace"), " --teacher 'Ada Lovelace'"), ((), "")):
         left = tangy("teach", "--plain", *who, *at, stdin="greet everyone\ny\nquit\n").stdout
         command = f"tangy teach{name} --data {tmp_path / 'd'}"
-        assert left.endswith(f"is kept: `{command}` goes on from here.\n")
+        assert left.endswith(f"is kept. Go on from here with `{command}`.\n")
         again = tangy(*shlex.split(command)[1:], stdin="quit\n").stdout
         assert "Going on with " in again
 
@@ -249,12 +249,12 @@ def test_a_whole_game_can_be_taught_by_lines_and_then_the_next(workspace: Worksp
     after = said[said.index(over) + 1 :]
     assert after[:2] == [
         "9 of 11 situations were shown.",
-        "Type next for another demonstration, or quit and `tangy learn --data d`.",
+        "Type next for another demonstration, or quit and run `tangy learn --data d`.",
     ]
     assert after[2].startswith("This game is over.")
     assert after[3] == "A new demonstration by Ada (game 2)."
-    assert after[-1] == "Let Tangy learn from it: `tangy learn --data d`."
-    assert not any(line.startswith("Left after") for line in after)
+    assert after[-1] == "Let Tangy learn from it with `tangy learn --data d`."
+    assert not any(line.startswith("You left after") for line in after)
 
 
 @given(st.lists(st.text(max_size=20) | st.sampled_from(["y", "n", "1", "undo", "next number"])))
@@ -362,7 +362,7 @@ def test_without_the_demonstrations_it_still_says_the_votes(workspace: Workspace
 
 
 def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> None:
-    answer = "Answer with a behaviour in words, or type: where, why, help, end."
+    answer = "Say in words what Tangy should do, or type: where, why, help, end."
     said = asked(workspace, "help")
     assert said[0] == answer
     for behaviour in workspace.activity.behaviours.values():
@@ -374,7 +374,7 @@ def test_while_tangy_asks_there_is_help_for_every_word(workspace: Workspace) -> 
 
 @pytest.mark.parametrize("word", ["undo", "redo"])
 def test_while_tangy_asks_nothing_is_taken_back(workspace: Workspace, word: str) -> None:
-    assert asked(workspace, word) == [f"There is nothing to {word} in a game."]
+    assert asked(workspace, word) == [f"You cannot {word} in a game."]
 
 
 def test_the_question_of_an_answer_takes_yes_in_full_and_can_be_left(workspace: Workspace) -> None:

@@ -209,9 +209,9 @@ def test_recordings_are_deleted_and_consent_with_them(tangy: Tangy, tmp_path: Pa
 @pytest.mark.parametrize(
     ("recordings", "others", "told"),
     [
-        (0, 0, ["0 recordings deleted;"]),
-        (1, 1, ["1 recording deleted;", "1 other file is left in "]),
-        (2, 2, ["2 recordings deleted;", "2 other files are left in "]),
+        (0, 0, ["0 recordings deleted."]),
+        (1, 1, ["1 recording deleted.", "1 other file is left in "]),
+        (2, 2, ["2 recordings deleted.", "2 other files are left in "]),
     ],
 )
 def test_what_is_deleted_and_left_is_counted_in_words(
@@ -307,7 +307,7 @@ class TestCheckingAMicrophone:
         (tmp_path / "a.wav").write_bytes(wav(pcm(tone(0.2))))
         check = ("mic", "check", "--mic", tmp_path / "a.wav", "--data", tmp_path / "data")
         done = tangy(*check)
-        assert "no noise of a room in it at all (digital silence)" in done.stdout
+        assert "no room noise at all (digital silence)" in done.stdout
         assert " dB" not in done.stdout
         assert "5 of 6 commands understood; no other sentence was heard." in done.stdout
         assert json.loads(tangy(*check, "--json").stdout)["room_db"] is None

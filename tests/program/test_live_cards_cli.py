@@ -10,8 +10,9 @@ import pytest
 from tangy_hw.dealt_cards import CardDoubt, CardLearnt, Doubt
 from tangy_profiles.errors import TangyError
 from tangy_profiles.person import Person
-from tangy_tui.app.card_news import doubt_document, doubt_note, doubt_words, learnt_words
+from tangy_tui.app.card_news import doubt_document, doubt_note
 from tangy_tui.app.dealing import read_dealt
+from tangy_tui.text.live_news import doubt_words, learnt_words
 
 Tangy = Callable[..., CompletedProcess[str]]
 

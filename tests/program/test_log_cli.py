@@ -17,6 +17,7 @@ from tangy_tui.monitoring.fault_table import ROWS
 from tangy_tui.monitoring.games import Game
 from tangy_tui.ui.log_report import print_games
 from tests.support.append_body import append_body
+from tests.support.games import play
 
 Tangy = Callable[..., CompletedProcess[str]]
 FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
@@ -26,7 +27,6 @@ FAULTS = ("laser-disconnected@6", "path-blocked", "arm-failed@9")
 def _played(_taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     from tangy_tui.app.workspace import Workspace
     from tangy_tui.learning.policies import load_policy
-    from tests.monitoring.conftest import play
 
     folder = Path(shutil.copytree(_taught, tmp_path_factory.mktemp("played") / "data"))
     workspace = Workspace(folder)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 
-from tests.support.source_copy import copy_sources, edit, run_on, tangy_on
+from tests.support.source_copy import HOUSE, copy_sources, edit, run_on, tangy_on
 
 pytestmark = pytest.mark.slow
 CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
@@ -89,7 +90,7 @@ code = "arm-failed\"""",
 
 def test_a_method_of_persuasion_is_a_class_and_a_name(copy: Path, taught: Path) -> None:
     methods, names = "tangy_tui/interaction/methods.py", "profiles/tangy_profiles/persuading.py"
-    words = "tangy_tui/ui/dialogs/method.py"
+    words = "tangy_tui/text/people.py"
     places("Add a method of persuasion", methods, names, words, "`METHODS`", "`_plain`")
     edit(copy / names, '["thompson", "bayes-ucb"]', '["thompson", "bayes-ucb", "turns"]')
     edit(
@@ -114,6 +115,33 @@ class BayesUcb(Plain):""",
     assert chosen.returncode == 0, chosen.stderr
     shown = tangy_on(copy, "people", "show", "user1", "--data", taught)
     assert "each in turn" in shown.stdout
+
+
+def test_a_kind_of_event_is_a_record_that_is_written_and_read(copy: Path) -> None:
+    records = "profiles/tangy_profiles/people_records.py"
+    places(
+        "Add a kind of event", "people_records.py", "tests/support/every_kind.py", "test_events.py"
+    )
+    shutil.copytree(HOUSE / "tests", copy / "tests")
+    told = "a_kind_is_written_by_the_program_and_read_by_it"
+    tests = ["-m", "pytest", "-q", "-n", "0", "tests/profiles/test_events.py", "-k", told]
+    edit(
+        copy / records,
+        '@kind("renamed", about="person")',
+        '@kind("coffee")\nclass CoffeeBreak(EventRecord):\n    """A break."""\n\n'
+        '    minutes: float = 10.0\n\n\n@kind("renamed", about="person")',
+    )
+    assert "CoffeeBreak ('coffee'): nothing in the program writes it" in run_on(copy, *tests).stdout
+    uses = copy / "tangy_tui/app/coffee.py"
+    uses.write_text(
+        "from tangy_profiles.people_records import CoffeeBreak\n"
+        "def begin(store): return store.append(CoffeeBreak(minutes=5.0))\n"
+    )
+    assert "CoffeeBreak ('coffee'): nothing in the program reads it" in run_on(copy, *tests).stdout
+    with uses.open("a") as file:
+        file.write("def breaks(store): return list(store.events(CoffeeBreak))\n")
+    done = run_on(copy, *tests)
+    assert done.returncode == 0, done.stdout
 
 
 def test_mypy_names_each_place_that_was_forgotten(copy: Path) -> None:

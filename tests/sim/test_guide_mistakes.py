@@ -8,7 +8,6 @@ from random import Random
 
 import pytest
 from hypothesis import given
-from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from tangy_profiles.state import Situation
@@ -26,6 +25,7 @@ from tests.sim.guided import (
     play,
     turn,
 )
+from tests.support.laws import tried
 
 NUMBERS_LEFT = 7
 """Five numbers of a card touch all its lines; with fewer left than these all cards have one."""
@@ -39,7 +39,7 @@ def check_order(world: GuidedWorld) -> None:
         assert not lacking, lacking
 
 
-@examples(max_examples=100)
+@tried(100)
 @given(st.integers(0, 999), st.integers(1, 8), MISTAKES)
 def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
     seed: int, users: int, mistakes: list[Mistake]
@@ -55,7 +55,7 @@ def test_mistakes_do_not_keep_anything_from_being_shown_before_the_win(
     assert world.observe().step < 60 + 8 * len(mistakes)
 
 
-@examples(max_examples=40)
+@tried(40)
 @given(st.integers(0, 99), st.integers(1, 8), MISTAKES)
 def test_mistakes_do_no_harm_to_a_made_up_activity_either(
     seed: int, users: int, mistakes: list[Mistake]

@@ -59,6 +59,15 @@ class Terminal:
         fcntl.ioctl(self._parent, termios.TIOCSWINSZ, size)
         self._screen.resize(lines, columns)
 
+    def wipe(self) -> None:
+        """Lose what the screen shows, as when something else has written on it."""
+        self._screen.reset()
+
+    @property
+    def parent(self) -> int:
+        """The file descriptor of the terminal's own side."""
+        return self._parent
+
     @property
     def text(self) -> str:
         """What can be read on the screen."""

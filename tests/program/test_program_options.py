@@ -1,0 +1,54 @@
+"""`tangy` with its own options alone opens the program as the option parser would open it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tangy_tui import cli
+from tangy_tui.verbs import opening, program
+
+SAME = [
+    [],
+    ["--ascii"],
+    ["--data", "mine"],
+    ["--data=mine", "--ascii"],
+    ["--robot", "other", "--data", "mine"],
+    ["--robot=other"],
+    ["--data", "a", "--data=b"],
+]
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """Return the options of every program that was opened."""
+    calls: list[dict[str, Any]] = []
+
+    def opens(data: Path | None = None, *, robot: str = "tangy", ascii_only: bool = False) -> int:
+        calls.append({"data": data, "robot": robot, "ascii_only": ascii_only})
+        return 0
+
+    for module in (opening, program):
+        monkeypatch.setattr(module, "full_screen", lambda: True)
+        monkeypatch.setattr(module, "open_program", opens)
+    return calls
+
+
+@pytest.mark.parametrize("words", SAME, ids=" ".join)
+def test_both_ways_open_the_same_program(
+    words: list[str], opened: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["tangy", *words])
+    assert cli._run() == 0
+    assert cli._parsed() == 0
+    assert len(opened) == 2 and opened[0] == opened[1]
+
+
+@pytest.mark.parametrize(
+    "words", [["--data"], ["--data", "--ascii"], ["--dat", "x"], ["teach"], ["--help"], ["--data="]]
+)
+def test_the_rest_is_left_to_the_option_parser(words: list[str]) -> None:
+    assert cli._program_options(words) is None

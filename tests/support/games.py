@@ -1,0 +1,58 @@
+"""Supervised games: played to their end or to a point, and what came about in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tangy_sim.worlds.faulty_world import FaultyWorld
+from tangy_tui.app.scripted_staff import go_on_by_script, scripted_controller
+from tangy_tui.interaction.game_events import Acted, GameEnded
+from tangy_tui.monitoring.fault import Diagnosed, Moved
+from tangy_tui.monitoring.supervision import Event, Supervision
+
+
+def world_of(game: Supervision) -> FaultyWorld:
+    """Return the simulated world of a game."""
+    assert isinstance(game.world, FaultyWorld)
+    return game.world
+
+
+def play(game: Supervision, *, expert: bool = True) -> list[Event]:
+    """Play one game to its end, with scripted people."""
+    control = scripted_controller(game)
+    events = control.begin()
+    while not game.over:
+        events += go_on_by_script(control, expert=expert)
+    return events
+
+
+def until(
+    game: Supervision, stops: Callable[[Supervision], object], most: int = 400
+) -> list[Event]:
+    """Do step after step until something is so; nobody clears or answers anything."""
+    events: list[Event] = []
+    for _ in range(most):
+        if stops(game):
+            return events
+        events += game.step()
+    raise AssertionError("It never came to that.")
+
+
+def codes(events: list[Event]) -> list[str]:
+    """Return the codes of what was diagnosed, in order."""
+    return [event.fault.code for event in events if isinstance(event, Diagnosed)]
+
+
+def moves(events: list[Event], code: str = "") -> list[str]:
+    """Return what was done about faults (of a code), in order."""
+    return [e.move.kind for e in events if isinstance(e, Moved) and code in ("", e.fault.code)]
+
+
+def acts(events: list[Event]) -> list[Acted]:
+    """Return the behaviours that were executed."""
+    return [event for event in events if isinstance(event, Acted)]
+
+
+def ended(events: Sequence[object]) -> GameEnded:
+    """Return how a game ended."""
+    return next(event for event in events if isinstance(event, GameEnded))
