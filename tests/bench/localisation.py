@@ -30,6 +30,7 @@ from tangy_hw.navigation.scan_log import LoggedScan, read_log
 from tangy_hw.navigation.slip_detection import Disagreement
 
 FOLDER = "TANGY_LASER_LOG"
+MISSED = 1.4  # radians that wheels leave out once, where they slip
 AROUND = 1  # steps before and after: their corrected sum says whether it was driven backwards
 
 
@@ -80,6 +81,48 @@ def errors(
         took = time.process_time() - begun
         off = hypot(pose.x - moment.truth.x, pose.y - moment.truth.y)
         yield off, abs(wrap(pose.heading - moment.truth.heading)), took
+
+
+def apart(way: Sequence[Moment], metres: float) -> list[Moment]:
+    """Return the moments at which the robot has gone so far since the last of them."""
+    found, gone = [way[0]], 0.0
+    for before, one in pairwise(way):
+        gone += hypot(one.truth.x - before.truth.x, one.truth.y - before.truth.y)
+        if gone >= metres:
+            found.append(one)
+            gone = 0.0
+    return found
+
+
+def unturned(way: Sequence[Moment], seed: int) -> list[Moment]:
+    """Return a way on which the wheels count `MISSED` less of a turn, somewhere in the middle."""
+    middle = int(np.random.default_rng(seed).integers(len(way) // 5, len(way) * 3 // 5))
+    found = [way[0]]
+    for number, (before, one) in enumerate(pairwise(way)):
+        step = between(before.odometry, one.odometry)
+        if number == middle:
+            step = step._replace(heading=wrap(step.heading - MISSED))
+        found.append(Moment(compose(found[-1].odometry, step), one.scan, one.truth))
+    return found
+
+
+def row_apart(map_: OccupancyMap, way: Sequence[Moment], seeds: int) -> str:
+    """Sum up how exactly the robot is followed by these scans, and how often it is sure wrongly."""
+    off, took, wrong = [], [], 0
+    for seed in range(seeds):
+        localisation = Localisation(map_, np.random.default_rng(seed), way[0].truth)
+        for moment in way:
+            begun = time.process_time()
+            estimate = localisation.update(moment.odometry, moment.scan)
+            took.append(time.process_time() - begun)
+            pose, truth = estimate.pose, moment.truth
+            off.append(hypot(pose.x - truth.x, pose.y - truth.y))
+            wrong += estimate.found and off[-1] > 1.0
+    median, high = np.percentile(off, [50, 95])
+    return (
+        f"median {median:.3f} m, p95 {high:.3f}; sure and off by a metre: {wrong} of {len(off)}; "
+        f"{np.percentile(took, 95) * 1e3:.1f} ms p95"
+    )
 
 
 def doubts(localisation: Localisation, way: Sequence[Moment]) -> int:
@@ -140,6 +183,11 @@ def main() -> None:
         print(f"seed {seed}: median {median:.3f} m, p95 {high:.3f}, most {most:.2f}; "
               f"{np.percentile(rows[:, 1], 95):.3f} rad p95; "
               f"{rows[:, 2].mean() * 1e3:.2f} ms")  # fmt: skip
+    for metres in (0.1, 0.5, 1.0, 2.0):
+        far = apart(way, metres)
+        print(f"scans {metres:.1f} m apart: {row_apart(map_, far, options.seeds)}")
+        missed = unturned(far, 0)
+        print(f"  a turn not counted:  {row_apart(map_, missed, options.seeds)}")
     localisation = Localisation(map_, np.random.default_rng(0), way[0].truth)
     print(f"lost without having been carried off: {doubts(localisation, way)} of {len(way)} scans")
     found = [kidnapped(map_, way, seed) for seed in range(options.carried)]

@@ -58,6 +58,19 @@ class TestFollowing:
         assert FEWEST <= last.count <= MOST
         assert np.linalg.eigvalsh(last.covariance).min() > -1e-9
 
+    @pytest.mark.parametrize("seed", [1, 2])
+    def test_a_robot_whose_scans_lie_metres_apart_is_followed(self, seed: int) -> None:
+        robot = Driven(seed)
+        off = []
+        for number, twist in enumerate(ROUND):
+            robot.true = driven(robot.true, twist, 0.1)
+            counted = robot.wheels.turn(twist, 0.1)
+            if number % 40 == 0:
+                scan = look(robot.sides, robot.true, robot.rng)
+                pose = robot.localisation.update(counted, scan).pose
+                off.append(hypot(pose.x - robot.true.x, pose.y - robot.true.y))
+        assert np.median(off) < 0.05 and max(off) < 0.3
+
     def test_the_same_seed_gives_the_same_poses(self) -> None:
         first, second = (Driven(4).drive(ROUND[:60])[-1][1] for _ in range(2))
         assert first.pose == second.pose and first.fit == second.fit

@@ -41,6 +41,18 @@ class TestParticles:
                 assert after[:2] == pytest.approx(there[:2], abs=1e-9)
             assert abs(wrap(float(after[2]) - there.heading)) < 1e-9
 
+    @pytest.mark.parametrize("step", [Pose(2.0, 0, 0), Pose(0, 0, 2.0)])
+    def test_one_long_step_is_as_uncertain_as_the_short_ones_it_is_made_of(
+        self, step: Pose
+    ) -> None:
+        rng = np.random.default_rng(2)
+        many = start = np.zeros((4000, 3))
+        for _ in range(20):
+            many = move(many, Pose(step.x / 20, 0, step.heading / 20), rng)
+        once = move(start, step, rng)
+        assert once[:, 2].std() < 1.5 * many[:, 2].std()
+        assert once[:, :2].std(axis=0).max() < 1.5 * many[:, :2].std(axis=0).max()
+
     def test_driving_backwards_is_no_more_uncertain_than_forwards(self) -> None:
         start = np.zeros((4000, 3))
         ahead = move(start, Pose(0.5, 0, 0), np.random.default_rng(1))

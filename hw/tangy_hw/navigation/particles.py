@@ -12,6 +12,7 @@ from tangy_hw.device_protocols import Pose
 from tangy_hw.navigation.poses import Floats, wrap
 
 ALPHA = 0.2  # all four of the odometry motion model: squared error for each squared unit moved
+WHOLE = 0.1  # metres and radians up to which a step errs as one; a longer one errs as several
 FEWEST, MOST = 300, 2000
 BIN, BIN_ANGLE = 0.5, pi / 18  # of the histogram that says how many particles are needed
 ERROR, QUANTILE = 0.05, 2.33  # at most so far (KL) from the truth, with probability .99
@@ -19,14 +20,18 @@ CLUSTER, CLUSTER_ANGLE = 0.6, 0.6  # metres and radians around a guess that belo
 
 
 def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) -> Floats:
-    """Move each of (n, 3) by the wheels' step (m, rad) and an error (Thrun et al., table 5.6)."""
+    """Move each of (n, 3) by the wheels' step (m, rad) and an error (Thrun et al., table 5.6).
+
+    The variance of the error grows with the square of a step no longer than `WHOLE`, and from there
+    in proportion to its length: errors of a long way do not all point the same way.
+    """
     distance = hypot(step.x, step.y)
     first = atan2(step.y, step.x) if distance > 0.01 else 0.0
     last = wrap(step.heading - first)
     # driving backwards is not a turn by pi and another one
-    turned = min(abs(first), abs(wrap(first - pi))) ** 2
-    turned_last = min(abs(last), abs(wrap(last - pi))) ** 2
-    n, square = len(particles), distance**2
+    turned = _errs(min(abs(first), abs(wrap(first - pi))))
+    turned_last = _errs(min(abs(last), abs(wrap(last - pi))))
+    n, square = len(particles), _errs(distance)
     noise = rng.standard_normal((3, n))
     way = distance + sqrt(alpha * (square + turned + turned_last)) * noise[0]
     heading = particles[:, 2] + first + sqrt(alpha * (turned + square)) * noise[1]
@@ -38,6 +43,11 @@ def move(particles: Floats, step: Pose, rng: Generator, alpha: float = ALPHA) ->
             wrap(ends),
         )
     )
+
+
+def _errs(moved: float) -> float:
+    """Return the square that counts of a step in m, or of a turn in rad."""
+    return moved * min(moved, WHOLE)
 
 
 def around(
