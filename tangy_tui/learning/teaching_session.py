@@ -321,17 +321,10 @@ class TeachingSession:
         self._logged = True
         self.demonstration = replace(self.demonstration.with_step(step), finished=finished)
         name = self.name(target) if target else ""
-        events: list[TeachingEvent] = [
-            Executed(
-                len(self.demonstration.steps),
-                step,
-                action,
-                outcome,
-                self.activity.fill(action.speech, name, outcome.numbers) or NOTHING_SAID,
-                self.activity.fill(action.image, name, outcome.numbers),
-            )
-        ]
-        number = len(self.demonstration.steps)
+        fill, number = self.activity.fill, len(self.demonstration.steps)
+        speech = fill(action.speech, name, outcome.numbers) or NOTHING_SAID
+        image = fill(action.image, name, outcome.numbers)
+        events: list[TeachingEvent] = [Executed(number, step, action, outcome, speech, image)]
         shown = Shown(self.demonstration.id, self.teacher, number, step)
         if (earlier := contradictions.found(shown)) is not None:
             own = earlier.teacher == self.teacher
@@ -356,11 +349,9 @@ class TeachingSession:
     def _undo(self) -> list[TeachingEvent]:
         if not self.demonstration.steps:
             return [Refused("There is no step to undo.")]
-        last = self.demonstration.steps[-1]
-        number = len(self.demonstration.steps)
+        last, number = self.demonstration.steps[-1], len(self.demonstration.steps)
         shorter = self.demonstration.without_last()
-        world = self._replay(shorter)
-        if world is None:
+        if (world := self._replay(shorter)) is None:
             return [Refused("This step cannot be undone: the simulator has changed since.")]
         with self._store.transaction():
             self._log_beginning()
