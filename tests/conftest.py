@@ -6,6 +6,7 @@ import gc
 import io
 import os
 import shutil
+import signal
 import sys
 from collections.abc import Callable, Generator, Iterator
 from functools import cache
@@ -46,6 +47,11 @@ gc.set_threshold(100_000, 10, 10)
 # each of the hundreds of programs that tests start, and each worker, would compile it all again.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# A shell that runs something in its background makes it ignore Ctrl-C, and so would every program
+# that tests start: they would not end, and go on beside the tests that follow.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 TESTS = Path(__file__).parent
 

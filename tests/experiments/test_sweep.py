@@ -122,13 +122,18 @@ def test_ctrl_c_ends_at_once_and_says_how_to_go_on(tmp_path: Path, cores: int) -
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
         env={**os.environ, "LOKY_MAX_CPU_COUNT": str(cores)},
     )  # fmt: skip
-    deadline = monotonic() + 30
-    while monotonic() < deadline and not _kept(tmp_path):
-        sleep(0.05)
-    os.killpg(child.pid, signal.SIGINT)  # a terminal sends it to everybody who works
-    begun = monotonic()
-    said, complained = child.communicate(timeout=20)
-    assert monotonic() - begun < 5
+    try:
+        deadline = monotonic() + 30
+        while monotonic() < deadline and not _kept(tmp_path):
+            sleep(0.05)
+        os.killpg(child.pid, signal.SIGINT)  # a terminal sends it to everybody who works
+        begun = monotonic()
+        said, complained = child.communicate(timeout=20)
+        assert monotonic() - begun < 5
+    finally:
+        if child.poll() is None:  # it would hold up all that comes after this test
+            os.killpg(child.pid, signal.SIGKILL)
+            child.communicate()
     assert (child.returncode, said) == (130, "")
     assert complained.count("\n") == 1
     assert "Run the same command again" in complained
